@@ -1,0 +1,2 @@
+//! Compiles `shaders_glsl/` to SPIR-V.
+fn main() {}

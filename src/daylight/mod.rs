@@ -1,0 +1,1 @@
+//! The physics of daylight in `f64`, without a device.

@@ -1,0 +1,4 @@
+//! Real-time daylight whose numbers can be trusted.
+
+pub mod daylight;
+pub mod scene;

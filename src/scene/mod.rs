@@ -1,0 +1,1 @@
+//! Models, materials, textures, cameras and scene files, without a device.

@@ -1,0 +1,32 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "octahedral.glsl"
+#include "gbuffer_push.glsl"
+
+layout(location = 0) in vec3 from_eye;
+layout(location = 1) in vec3 shading_normal;
+layout(location = 2) in vec2 surface_uv;
+
+layout(location = 0) out vec2 normal;        // world, octahedral
+layout(location = 1) out vec4 albedo;        // rgb: rho_d; a: factor on rho_s
+layout(location = 2) out uint material;      // index into the table of materials
+
+layout(set = 0, binding = 0) uniform sampler2D diffuse_map;
+layout(set = 0, binding = 1) uniform sampler2D specular_map;
+
+/// The normal on the viewer's side. Winding and stored normals of real models disagree too often to trust either alone:
+/// the true face, from derivatives, decides the side; surfaces are two-sided.
+vec3 facing_normal() {
+    vec3 face = cross(dFdx(from_eye), dFdy(from_eye));
+    face *= dot(face, from_eye) > 0.0 ? -1.0 : 1.0;
+    vec3 n = normalize(shading_normal);
+    return dot(n, face) < 0.0 ? -n : n;
+}
+
+void main() {
+    normal = octahedral_encode(facing_normal());
+    vec3 specular = texture(specular_map, surface_uv).rgb;
+    albedo = vec4(push.diffuse * texture(diffuse_map, surface_uv).rgb, dot(specular, vec3(1.0 / 3.0)));
+    material = push.material;
+}

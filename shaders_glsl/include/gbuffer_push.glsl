@@ -1,0 +1,6 @@
+layout(push_constant, scalar) uniform Push {
+    mat4 clip_from_world;
+    vec3 eye;
+    vec3 diffuse;  // rho_d, multiplies the diffuse map
+    uint material; // index into the table of materials
+} push;

@@ -1,0 +1,35 @@
+// What all skies share: the guard around the model, as `daylight::sky` on the CPU.
+#include "constants.glsl"
+#include "cube.glsl"
+
+layout(location = 0) in vec2 face_st;
+layout(location = 1) flat in int face;
+layout(location = 0) out vec4 sky_radiance; // kcd/m^2
+
+layout(push_constant, scalar) uniform Push {
+    vec3 sun_direction; // unit, toward the sun that the model is evaluated for
+    float scale;        // fade through twilight
+    vec3 night;         // added radiance, kcd/m^2
+    vec3 ground;        // radiance below the horizon, kcd/m^2
+} push;
+
+// float32 loses exp(B / cos theta) closer to the horizon than this; the texel centres of a cube stay above it.
+const float MIN_COS_THETA = 1e-4;
+
+/// Angle between two unit vectors (Kahan): acos loses half of its digits near 0, just where the sky is brightest.
+float angle_between(vec3 a, vec3 b) {
+    return 2.0 * atan(length(a - b), length(a + b));
+}
+
+/// The nearest displayable colour: a saturated glow lies outside of BT.709, and light cannot be negative. Keeps luminance.
+vec3 clip_negative(vec3 rgb) {
+    if (min(rgb.r, min(rgb.g, rgb.b)) >= 0.0) return rgb;
+    vec3 clamped = max(rgb, 0.0);
+    float target = luminance(rgb);
+    float l = luminance(clamped);
+    return target > 0.0 && l > 0.0 ? clamped * (target / l) : vec3(0.0);
+}
+
+/// Writes the sky, or the ground below it. `model` is the model's own radiance in kcd/m^2.
+#define WRITE_SKY(direction, model) \
+    sky_radiance = vec4((direction).y > 0.0 ? clip_negative(model) * push.scale + push.night : push.ground, 1.0)

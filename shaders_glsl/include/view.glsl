@@ -1,0 +1,15 @@
+// The camera as the screen-space passes see it. Depth is reversed with an infinite far plane: d = near / distance.
+
+/// Uniform block shared by the passes that reconstruct positions.
+#define VIEW_BLOCK \
+    mat3 world_from_view; \
+    vec3 eye; \
+    vec2 ray_scale; \
+    vec2 ray_offset; \
+    float near;
+
+/// View-space ray through a point uv in [0,1]^2 of the picture, with z = -1.
+/// The inverse projection of the lecture's background slide, written out: only its diagonal matters.
+vec3 view_ray(vec2 uv, vec2 ray_scale, vec2 ray_offset) {
+    return vec3((uv * 2.0 - 1.0) * ray_scale + ray_offset, -1.0);
+}

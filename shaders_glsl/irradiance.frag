@@ -1,0 +1,51 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "constants.glsl"
+#include "cube.glsl"
+#include "frame.glsl"
+#include "random.glsl"
+
+// The lecture's slide "Integrating skylight": E(n) = 1/N sum L (n.w) / pdf(w) with pdf = (n.w) / pi, so each sample adds pi L.
+
+layout(location = 0) in vec2 face_st;
+layout(location = 1) flat in int face;
+layout(location = 0) out vec4 sum;            // rgb: sum of pi L, klx; a: number of samples
+layout(location = 1) out vec4 sky_irradiance; // E, klx
+
+layout(constant_id = 0) const bool MONTE_CARLO = false;
+
+layout(set = 0, binding = 0) uniform samplerCube sky_radiance; // kcd/m^2
+layout(set = 0, binding = 1) uniform samplerCube previous_sum;
+layout(set = 0, binding = 2, scalar) readonly buffer Samples {
+    vec3 samples[]; // cosine-weighted directions around +z, low-discrepancy
+};
+
+layout(push_constant, scalar) uniform Push {
+    uint first; // index of the first sample of this pass; 0 starts anew
+    uint count; // samples of this pass
+} push;
+
+vec3 random_direction(inout uint t) {
+    float xi1 = rnd(t);
+    float xi2 = rnd(t);
+    float sin_theta = sqrt(xi1);
+    float phi = 2.0 * PI * xi2;
+    return vec3(cos(phi) * sin_theta, sin(phi) * sin_theta, sqrt(1.0 - xi1));
+}
+
+void main() {
+    vec3 n = normalize(cube_direction(face, face_st));
+    mat3 frame = frame_from_normal(n);
+    uint edge = uint(textureSize(previous_sum, 0).x);
+    uint texel = uint(gl_FragCoord.y) * edge + uint(gl_FragCoord.x);
+    uint t = tea(texel, uint(face) + 6u * push.first);
+    vec3 total = vec3(0.0);
+    for (uint i = 0u; i < push.count; ++i) {
+        vec3 local = MONTE_CARLO ? random_direction(t) : samples[push.first + i];
+        total += textureLod(sky_radiance, frame * local, 0.0).rgb;
+    }
+    sum = vec4(PI * total, float(push.count));
+    if (push.first > 0u) sum += textureLod(previous_sum, n, 0.0);
+    sky_irradiance = vec4(sum.rgb / sum.a, 1.0);
+}

@@ -1,0 +1,46 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "constants.glsl"
+#include "tone_curve.glsl"
+
+layout(location = 0) out vec4 display;
+
+// One curve; none of them is the lecture's linear scale.
+layout(constant_id = 0) const bool EXPONENTIAL = false;
+layout(constant_id = 1) const bool REINHARD = false;
+layout(constant_id = 2) const bool AGX = false;
+layout(constant_id = 3) const bool NEUTRAL = false;
+layout(constant_id = 4) const bool ACES = false;
+// Encode with a power instead of leaving the sRGB curve to the target's format.
+layout(constant_id = 5) const bool GAMMA = false;
+// Exposure from the average luminance instead of the push constant.
+layout(constant_id = 6) const bool AUTO = false;
+// Show the luminance only.
+layout(constant_id = 7) const bool GREY = false;
+
+layout(set = 0, binding = 0) uniform sampler2D radiance;          // kcd/m^2
+layout(set = 0, binding = 1) uniform sampler2D average_luminance; // kcd/m^2, one texel
+
+layout(push_constant, scalar) uniform Push {
+    float exposure;      // display units for 1 kcd/m^2; with AUTO the display value of the average luminance
+    float offset;        // added after the scale: shows signed quantities
+    float white;         // Reinhard's white, display units
+    float inverse_gamma; // of the power
+} push;
+
+void main() {
+    vec3 c = texelFetch(radiance, ivec2(gl_FragCoord.xy), 0).rgb;
+    float exposure = push.exposure;
+    if (AUTO) exposure /= texelFetch(average_luminance, ivec2(0), 0).r;
+    if (GREY) c = vec3(luminance(c));
+    c = max(c * exposure + push.offset, 0.0);
+    if (EXPONENTIAL) c = tone_exponential(c);
+    if (REINHARD) c = tone_reinhard(c, push.white);
+    if (AGX) c = tone_agx(c);
+    if (NEUTRAL) c = tone_neutral(c);
+    if (ACES) c = tone_aces(c);
+    c = clamp(c, 0.0, 1.0);
+    if (GAMMA) c = pow(c, vec3(push.inverse_gamma));
+    display = vec4(c, 1.0);
+}

@@ -1,0 +1,400 @@
+//! Instance, device, queue, memory and the few samplers: what everything else keeps alive.
+
+use std::ffi::CStr;
+use std::mem::ManuallyDrop;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use ash::{ext, khr, vk};
+use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+
+use super::error::{During, GpuError, Result};
+use super::select::{self, DeviceSummary};
+use super::validation::{LAYER, Messenger};
+
+/// How to make a [`Context`].
+#[derive(Debug, Clone, Default)]
+pub struct ContextOptions {
+    /// Index or part of the name of the device; the best one otherwise.
+    pub device: Option<String>,
+    /// Turn on the validation layer with synchronization validation.
+    pub validate: bool,
+    /// Bind through descriptor pools although the device has push descriptors (to test that path).
+    pub no_push_descriptors: bool,
+}
+
+/// How an image is looked up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Sampler {
+    /// Nearest texel, clamped.
+    Nearest,
+    /// Bilinear (cubes: seamless), clamped, trilinear where there are mip levels.
+    Linear,
+    /// Trilinear, repeating: surface textures.
+    Repeat,
+    /// Bilinear depth comparison, reference ≥ depth passes; outside the map is lit.
+    Shadow,
+}
+
+const SAMPLERS: [Sampler; 4] = [
+    Sampler::Nearest,
+    Sampler::Linear,
+    Sampler::Repeat,
+    Sampler::Shadow,
+];
+
+/// An instance destroyed on drop.
+pub(super) struct InstanceGuard {
+    pub(super) raw: ash::Instance,
+}
+
+impl InstanceGuard {
+    pub(super) fn new(entry: &ash::Entry, validate: bool) -> Result<Self> {
+        let app = vk::ApplicationInfo::default()
+            .application_name(c"skylight")
+            .engine_name(c"skylight")
+            .api_version(vk::API_VERSION_1_3);
+        let mut extensions = Vec::new();
+        if has_instance_extension(entry, None, ext::debug_utils::NAME)? {
+            extensions.push(ext::debug_utils::NAME.as_ptr());
+        }
+        let mut layers = Vec::new();
+        let sync = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
+        let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&sync);
+        let mut info = vk::InstanceCreateInfo::default().application_info(&app);
+        if validate {
+            if !has_layer(entry)? {
+                return Err(GpuError::NoValidationLayer);
+            }
+            layers.push(LAYER.as_ptr());
+            if has_instance_extension(entry, Some(LAYER), ext::validation_features::NAME)? {
+                extensions.push(ext::validation_features::NAME.as_ptr());
+                info = info.push_next(&mut features);
+            }
+        }
+        let info = info
+            .enabled_extension_names(&extensions)
+            .enabled_layer_names(&layers);
+        // SAFETY: all pointers of `info` live on this stack.
+        let raw = unsafe { entry.create_instance(&info, None) }.map_err(|result| match result {
+            vk::Result::ERROR_INCOMPATIBLE_DRIVER => GpuError::NoDevice,
+            result => GpuError::Vulkan {
+                what: "create the Vulkan instance",
+                result,
+            },
+        })?;
+        Ok(Self { raw })
+    }
+}
+
+impl Drop for InstanceGuard {
+    fn drop(&mut self) {
+        // SAFETY: children were destroyed before (field order of Context).
+        unsafe { self.raw.destroy_instance(None) };
+    }
+}
+
+pub(super) fn load() -> Result<ash::Entry> {
+    // SAFETY: the system's Vulkan loader runs its initialisers; nothing can be assumed but that it is one.
+    unsafe { ash::Entry::load() }.map_err(|e| GpuError::NoLoader(e.to_string()))
+}
+
+fn has_layer(entry: &ash::Entry) -> Result<bool> {
+    // SAFETY: no arguments to be wrong.
+    let layers =
+        unsafe { entry.enumerate_instance_layer_properties() }.during("list Vulkan layers")?;
+    Ok(layers
+        .iter()
+        .any(|l| l.layer_name_as_c_str().is_ok_and(|n| n == LAYER)))
+}
+
+fn has_instance_extension(entry: &ash::Entry, layer: Option<&CStr>, name: &CStr) -> Result<bool> {
+    // SAFETY: `layer` is a terminated string.
+    let list = unsafe { entry.enumerate_instance_extension_properties(layer) }
+        .during("list Vulkan extensions")?;
+    Ok(list
+        .iter()
+        .any(|e| e.extension_name_as_c_str().is_ok_and(|n| n == name)))
+}
+
+/// A logical device destroyed on drop.
+struct DeviceGuard {
+    raw: ash::Device,
+}
+
+impl Drop for DeviceGuard {
+    fn drop(&mut self) {
+        // SAFETY: all resources hold the Context, so none is alive any more.
+        unsafe {
+            let _ = self.raw.device_wait_idle();
+            self.raw.destroy_device(None);
+        }
+    }
+}
+
+/// The device and what belongs to it. Shared by everything that was made with it.
+pub struct Context {
+    // Dropped by hand first, then in the order of the fields: device, messenger, instance, loader.
+    allocator: ManuallyDrop<Mutex<Allocator>>,
+    samplers: [vk::Sampler; SAMPLERS.len()],
+    device: DeviceGuard,
+    pub(super) push_descriptor: Option<khr::push_descriptor::Device>,
+    pub(super) debug: Option<ext::debug_utils::Device>,
+    pub(super) queue: vk::Queue,
+    pub(super) queue_family: u32,
+    pub(super) physical: vk::PhysicalDevice,
+    pub(super) limits: vk::PhysicalDeviceLimits,
+    summary: DeviceSummary,
+    messenger: Option<Messenger>,
+    instance: InstanceGuard,
+    _entry: ash::Entry,
+}
+
+impl Context {
+    /// Opens a device.
+    ///
+    /// # Errors
+    /// No loader, no device, an unknown `device`, a missing feature (named), or a driver fault.
+    pub fn new(options: &ContextOptions) -> Result<Arc<Self>> {
+        let entry = load()?;
+        let instance = InstanceGuard::new(&entry, options.validate)?;
+        let messenger = options
+            .validate
+            .then(|| Messenger::new(&entry, &instance.raw))
+            .transpose()?;
+        let chosen = select::choose(
+            select::candidates(&instance.raw)?,
+            options.device.as_deref(),
+        )?;
+        let push = !options.no_push_descriptors
+            && chosen
+                .summary
+                .optional
+                .iter()
+                .any(|o| *o == ("VK_KHR_push_descriptor", true));
+        let device = create_device(&instance.raw, &chosen, push)?;
+        // SAFETY: `chosen` comes from this instance; the queue family was found on it.
+        let (queue, limits) = unsafe {
+            (
+                device.raw.get_device_queue(chosen.queue_family, 0),
+                instance
+                    .raw
+                    .get_physical_device_properties(chosen.handle)
+                    .limits,
+            )
+        };
+        let debug = has_instance_extension(&entry, None, ext::debug_utils::NAME)?
+            .then(|| ext::debug_utils::Device::new(&instance.raw, &device.raw));
+        let push_descriptor =
+            push.then(|| khr::push_descriptor::Device::new(&instance.raw, &device.raw));
+        let allocator = create_allocator(&instance.raw, &device.raw, chosen.handle)?;
+        let samplers = create_samplers(&device.raw)?;
+        Ok(Arc::new(Self {
+            allocator: ManuallyDrop::new(Mutex::new(allocator)),
+            samplers,
+            device,
+            push_descriptor,
+            debug,
+            queue,
+            queue_family: chosen.queue_family,
+            physical: chosen.handle,
+            limits,
+            summary: chosen.summary,
+            messenger,
+            instance,
+            _entry: entry,
+        }))
+    }
+
+    /// The device in words.
+    pub fn summary(&self) -> &DeviceSummary {
+        &self.summary
+    }
+
+    /// Messages of the validation layer so far; empty when validation is off.
+    pub fn validation_messages(&self) -> Vec<String> {
+        self.messenger
+            .as_ref()
+            .map(|m| m.log().messages())
+            .unwrap_or_default()
+    }
+
+    /// Fails when the validation layer has said anything.
+    ///
+    /// # Errors
+    /// Counts the messages and quotes the first.
+    pub fn check_validation(&self) -> Result<()> {
+        let messages = self.validation_messages();
+        match messages.first() {
+            None => Ok(()),
+            Some(first) => Err(GpuError::Validation {
+                count: messages.len(),
+                first: first.clone(),
+            }),
+        }
+    }
+
+    /// The first of `formats` that can be sampled and rendered to (blended and filtered are not asked for).
+    ///
+    /// # Errors
+    /// Names the formats when none can.
+    pub fn supported_format(&self, formats: &[vk::Format]) -> Result<vk::Format> {
+        let needed =
+            vk::FormatFeatureFlags::COLOR_ATTACHMENT | vk::FormatFeatureFlags::SAMPLED_IMAGE;
+        let able = |format: &&vk::Format| {
+            // SAFETY: the physical device belongs to the instance.
+            let p = unsafe {
+                self.instance
+                    .raw
+                    .get_physical_device_format_properties(self.physical, **format)
+            };
+            p.optimal_tiling_features.contains(needed)
+        };
+        formats
+            .iter()
+            .find(able)
+            .copied()
+            .ok_or_else(|| GpuError::Unsupported {
+                missing: format!("rendering to {formats:?} is"),
+                device: self.summary.name.clone(),
+            })
+    }
+
+    pub(super) fn raw(&self) -> &ash::Device {
+        &self.device.raw
+    }
+
+    pub(super) fn allocator(&self) -> MutexGuard<'_, Allocator> {
+        // A panic inside the allocator is a fault of its own; going on leaks at worst.
+        self.allocator
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(super) fn sampler(&self, sampler: Sampler) -> vk::Sampler {
+        self.samplers[sampler as usize]
+    }
+
+    /// Gives a handle a name that validation messages and captures show.
+    pub(super) fn name<H: vk::Handle>(&self, handle: H, name: &str) {
+        let Some(debug) = &self.debug else { return };
+        let Ok(name) = std::ffi::CString::new(name) else {
+            return;
+        };
+        let info = vk::DebugUtilsObjectNameInfoEXT::default()
+            .object_handle(handle)
+            .object_name(&name);
+        // SAFETY: the handle belongs to this device. A name that cannot be set is no loss.
+        let _ = unsafe { debug.set_debug_utils_object_name(&info) };
+    }
+
+    /// Waits until the device has nothing to do.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn wait_idle(&self) -> Result<()> {
+        // SAFETY: the queue is used by one thread at a time (recorders are not shared).
+        unsafe { self.raw().device_wait_idle() }.during("wait for the device")
+    }
+}
+
+impl Drop for Context {
+    fn drop(&mut self) {
+        // SAFETY: no resource is alive (each holds an Arc of this); the allocator is dropped once, before the device.
+        unsafe {
+            let _ = self.raw().device_wait_idle();
+            for sampler in self.samplers {
+                self.device.raw.destroy_sampler(sampler, None);
+            }
+            ManuallyDrop::drop(&mut self.allocator);
+        }
+    }
+}
+
+fn create_device(
+    instance: &ash::Instance,
+    chosen: &select::Candidate,
+    push_descriptors: bool,
+) -> Result<DeviceGuard> {
+    let priority = [1.0];
+    let queues = [vk::DeviceQueueCreateInfo::default()
+        .queue_family_index(chosen.queue_family)
+        .queue_priorities(&priority)];
+    let mut extensions = Vec::new();
+    if push_descriptors {
+        extensions.push(select::PUSH_DESCRIPTORS.as_ptr());
+    }
+    let core = vk::PhysicalDeviceFeatures::default().geometry_shader(true);
+    let mut v12 = vk::PhysicalDeviceVulkan12Features::default()
+        .scalar_block_layout(true)
+        .host_query_reset(true);
+    let mut v13 = vk::PhysicalDeviceVulkan13Features::default()
+        .dynamic_rendering(true)
+        .synchronization2(true)
+        .shader_terminate_invocation(true);
+    let info = vk::DeviceCreateInfo::default()
+        .queue_create_infos(&queues)
+        .enabled_extension_names(&extensions)
+        .enabled_features(&core)
+        .push_next(&mut v12)
+        .push_next(&mut v13);
+    // SAFETY: all pointers of `info` live on this stack; the features were checked by `select`.
+    let raw = unsafe { instance.create_device(chosen.handle, &info, None) }
+        .during("create the Vulkan device")?;
+    Ok(DeviceGuard { raw })
+}
+
+fn create_allocator(
+    instance: &ash::Instance,
+    device: &ash::Device,
+    physical_device: vk::PhysicalDevice,
+) -> Result<Allocator> {
+    let mut debug_settings = gpu_allocator::AllocatorDebugSettings::default();
+    debug_settings.log_leaks_on_shutdown = false;
+    Allocator::new(&AllocatorCreateDesc {
+        instance: instance.clone(),
+        device: device.clone(),
+        physical_device,
+        debug_settings,
+        buffer_device_address: false,
+        allocation_sizes: gpu_allocator::AllocationSizes::default(),
+    })
+    .map_err(|e| GpuError::Memory {
+        what: "the allocator".into(),
+        reason: e.to_string(),
+    })
+}
+
+fn create_samplers(device: &ash::Device) -> Result<[vk::Sampler; SAMPLERS.len()]> {
+    let mut samplers = [vk::Sampler::null(); SAMPLERS.len()];
+    for (slot, kind) in samplers.iter_mut().zip(SAMPLERS) {
+        // SAFETY: the info has no pointers.
+        *slot = unsafe { device.create_sampler(&sampler_info(kind), None) }
+            .during("create a sampler")?;
+    }
+    Ok(samplers)
+}
+
+fn sampler_info(sampler: Sampler) -> vk::SamplerCreateInfo<'static> {
+    let (filter, mipmap) = match sampler {
+        Sampler::Nearest => (vk::Filter::NEAREST, vk::SamplerMipmapMode::NEAREST),
+        Sampler::Shadow => (vk::Filter::LINEAR, vk::SamplerMipmapMode::NEAREST),
+        Sampler::Linear | Sampler::Repeat => (vk::Filter::LINEAR, vk::SamplerMipmapMode::LINEAR),
+    };
+    let address = match sampler {
+        Sampler::Repeat => vk::SamplerAddressMode::REPEAT,
+        Sampler::Shadow => vk::SamplerAddressMode::CLAMP_TO_BORDER,
+        Sampler::Nearest | Sampler::Linear => vk::SamplerAddressMode::CLAMP_TO_EDGE,
+    };
+    vk::SamplerCreateInfo::default()
+        .mag_filter(filter)
+        .min_filter(filter)
+        .mipmap_mode(mipmap)
+        .address_mode_u(address)
+        .address_mode_v(address)
+        .address_mode_w(address)
+        // The shadow map is reversed too: 0 is farthest from the sun, so the border lights.
+        .border_color(vk::BorderColor::FLOAT_OPAQUE_BLACK)
+        .compare_enable(sampler == Sampler::Shadow)
+        .compare_op(vk::CompareOp::GREATER_OR_EQUAL)
+        .max_lod(vk::LOD_CLAMP_NONE)
+}

@@ -1,0 +1,45 @@
+//! Vulkan nouns: device, images, buffers, pipelines, command recording. Knows no pass by name and imports
+//! nothing of the rest of the crate.
+//!
+//! Everything `unsafe` of the program is in this room. Each raw handle is owned by a `Drop` type from the line
+//! that creates it; every resource keeps its [`Context`] alive.
+//!
+//! The three things to know:
+//! - an [`Image`] remembers its last [`Use`]; [`access::barrier`] turns (last use, next use) into a barrier, so
+//!   no pass writes a stage or an access mask;
+//! - a [`Shader`] carries what it declares (build.rs reads it from the SPIR-V), and [`Recorder::pass`] checks each
+//!   bound name against it;
+//! - a [`Recorder`] records, submits and waits; the name given to `pass` labels and times it.
+#![allow(unsafe_code)]
+
+pub mod access;
+mod buffer;
+mod context;
+mod error;
+mod image;
+mod layout;
+mod pass;
+mod pipeline;
+mod read_back;
+mod recorder;
+mod select;
+mod shader;
+mod timings;
+mod upload;
+mod validation;
+
+pub use access::Use;
+pub use ash::vk::Format;
+pub use buffer::{Buffer, BufferKind};
+pub use context::{Context, ContextOptions, Sampler};
+pub use error::{GpuError, Result};
+pub use image::{Image, ImageDesc, ImageKind};
+pub use layout::{GpuStruct, check_layout};
+pub use pass::{Draws, Load, Pass};
+pub use pipeline::{Depth, Pipeline, PipelineDesc};
+pub use read_back::{Pixels, read_back};
+pub use recorder::Recorder;
+pub use select::{DeviceSummary, devices};
+pub use shader::{Binding, BindingKind, Field, Shader, Stage, compiled as shaders};
+pub use timings::{Timing, Timings};
+pub use upload::{upload_buffer, upload_texture};

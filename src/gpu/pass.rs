@@ -1,0 +1,438 @@
+//! One pass as a chain on the recorder: each word binds, registers the use and checks it against what the
+//! pipeline declares.
+
+use arrayvec::ArrayVec;
+use ash::vk;
+
+use super::access::Use;
+use super::buffer::Buffer;
+use super::context::Sampler;
+use super::image::Image;
+use super::layout::{GpuStruct, check_layout};
+use super::pipeline::{Pipeline, block_size};
+use super::recorder::Recorder;
+use super::shader::{Binding, BindingKind};
+
+const MAX_BINDINGS: usize = 16;
+const MAX_COLORS: usize = 8;
+const MAX_PUSH: usize = 128;
+
+/// What becomes of the old content of an attachment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Load {
+    /// It stays.
+    Keep,
+    /// It is replaced by a constant.
+    Clear([f32; 4]),
+    /// Every pixel is written: nobody cares.
+    Discard,
+}
+
+#[derive(Clone, Copy)]
+enum Resource {
+    Image(vk::DescriptorImageInfo),
+    Buffer(vk::DescriptorBufferInfo),
+}
+
+#[derive(Clone, Copy)]
+struct Bound {
+    binding: Binding,
+    resource: Resource,
+}
+
+/// A pass being described. Nothing is recorded before `draw` or `draws`.
+///
+/// # Panics
+/// Every word panics when it contradicts the pipeline's declarations: a fault of this program, seen by the first
+/// test that runs the pass.
+pub struct Pass<'r> {
+    recorder: &'r mut Recorder,
+    pipeline: &'r Pipeline,
+    name: &'static str,
+    bound: ArrayVec<Bound, MAX_BINDINGS>,
+    changed: bool,
+    reads: ArrayVec<&'r Image, MAX_BINDINGS>,
+    colors: ArrayVec<(&'r Image, Load), MAX_COLORS>,
+    depth: Option<(&'r Image, Load)>,
+    push: ArrayVec<u8, MAX_PUSH>,
+}
+
+impl<'r> Pass<'r> {
+    pub(super) fn new(
+        recorder: &'r mut Recorder,
+        name: &'static str,
+        pipeline: &'r Pipeline,
+    ) -> Self {
+        Self {
+            recorder,
+            pipeline,
+            name,
+            bound: ArrayVec::new(),
+            changed: true,
+            reads: ArrayVec::new(),
+            colors: ArrayVec::new(),
+            depth: None,
+            push: ArrayVec::new(),
+        }
+    }
+
+    /// Samples an image.
+    pub fn sample(mut self, name: &str, image: &'r Image, sampler: Sampler) -> Self {
+        self.bind_image(name, image, sampler);
+        self.reads.push(image);
+        self
+    }
+
+    /// Gives a uniform block its value.
+    pub fn uniform<T: GpuStruct>(mut self, name: &str, value: &T) -> Self {
+        let binding = self.declared(name, BindingKind::UniformBuffer);
+        self.check_block(name, T::FIELDS, binding.fields);
+        let info = self.recorder.uniform(value);
+        self.bind(binding, Resource::Buffer(info));
+        self
+    }
+
+    /// Reads a storage buffer that was uploaded before the frame.
+    pub fn storage(mut self, name: &str, buffer: &'r Buffer) -> Self {
+        let binding = self.declared(name, BindingKind::StorageBuffer);
+        let info = vk::DescriptorBufferInfo {
+            buffer: buffer.raw(),
+            offset: 0,
+            range: vk::WHOLE_SIZE,
+        };
+        self.bind(binding, Resource::Buffer(info));
+        self
+    }
+
+    /// Gives the push constant block its value.
+    pub fn push<T: GpuStruct>(mut self, value: &T) -> Self {
+        self.set_push(value);
+        self
+    }
+
+    /// Writes to a colour attachment, in the order of the fragment shader's outputs.
+    pub fn color(mut self, image: &'r Image, load: Load) -> Self {
+        self.colors.push((image, load));
+        self
+    }
+
+    /// Tests and writes a depth attachment.
+    pub fn depth(mut self, image: &'r Image, load: Load) -> Self {
+        self.depth = Some((image, load));
+        self
+    }
+
+    /// Draws one triangle over the whole target (the vertex shader makes it from the vertex index).
+    pub fn draw(self) {
+        self.draws(|draws| draws.triangle());
+    }
+
+    /// Draws many things with the same pipeline.
+    pub fn draws(mut self, record: impl FnOnce(&mut Draws<'_, 'r>)) {
+        self.check_attachments();
+        let uses = self
+            .reads
+            .iter()
+            .map(|i| (*i, Use::Sampled))
+            .chain(self.colors.iter().map(|(i, _)| (*i, Use::ColorAttachment)))
+            .chain(self.depth.iter().map(|(i, _)| (*i, Use::DepthAttachment)));
+        self.recorder.label(self.name);
+        let mark = self.recorder.begin_timing(self.name);
+        self.recorder.transition(uses);
+        self.begin_rendering();
+        record(&mut Draws { pass: &mut self });
+        self.recorder.end_timing(&mark);
+        // SAFETY: pairs with `begin_rendering`.
+        unsafe {
+            self.recorder
+                .context
+                .raw()
+                .cmd_end_rendering(self.recorder.command)
+        };
+        self.recorder.unlabel();
+        self.recorder.isolate(&mark);
+    }
+
+    fn declared(&self, name: &str, kind: BindingKind) -> Binding {
+        let found = self.pipeline.slots.iter().find(|s| s.binding.name == name);
+        let Some(slot) = found else {
+            panic!(
+                "pass {}: {} declares no {name}",
+                self.name,
+                self.pipeline.name()
+            )
+        };
+        assert_eq!(slot.binding.kind, kind, "pass {}: {name}", self.name);
+        slot.binding
+    }
+
+    fn bind(&mut self, binding: Binding, resource: Resource) {
+        let new = Bound { binding, resource };
+        match self
+            .bound
+            .iter_mut()
+            .find(|b| b.binding.binding == binding.binding)
+        {
+            Some(old) => *old = new,
+            None => self.bound.push(new),
+        }
+        self.changed = true;
+    }
+
+    fn bind_image(&mut self, name: &str, image: &Image, sampler: Sampler) {
+        let binding = self.declared(name, BindingKind::SampledImage);
+        let info = vk::DescriptorImageInfo {
+            sampler: self.recorder.context.sampler(sampler),
+            image_view: image.sampled_view(),
+            image_layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+        };
+        self.bind(binding, Resource::Image(info));
+    }
+
+    fn check_block(
+        &self,
+        name: &str,
+        host: &[super::shader::Field],
+        block: &[super::shader::Field],
+    ) {
+        if let Err(difference) = check_layout(host, block) {
+            panic!("pass {}: {name}: {difference}", self.name);
+        }
+    }
+
+    fn set_push<T: GpuStruct>(&mut self, value: &T) {
+        let Some((fields, _)) = self.pipeline.push else {
+            panic!("pass {}: no push constants declared", self.name)
+        };
+        self.check_block("push", T::FIELDS, fields);
+        self.push.clear();
+        let fits = self
+            .push
+            .try_extend_from_slice(bytemuck::bytes_of(value))
+            .is_ok();
+        assert!(
+            fits,
+            "pass {}: more than {MAX_PUSH} bytes of push constants",
+            self.name
+        );
+    }
+
+    fn check_attachments(&self) {
+        let formats: ArrayVec<vk::Format, MAX_COLORS> =
+            self.colors.iter().map(|(i, _)| i.format()).collect();
+        assert_eq!(
+            formats.as_slice(),
+            self.pipeline.colors,
+            "pass {}: colours",
+            self.name
+        );
+        let depth = self.depth.map(|(i, _)| i.format());
+        assert_eq!(depth, self.pipeline.depth, "pass {}: depth", self.name);
+    }
+
+    fn attachment(image: &Image, load: Load, layout: vk::ImageLayout) -> AttachmentInfo {
+        let info = vk::RenderingAttachmentInfo::default()
+            .image_view(image.attachment_view())
+            .image_layout(layout)
+            .store_op(vk::AttachmentStoreOp::STORE);
+        match load {
+            Load::Keep => info.load_op(vk::AttachmentLoadOp::LOAD),
+            Load::Discard => info.load_op(vk::AttachmentLoadOp::DONT_CARE),
+            Load::Clear(value) if super::image::is_depth(image.format()) => info
+                .load_op(vk::AttachmentLoadOp::CLEAR)
+                .clear_value(vk::ClearValue {
+                    depth_stencil: vk::ClearDepthStencilValue {
+                        depth: value[0],
+                        stencil: 0,
+                    },
+                }),
+            Load::Clear(value) => {
+                info.load_op(vk::AttachmentLoadOp::CLEAR)
+                    .clear_value(vk::ClearValue {
+                        color: vk::ClearColorValue { float32: value },
+                    })
+            }
+        }
+    }
+
+    fn begin_rendering(&self) {
+        let colors: ArrayVec<AttachmentInfo, MAX_COLORS> = self
+            .colors
+            .iter()
+            .map(|(i, l)| Self::attachment(i, *l, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL))
+            .collect();
+        let depth = self
+            .depth
+            .map(|(i, l)| Self::attachment(i, l, vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL));
+        let Some(target) = self.colors.first().map(|c| c.0).or(self.depth.map(|d| d.0)) else {
+            panic!("pass {}: draws to nothing", self.name)
+        };
+        let [width, height] = target.size();
+        let area = vk::Rect2D {
+            offset: vk::Offset2D::default(),
+            extent: vk::Extent2D { width, height },
+        };
+        let mut info = vk::RenderingInfo::default()
+            .render_area(area)
+            .layer_count(target.layers())
+            .color_attachments(&colors);
+        if let Some(depth) = &depth {
+            info = info.depth_attachment(depth);
+        }
+        let viewport = vk::Viewport {
+            x: 0.0,
+            y: 0.0,
+            width: width as f32,
+            height: height as f32,
+            min_depth: 0.0,
+            max_depth: 1.0,
+        };
+        let (raw, command) = (self.recorder.context.raw(), self.recorder.command);
+        // SAFETY: the command buffer is recording; attachments were brought to these layouts by `transition`.
+        unsafe {
+            raw.cmd_begin_rendering(command, &info);
+            raw.cmd_set_viewport(command, 0, &[viewport]);
+            raw.cmd_set_scissor(command, 0, &[area]);
+            raw.cmd_bind_pipeline(
+                command,
+                vk::PipelineBindPoint::GRAPHICS,
+                self.pipeline.raw(),
+            );
+        }
+    }
+
+    /// Makes what was bound and pushed visible to the next draw.
+    fn flush(&mut self) {
+        assert_eq!(
+            self.bound.len(),
+            self.pipeline.slots.len(),
+            "pass {}: a declared binding was not bound",
+            self.name
+        );
+        if self.changed && !self.bound.is_empty() {
+            self.flush_descriptors();
+        }
+        self.changed = false;
+        if let Some((fields, stages)) = self.pipeline.push {
+            assert_eq!(
+                self.push.len() as u32,
+                block_size(fields),
+                "pass {}: push",
+                self.name
+            );
+            // SAFETY: the range was declared for these stages by the layout.
+            unsafe {
+                self.recorder.context.raw().cmd_push_constants(
+                    self.recorder.command,
+                    self.pipeline.layout(),
+                    stages,
+                    0,
+                    &self.push,
+                );
+            }
+        }
+    }
+
+    fn flush_descriptors(&mut self) {
+        let bound = self.bound.clone();
+        let pushed = self.recorder.context.push_descriptor.is_some();
+        let set = if pushed {
+            vk::DescriptorSet::null()
+        } else {
+            // Without a set the frame is lost; `finish` reports why.
+            let Some(set) = self.recorder.descriptor_set(self.pipeline) else {
+                return;
+            };
+            set
+        };
+        let writes: ArrayVec<vk::WriteDescriptorSet<'_>, MAX_BINDINGS> = bound
+            .iter()
+            .map(|b| {
+                let write = vk::WriteDescriptorSet::default()
+                    .dst_set(set)
+                    .dst_binding(b.binding.binding)
+                    .descriptor_type(b.binding.kind.descriptor());
+                match &b.resource {
+                    Resource::Image(info) => write.image_info(std::slice::from_ref(info)),
+                    Resource::Buffer(info) => write.buffer_info(std::slice::from_ref(info)),
+                }
+            })
+            .collect();
+        let (context, command) = (&self.recorder.context, self.recorder.command);
+        let point = vk::PipelineBindPoint::GRAPHICS;
+        let layout = self.pipeline.layout();
+        // SAFETY: the infos outlive the calls; images were brought to the sampled layout by `transition`.
+        unsafe {
+            match &context.push_descriptor {
+                Some(push) => push.cmd_push_descriptor_set(command, point, layout, 0, &writes),
+                None => {
+                    context.raw().update_descriptor_sets(&writes, &[]);
+                    let raw = context.raw();
+                    raw.cmd_bind_descriptor_sets(command, point, layout, 0, &[set], &[]);
+                }
+            }
+        }
+    }
+}
+
+type AttachmentInfo = vk::RenderingAttachmentInfo<'static>;
+
+/// The draws inside a pass.
+pub struct Draws<'p, 'r> {
+    pass: &'p mut Pass<'r>,
+}
+
+impl Draws<'_, '_> {
+    /// Binds a texture for the following draws. It was uploaded before the frame, so it needs no barrier.
+    ///
+    /// # Panics
+    /// When the image is not in the sampled state.
+    pub fn texture(&mut self, name: &str, image: &Image, sampler: Sampler) {
+        assert_eq!(
+            image.last_use(),
+            Use::Sampled,
+            "{} was not uploaded",
+            image.name()
+        );
+        self.pass.bind_image(name, image, sampler);
+    }
+
+    /// Replaces the push constants for the following draws.
+    pub fn push<T: GpuStruct>(&mut self, value: &T) {
+        self.pass.set_push(value);
+    }
+
+    /// Sets the vertex streams, one for each location, and the 32-bit indices.
+    pub fn geometry(&mut self, streams: &[&Buffer], indices: &Buffer) {
+        assert_eq!(
+            streams.len(),
+            self.pass.pipeline.streams,
+            "pass {}",
+            self.pass.name
+        );
+        let buffers: ArrayVec<vk::Buffer, 8> = streams.iter().map(|b| b.raw()).collect();
+        let offsets: ArrayVec<u64, 8> = streams.iter().map(|_| 0).collect();
+        let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
+        // SAFETY: the buffers are alive and were made for this use.
+        unsafe {
+            raw.cmd_bind_vertex_buffers(command, 0, &buffers, &offsets);
+            raw.cmd_bind_index_buffer(command, indices.raw(), 0, vk::IndexType::UINT32);
+        }
+    }
+
+    /// Draws a range of the indices.
+    pub fn indexed(&mut self, first: u32, count: u32) {
+        self.pass.flush();
+        let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
+        // SAFETY: the range lies within the bound index buffer (checked when the scene was loaded).
+        unsafe { raw.cmd_draw_indexed(command, count, 1, first, 0, 0) };
+    }
+
+    /// Draws three vertices without vertex data.
+    pub fn triangle(&mut self) {
+        self.pass.flush();
+        let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
+        // SAFETY: the pipeline has no vertex streams, so any vertex index is good.
+        unsafe { raw.cmd_draw(command, 3, 1, 0, 0) };
+    }
+}

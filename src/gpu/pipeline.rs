@@ -1,0 +1,420 @@
+//! Graphics pipelines with dynamic rendering, their layouts derived from what the stages declare.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::context::Context;
+use super::error::{During, Result};
+use super::shader::{Binding, Field, Shader};
+
+/// Depth test of a pipeline. Depth is reversed everywhere: 1 is nearest, 0 is infinitely far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Depth {
+    /// No depth attachment.
+    Off,
+    /// Nearer (greater) fragments win and are written.
+    Write {
+        /// Format of the attachment.
+        format: vk::Format,
+        /// Slope-scaled bias away from the viewer, in units of the largest depth slope.
+        slope_bias: f32,
+    },
+}
+
+/// What to make.
+#[derive(Debug, Clone, Copy)]
+pub struct PipelineDesc<'a> {
+    /// Name in messages and captures.
+    pub name: &'a str,
+    /// Vertex, perhaps geometry, perhaps fragment stage.
+    pub stages: &'a [&'static Shader],
+    /// One tightly packed vertex stream for each location.
+    pub vertex: &'a [vk::Format],
+    /// Formats of the colour attachments.
+    pub colors: &'a [vk::Format],
+    /// Depth test.
+    pub depth: Depth,
+    /// Values of specialization constants, by name (bits).
+    pub constants: &'a [(&'a str, u32)],
+}
+
+/// A binding and the stages that see it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Slot {
+    pub(super) binding: Binding,
+    stages: vk::ShaderStageFlags,
+}
+
+/// A pipeline, its layout and what it declares.
+pub struct Pipeline {
+    context: Arc<Context>,
+    raw: vk::Pipeline,
+    layout: vk::PipelineLayout,
+    set_layout: vk::DescriptorSetLayout,
+    pub(super) slots: Vec<Slot>,
+    pub(super) push: Option<(&'static [Field], vk::ShaderStageFlags)>,
+    pub(super) colors: Vec<vk::Format>,
+    pub(super) depth: Option<vk::Format>,
+    pub(super) streams: usize,
+    name: String,
+}
+
+/// Bytes of a push block.
+pub(super) fn block_size(fields: &[Field]) -> u32 {
+    fields.iter().map(|f| f.offset + f.size).max().unwrap_or(0)
+}
+
+fn merge_slots(stages: &[&'static Shader]) -> Vec<Slot> {
+    let mut slots: Vec<Slot> = Vec::new();
+    for shader in stages {
+        for binding in shader.bindings {
+            let flags = shader.stage.flags();
+            match slots
+                .iter_mut()
+                .find(|s| s.binding.binding == binding.binding)
+            {
+                Some(slot) => {
+                    assert_eq!(
+                        slot.binding, *binding,
+                        "{}: binding declared twice",
+                        shader.name
+                    );
+                    slot.stages |= flags;
+                }
+                None => slots.push(Slot {
+                    binding: *binding,
+                    stages: flags,
+                }),
+            }
+        }
+    }
+    slots.sort_by_key(|s| s.binding.binding);
+    slots
+}
+
+fn merge_push(stages: &[&'static Shader]) -> Option<(&'static [Field], vk::ShaderStageFlags)> {
+    let mut merged: Option<(&'static [Field], vk::ShaderStageFlags)> = None;
+    for shader in stages {
+        let Some(fields) = shader.push else { continue };
+        let flags = merged.map_or(vk::ShaderStageFlags::empty(), |m| m.1) | shader.stage.flags();
+        if let Some((first, _)) = merged {
+            assert_eq!(
+                first, fields,
+                "{}: push blocks of the stages differ",
+                shader.name
+            );
+        }
+        merged = Some((fields, flags));
+    }
+    merged
+}
+
+impl Pipeline {
+    /// Compiles a pipeline.
+    ///
+    /// # Errors
+    /// When the driver refuses.
+    ///
+    /// # Panics
+    /// When the stages contradict each other or a constant is not declared: a fault of this program.
+    pub fn new(context: &Arc<Context>, desc: &PipelineDesc<'_>) -> Result<Self> {
+        let slots = merge_slots(desc.stages);
+        let push = merge_push(desc.stages);
+        for (name, _) in desc.constants {
+            let declared = desc
+                .stages
+                .iter()
+                .any(|s| s.constants.iter().any(|c| c.0 == *name));
+            assert!(
+                declared,
+                "{}: no stage declares the constant {name}",
+                desc.name
+            );
+        }
+        let mut pipeline = Self {
+            context: context.clone(),
+            raw: vk::Pipeline::null(),
+            layout: vk::PipelineLayout::null(),
+            set_layout: vk::DescriptorSetLayout::null(),
+            slots,
+            push,
+            colors: desc.colors.to_vec(),
+            depth: match desc.depth {
+                Depth::Off => None,
+                Depth::Write { format, .. } => Some(format),
+            },
+            streams: desc.vertex.len(),
+            name: desc.name.to_owned(),
+        };
+        pipeline.set_layout = pipeline.create_set_layout()?;
+        pipeline.layout = pipeline.create_layout()?;
+        let modules = Modules::new(context, desc.stages)?;
+        pipeline.raw = pipeline.create(desc, &modules)?;
+        context.name(pipeline.raw, desc.name);
+        Ok(pipeline)
+    }
+
+    fn create_set_layout(&self) -> Result<vk::DescriptorSetLayout> {
+        let bindings: Vec<_> = self
+            .slots
+            .iter()
+            .map(|slot| {
+                vk::DescriptorSetLayoutBinding::default()
+                    .binding(slot.binding.binding)
+                    .descriptor_type(slot.binding.kind.descriptor())
+                    .descriptor_count(1)
+                    .stage_flags(slot.stages)
+            })
+            .collect();
+        let flags = if self.context.push_descriptor.is_some() {
+            vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR
+        } else {
+            vk::DescriptorSetLayoutCreateFlags::empty()
+        };
+        let info = vk::DescriptorSetLayoutCreateInfo::default()
+            .flags(flags)
+            .bindings(&bindings);
+        // SAFETY: `bindings` outlives the call.
+        unsafe { self.context.raw().create_descriptor_set_layout(&info, None) }
+            .during("create a descriptor set layout")
+    }
+
+    fn create_layout(&self) -> Result<vk::PipelineLayout> {
+        let ranges: Vec<_> = self
+            .push
+            .iter()
+            .map(|(fields, stages)| {
+                vk::PushConstantRange::default()
+                    .stage_flags(*stages)
+                    .size(block_size(fields))
+            })
+            .collect();
+        let sets = [self.set_layout];
+        let info = vk::PipelineLayoutCreateInfo::default()
+            .set_layouts(&sets)
+            .push_constant_ranges(&ranges);
+        // SAFETY: the arrays outlive the call.
+        unsafe { self.context.raw().create_pipeline_layout(&info, None) }
+            .during("create a pipeline layout")
+    }
+
+    fn create(&self, desc: &PipelineDesc<'_>, modules: &Modules) -> Result<vk::Pipeline> {
+        let constants: Vec<Constants> = desc
+            .stages
+            .iter()
+            .map(|s| Constants::new(s, desc.constants))
+            .collect();
+        let specializations: Vec<_> = constants.iter().map(Constants::info).collect();
+        let stages: Vec<_> = desc
+            .stages
+            .iter()
+            .zip(&modules.raw)
+            .zip(&specializations)
+            .map(|((shader, module), specialization)| {
+                vk::PipelineShaderStageCreateInfo::default()
+                    .stage(shader.stage.flags())
+                    .module(*module)
+                    .name(c"main")
+                    .specialization_info(specialization)
+            })
+            .collect();
+        let (vertex_bindings, vertex_attributes) = vertex_streams(desc.vertex);
+        let vertex = vk::PipelineVertexInputStateCreateInfo::default()
+            .vertex_binding_descriptions(&vertex_bindings)
+            .vertex_attribute_descriptions(&vertex_attributes);
+        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
+            .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
+        let viewport = vk::PipelineViewportStateCreateInfo::default()
+            .viewport_count(1)
+            .scissor_count(1);
+        let multisample = vk::PipelineMultisampleStateCreateInfo::default()
+            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
+        let rasterization = rasterization(desc.depth);
+        let depth = depth_state(desc.depth);
+        let opaque = vk::PipelineColorBlendAttachmentState::default()
+            .color_write_mask(vk::ColorComponentFlags::RGBA);
+        let blends = vec![opaque; desc.colors.len()];
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
+        let states = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&states);
+        let mut rendering = vk::PipelineRenderingCreateInfo::default()
+            .color_attachment_formats(desc.colors)
+            .depth_attachment_format(self.depth.unwrap_or(vk::Format::UNDEFINED));
+        let info = vk::GraphicsPipelineCreateInfo::default()
+            .stages(&stages)
+            .vertex_input_state(&vertex)
+            .input_assembly_state(&assembly)
+            .viewport_state(&viewport)
+            .rasterization_state(&rasterization)
+            .multisample_state(&multisample)
+            .depth_stencil_state(&depth)
+            .color_blend_state(&blend)
+            .dynamic_state(&dynamic)
+            .layout(self.layout)
+            .push_next(&mut rendering);
+        // SAFETY: everything `info` points to lives on this stack.
+        let made = unsafe {
+            self.context
+                .raw()
+                .create_graphics_pipelines(vk::PipelineCache::null(), &[info], None)
+        };
+        made.map(|p| p[0])
+            .map_err(|(_, result)| result)
+            .during("compile a pipeline")
+    }
+
+    /// Name, as given.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    pub(super) fn raw(&self) -> vk::Pipeline {
+        self.raw
+    }
+
+    pub(super) fn layout(&self) -> vk::PipelineLayout {
+        self.layout
+    }
+
+    pub(super) fn set_layout(&self) -> vk::DescriptorSetLayout {
+        self.set_layout
+    }
+}
+
+impl Drop for Pipeline {
+    fn drop(&mut self) {
+        // SAFETY: recorders wait for their work before pipelines are let go; null handles are ignored.
+        unsafe {
+            self.context.raw().destroy_pipeline(self.raw, None);
+            self.context
+                .raw()
+                .destroy_pipeline_layout(self.layout, None);
+            self.context
+                .raw()
+                .destroy_descriptor_set_layout(self.set_layout, None);
+        }
+    }
+}
+
+/// Shader modules, alive while pipelines are made from them.
+struct Modules {
+    context: Arc<Context>,
+    raw: Vec<vk::ShaderModule>,
+}
+
+impl Modules {
+    fn new(context: &Arc<Context>, stages: &[&'static Shader]) -> Result<Self> {
+        let mut modules = Self {
+            context: context.clone(),
+            raw: Vec::new(),
+        };
+        for shader in stages {
+            let info = vk::ShaderModuleCreateInfo::default().code(shader.words);
+            // SAFETY: the words come from shaderc.
+            let module = unsafe { context.raw().create_shader_module(&info, None) }
+                .during("load a shader")?;
+            modules.raw.push(module);
+            context.name(module, shader.name);
+        }
+        Ok(modules)
+    }
+}
+
+impl Drop for Modules {
+    fn drop(&mut self) {
+        for module in &self.raw {
+            // SAFETY: pipelines keep no reference to modules.
+            unsafe { self.context.raw().destroy_shader_module(*module, None) };
+        }
+    }
+}
+
+/// The specialization constants of one stage.
+struct Constants {
+    entries: Vec<vk::SpecializationMapEntry>,
+    data: Vec<u8>,
+}
+
+impl Constants {
+    fn new(shader: &Shader, values: &[(&str, u32)]) -> Self {
+        let mut this = Self {
+            entries: Vec::new(),
+            data: Vec::new(),
+        };
+        for (name, id) in shader.constants {
+            let Some((_, bits)) = values.iter().find(|v| v.0 == *name) else {
+                continue;
+            };
+            this.entries.push(vk::SpecializationMapEntry {
+                constant_id: *id,
+                offset: this.data.len() as u32,
+                size: 4,
+            });
+            this.data.extend_from_slice(&bits.to_ne_bytes());
+        }
+        this
+    }
+
+    fn info(&self) -> vk::SpecializationInfo<'_> {
+        vk::SpecializationInfo::default()
+            .map_entries(&self.entries)
+            .data(&self.data)
+    }
+}
+
+fn vertex_streams(
+    formats: &[vk::Format],
+) -> (
+    Vec<vk::VertexInputBindingDescription>,
+    Vec<vk::VertexInputAttributeDescription>,
+) {
+    let stream = |(i, format): (usize, &vk::Format)| {
+        let index = i as u32;
+        let binding = vk::VertexInputBindingDescription {
+            binding: index,
+            stride: vertex_size(*format),
+            input_rate: vk::VertexInputRate::VERTEX,
+        };
+        let attribute = vk::VertexInputAttributeDescription {
+            location: index,
+            binding: index,
+            format: *format,
+            offset: 0,
+        };
+        (binding, attribute)
+    };
+    formats.iter().enumerate().map(stream).unzip()
+}
+
+fn vertex_size(format: vk::Format) -> u32 {
+    match format {
+        vk::Format::R32G32B32_SFLOAT => 12,
+        vk::Format::R32G32_SFLOAT => 8,
+        vk::Format::R16G16_SNORM => 4,
+        other => unreachable!("vertex format {other:?} has no size here"),
+    }
+}
+
+fn rasterization(depth: Depth) -> vk::PipelineRasterizationStateCreateInfo<'static> {
+    let base = vk::PipelineRasterizationStateCreateInfo::default()
+        .polygon_mode(vk::PolygonMode::FILL)
+        .cull_mode(vk::CullModeFlags::NONE)
+        .line_width(1.0);
+    match depth {
+        Depth::Write { slope_bias, .. } if slope_bias != 0.0 => {
+            // Reversed depth: away from the viewer is down.
+            base.depth_bias_enable(true)
+                .depth_bias_slope_factor(-slope_bias)
+        }
+        _ => base,
+    }
+}
+
+fn depth_state(depth: Depth) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
+    let on = depth != Depth::Off;
+    vk::PipelineDepthStencilStateCreateInfo::default()
+        .depth_test_enable(on)
+        .depth_write_enable(on)
+        .depth_compare_op(vk::CompareOp::GREATER)
+}

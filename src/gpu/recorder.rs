@@ -1,0 +1,312 @@
+//! Records commands, submits them, waits for them.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use ash::vk;
+use bytemuck::Pod;
+
+use super::access::Use;
+use super::buffer::{Buffer, BufferKind};
+use super::context::Context;
+use super::error::{During, GpuError, Result};
+use super::image::Image;
+use super::pass::Pass;
+use super::pipeline::Pipeline;
+use super::timings::{Queries, Timing, Timings, elapsed_ms};
+
+/// Bytes of uniform blocks a recorder can hold between `begin` and `finish`.
+const UNIFORM_BYTES: u64 = 1 << 16;
+/// Descriptor sets a recorder can use without push descriptors.
+const POOL_SETS: u32 = 4096;
+
+/// One command buffer with what it needs between `begin` and `finish`.
+pub struct Recorder {
+    pub(super) context: Arc<Context>,
+    pub(super) command: vk::CommandBuffer,
+    command_pool: vk::CommandPool,
+    descriptor_pool: vk::DescriptorPool,
+    fence: vk::Fence,
+    uniforms: Buffer,
+    uniform_end: u64,
+    kept: Vec<Buffer>,
+    timing: Timing,
+    queries: Queries,
+    timings: Timings,
+    fault: Option<GpuError>,
+}
+
+impl Recorder {
+    /// Makes a recorder.
+    ///
+    /// # Errors
+    /// When the driver has no memory left.
+    pub fn new(context: &Arc<Context>, timing: Timing) -> Result<Self> {
+        let pool_info = vk::CommandPoolCreateInfo::default()
+            .queue_family_index(context.queue_family)
+            .flags(vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER);
+        let uniforms = Buffer::new(context, "uniforms", BufferKind::Uniform, UNIFORM_BYTES)?;
+        let queries = Queries::new(context)?;
+        let raw = context.raw();
+        // SAFETY: the info has no pointers.
+        let command_pool =
+            unsafe { raw.create_command_pool(&pool_info, None) }.during("create a command pool")?;
+        let mut recorder = Self {
+            context: context.clone(),
+            command: vk::CommandBuffer::null(),
+            command_pool,
+            descriptor_pool: vk::DescriptorPool::null(),
+            fence: vk::Fence::null(),
+            uniforms,
+            uniform_end: 0,
+            kept: Vec::new(),
+            timing,
+            queries,
+            timings: Timings::default(),
+            fault: None,
+        };
+        let allocate = vk::CommandBufferAllocateInfo::default()
+            .command_pool(command_pool)
+            .command_buffer_count(1);
+        // SAFETY: the pool was just made.
+        recorder.command = unsafe { raw.allocate_command_buffers(&allocate) }
+            .during("allocate a command buffer")?[0];
+        // SAFETY: the info has no pointers.
+        recorder.fence = unsafe { raw.create_fence(&vk::FenceCreateInfo::default(), None) }
+            .during("create a fence")?;
+        if context.push_descriptor.is_none() {
+            recorder.descriptor_pool = recorder.create_descriptor_pool()?;
+        }
+        Ok(recorder)
+    }
+
+    fn create_descriptor_pool(&self) -> Result<vk::DescriptorPool> {
+        let size = |ty, each| vk::DescriptorPoolSize {
+            ty,
+            descriptor_count: each * POOL_SETS,
+        };
+        let sizes = [
+            size(vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 8),
+            size(vk::DescriptorType::UNIFORM_BUFFER, 2),
+            size(vk::DescriptorType::STORAGE_BUFFER, 2),
+            size(vk::DescriptorType::STORAGE_IMAGE, 1),
+        ];
+        let info = vk::DescriptorPoolCreateInfo::default()
+            .max_sets(POOL_SETS)
+            .pool_sizes(&sizes);
+        // SAFETY: `sizes` outlives the call.
+        unsafe { self.context.raw().create_descriptor_pool(&info, None) }
+            .during("create a descriptor pool")
+    }
+
+    /// Starts a frame.
+    ///
+    /// # Errors
+    /// When the driver has no memory left.
+    pub fn begin(&mut self) -> Result<()> {
+        self.uniform_end = 0;
+        self.timings.clear();
+        self.queries.reset();
+        if self.descriptor_pool != vk::DescriptorPool::null() {
+            let flags = vk::DescriptorPoolResetFlags::empty();
+            // SAFETY: no submission that uses its sets is pending.
+            unsafe {
+                self.context
+                    .raw()
+                    .reset_descriptor_pool(self.descriptor_pool, flags)
+            }
+            .during("reset the descriptor pool")?;
+        }
+        self.begin_commands()
+    }
+
+    fn begin_commands(&self) -> Result<()> {
+        let info = vk::CommandBufferBeginInfo::default()
+            .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+        // SAFETY: the command buffer is not pending.
+        unsafe { self.context.raw().begin_command_buffer(self.command, &info) }
+            .during("begin a command buffer")
+    }
+
+    /// Submits what was recorded and waits until it is done.
+    ///
+    /// # Errors
+    /// When the device is lost, or a pass could not be recorded.
+    pub fn finish(&mut self) -> Result<()> {
+        let submitted = self.submit_and_wait();
+        self.kept.clear();
+        if let Some(fault) = self.fault.take() {
+            return Err(fault);
+        }
+        submitted?;
+        if self.timing == Timing::Timestamps {
+            self.queries.collect(&mut self.timings)?;
+        }
+        Ok(())
+    }
+
+    fn submit_and_wait(&self) -> Result<()> {
+        let raw = self.context.raw();
+        let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(self.command)];
+        let submit = [vk::SubmitInfo2::default().command_buffer_infos(&commands)];
+        // SAFETY: the command buffer is recording; the fence is unsignalled and used by this submission alone.
+        unsafe {
+            raw.end_command_buffer(self.command)
+                .during("end a command buffer")?;
+            raw.queue_submit2(self.context.queue, &submit, self.fence)
+                .during("submit work")?;
+            raw.wait_for_fences(&[self.fence], true, u64::MAX)
+                .during("wait for the device")?;
+            raw.reset_fences(&[self.fence]).during("reset a fence")
+        }
+    }
+
+    /// Times of the last finished frame; empty with [`Timing::Off`].
+    pub fn timings(&self) -> &Timings {
+        &self.timings
+    }
+
+    /// The context it records for.
+    pub fn context(&self) -> &Arc<Context> {
+        &self.context
+    }
+
+    /// Starts a pass: bind by the names the shaders declare, then draw.
+    pub fn pass<'r>(&'r mut self, name: &'static str, pipeline: &'r Pipeline) -> Pass<'r> {
+        Pass::new(self, name, pipeline)
+    }
+
+    /// Holds a buffer until the work is done.
+    pub(super) fn keep(&mut self, buffer: Buffer) {
+        self.kept.push(buffer);
+    }
+
+    /// Copies a block into the uniform buffer; gives its place.
+    pub(super) fn uniform<T: Pod>(&mut self, value: &T) -> vk::DescriptorBufferInfo {
+        let bytes = bytemuck::bytes_of(value);
+        let align = self
+            .context
+            .limits
+            .min_uniform_buffer_offset_alignment
+            .max(16);
+        let offset = self.uniform_end.next_multiple_of(align);
+        let end = offset + bytes.len() as u64;
+        assert!(
+            end <= UNIFORM_BYTES,
+            "uniform blocks of one frame exceed {UNIFORM_BYTES} bytes"
+        );
+        self.uniforms.bytes_mut()[offset as usize..end as usize].copy_from_slice(bytes);
+        self.uniform_end = end;
+        vk::DescriptorBufferInfo {
+            buffer: self.uniforms.raw(),
+            offset,
+            range: bytes.len() as u64,
+        }
+    }
+
+    /// A descriptor set, on devices without push descriptors.
+    pub(super) fn descriptor_set(&mut self, pipeline: &Pipeline) -> Option<vk::DescriptorSet> {
+        let layouts = [pipeline.set_layout()];
+        let info = vk::DescriptorSetAllocateInfo::default()
+            .descriptor_pool(self.descriptor_pool)
+            .set_layouts(&layouts);
+        // SAFETY: the pool is alive and not used by another thread.
+        let made = unsafe { self.context.raw().allocate_descriptor_sets(&info) }
+            .during("allocate a descriptor set");
+        match made {
+            Ok(sets) => sets.first().copied(),
+            Err(fault) => {
+                self.fault.get_or_insert(fault);
+                None
+            }
+        }
+    }
+
+    pub(super) fn begin_timing(&mut self, name: &'static str) -> Mark {
+        match self.timing {
+            Timing::Off => Mark::None,
+            Timing::Timestamps => self
+                .queries
+                .begin(self.command, name)
+                .map_or(Mark::None, Mark::Query),
+            Timing::Isolated => Mark::Wall(name),
+        }
+    }
+
+    /// The part of a timing that must be written inside the rendering, for software drivers to attribute it.
+    pub(super) fn end_timing(&self, mark: &Mark) {
+        if let Mark::Query(index) = mark {
+            self.queries.end(self.command, *index);
+        }
+    }
+
+    /// With [`Timing::Isolated`], runs the pass that was just recorded and starts anew.
+    pub(super) fn isolate(&mut self, mark: &Mark) {
+        let Mark::Wall(name) = mark else { return };
+        let start = Instant::now();
+        let done = self.submit_and_wait();
+        self.timings.push(name, elapsed_ms(start));
+        if let Err(fault) = done.and_then(|()| self.begin_commands()) {
+            self.fault.get_or_insert(fault);
+        }
+    }
+
+    /// Brings images to their next use with one barrier command.
+    pub(super) fn transition<'i>(&self, uses: impl Iterator<Item = (&'i Image, Use)>) {
+        let barriers: arrayvec::ArrayVec<_, 32> =
+            uses.filter_map(|(image, next)| image.next(next)).collect();
+        if barriers.is_empty() {
+            return;
+        }
+        let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
+        // SAFETY: the command buffer is recording outside of a rendering; the images are alive.
+        unsafe {
+            self.context
+                .raw()
+                .cmd_pipeline_barrier2(self.command, &info)
+        };
+    }
+
+    pub(super) fn label(&self, name: &str) {
+        let Some(debug) = &self.context.debug else {
+            return;
+        };
+        let mut text = [0u8; 64];
+        let length = name.len().min(text.len() - 1);
+        text[..length].copy_from_slice(&name.as_bytes()[..length]);
+        let Ok(text) = std::ffi::CStr::from_bytes_until_nul(&text) else {
+            return;
+        };
+        let info = vk::DebugUtilsLabelEXT::default().label_name(text);
+        // SAFETY: the command buffer is recording.
+        unsafe { debug.cmd_begin_debug_utils_label(self.command, &info) };
+    }
+
+    pub(super) fn unlabel(&self) {
+        let Some(debug) = &self.context.debug else {
+            return;
+        };
+        // SAFETY: pairs with `label`.
+        unsafe { debug.cmd_end_debug_utils_label(self.command) };
+    }
+}
+
+impl Drop for Recorder {
+    fn drop(&mut self) {
+        let raw = self.context.raw();
+        // SAFETY: work was waited for in `finish` (or lost with the device); null handles are ignored.
+        unsafe {
+            let _ = raw.device_wait_idle();
+            raw.destroy_fence(self.fence, None);
+            raw.destroy_descriptor_pool(self.descriptor_pool, None);
+            raw.destroy_command_pool(self.command_pool, None);
+        }
+    }
+}
+
+/// Where a pass notes its time.
+pub(super) enum Mark {
+    None,
+    Query(u32),
+    Wall(&'static str),
+}

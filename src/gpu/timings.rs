@@ -1,0 +1,138 @@
+//! Times of passes, by their names.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use ash::vk;
+
+use super::context::Context;
+use super::error::{During, Result};
+
+/// How passes are timed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Timing {
+    /// Not at all.
+    #[default]
+    Off,
+    /// By GPU timestamps within the one submission.
+    Timestamps,
+    /// Each pass is submitted alone and waited for: wall time, trustworthy on software drivers too.
+    Isolated,
+}
+
+/// Times of the passes of one frame, milliseconds, in the order of recording.
+#[derive(Debug, Clone, Default)]
+pub struct Timings {
+    passes: Vec<(&'static str, f64)>,
+}
+
+impl Timings {
+    pub(super) fn clear(&mut self) {
+        self.passes.clear();
+    }
+
+    pub(super) fn push(&mut self, name: &'static str, milliseconds: f64) {
+        self.passes.push((name, milliseconds));
+    }
+
+    /// Name and milliseconds of each pass.
+    pub fn passes(&self) -> &[(&'static str, f64)] {
+        &self.passes
+    }
+}
+
+const MAX_PASSES: u32 = 128;
+
+/// Timestamp queries of one frame.
+pub(super) struct Queries {
+    context: Arc<Context>,
+    pool: vk::QueryPool,
+    names: Vec<&'static str>,
+}
+
+impl Queries {
+    pub(super) fn new(context: &Arc<Context>) -> Result<Self> {
+        let info = vk::QueryPoolCreateInfo::default()
+            .query_type(vk::QueryType::TIMESTAMP)
+            .query_count(2 * MAX_PASSES);
+        // SAFETY: the info has no pointers.
+        let pool = unsafe { context.raw().create_query_pool(&info, None) }
+            .during("create timestamp queries")?;
+        Ok(Self {
+            context: context.clone(),
+            pool,
+            names: Vec::new(),
+        })
+    }
+
+    pub(super) fn reset(&mut self) {
+        self.names.clear();
+        // SAFETY: hostQueryReset is on and no submission that uses the pool is pending.
+        unsafe {
+            self.context
+                .raw()
+                .reset_query_pool(self.pool, 0, 2 * MAX_PASSES)
+        };
+    }
+
+    /// Index of the pass, while there is room.
+    pub(super) fn begin(&mut self, command: vk::CommandBuffer, name: &'static str) -> Option<u32> {
+        let index = u32::try_from(self.names.len())
+            .ok()
+            .filter(|i| *i < MAX_PASSES)?;
+        self.names.push(name);
+        self.write(command, 2 * index);
+        Some(index)
+    }
+
+    pub(super) fn end(&self, command: vk::CommandBuffer, index: u32) {
+        self.write(command, 2 * index + 1);
+    }
+
+    fn write(&self, command: vk::CommandBuffer, query: u32) {
+        // SAFETY: the command buffer is recording and the query was reset.
+        unsafe {
+            self.context.raw().cmd_write_timestamp2(
+                command,
+                vk::PipelineStageFlags2::ALL_COMMANDS,
+                self.pool,
+                query,
+            );
+        }
+    }
+
+    /// Reads the finished queries.
+    pub(super) fn collect(&self, into: &mut Timings) -> Result<()> {
+        let mut ticks = vec![0u64; 2 * self.names.len()];
+        if ticks.is_empty() {
+            return Ok(());
+        }
+        // SAFETY: the submission was waited for, so all queries are available.
+        unsafe {
+            self.context.raw().get_query_pool_results(
+                self.pool,
+                0,
+                &mut ticks,
+                vk::QueryResultFlags::TYPE_64,
+            )
+        }
+        .during("read timestamps")?;
+        let to_ms = f64::from(self.context.limits.timestamp_period) * 1e-6;
+        for (name, pair) in self.names.iter().zip(ticks.chunks_exact(2)) {
+            into.push(name, pair[1].saturating_sub(pair[0]) as f64 * to_ms);
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Queries {
+    fn drop(&mut self) {
+        // SAFETY: the recorder that owns this has waited for its work.
+        unsafe { self.context.raw().destroy_query_pool(self.pool, None) };
+    }
+}
+
+/// Wall time of a submission.
+pub(super) fn elapsed_ms(since: Instant) -> f64 {
+    since.elapsed().as_secs_f64() * 1e3
+}

@@ -1,0 +1,78 @@
+//! The mean of many frames, in 32-bit floats: anti-aliasing, a soft sun, less noise.
+
+use std::sync::Arc;
+
+use crate::gpu::{
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
+    Sampler, shaders,
+};
+use crate::gpu_struct;
+
+gpu_struct! {
+    /// How many frames there are.
+    pub struct Push {
+        count: u32,
+    }
+}
+
+/// The pass and its alternating means.
+pub struct Accumulate {
+    pipeline: Pipeline,
+    means: [Image; 2],
+    count: u32,
+}
+
+impl Accumulate {
+    /// For pictures of `size` pixels.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn new(context: &Arc<Context>, size: [u32; 2]) -> Result<Self> {
+        let format = Format::R32G32B32A32_SFLOAT;
+        let pipeline = Pipeline::new(
+            context,
+            &PipelineDesc {
+                name: "accumulate",
+                stages: &[&shaders::FULLSCREEN_VERT, &shaders::ACCUMULATE_FRAG],
+                vertex: &[],
+                colors: &[format],
+                depth: Depth::Off,
+                constants: &[],
+            },
+        )?;
+        let image = |name| Image::new(context, &ImageDesc::flat(name, format, size));
+        Ok(Self { pipeline, means: [image("mean 0")?, image("mean 1")?], count: 0 })
+    }
+
+    /// Starts a new mean.
+    pub fn restart(&mut self) {
+        self.count = 0;
+    }
+
+    /// Adds a frame.
+    pub fn record(&mut self, recorder: &mut Recorder, frame: &Image) -> &Image {
+        self.count += 1;
+        self.means.swap(0, 1);
+        let [new, old] = &self.means;
+        recorder
+            .pass("accumulate", &self.pipeline)
+            .sample("frame", frame, Sampler::Nearest)
+            .sample("previous_mean", old, Sampler::Nearest)
+            .push(&Push { count: self.count })
+            .color(new, Load::Discard)
+            .draw();
+        new
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{GpuStruct, check_layout};
+
+    #[test]
+    fn host_and_shader_agree() {
+        let push = shaders::ACCUMULATE_FRAG.push.expect("push");
+        assert_eq!(check_layout(Push::FIELDS, push), Ok(()));
+    }
+}

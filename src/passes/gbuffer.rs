@@ -1,0 +1,118 @@
+//! The G-buffer: normal, diffuse reflectance, material and depth of the nearest surface. Positions follow from depth.
+
+use std::sync::Arc;
+
+use glam::{Mat4, Vec3};
+
+use crate::gpu::{
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
+    Sampler, shaders,
+};
+use crate::gpu_struct;
+
+use super::geometry::Geometry;
+use super::view::View;
+
+gpu_struct! {
+    /// Camera and material of a draw.
+    pub struct Push {
+        clip_from_world: Mat4,
+        eye: Vec3,
+        diffuse: Vec3,
+        material: u32,
+    }
+}
+
+/// The images.
+pub struct Surfaces {
+    /// World normal on the viewer's side, octahedral.
+    pub normal: Image,
+    /// ρ_d, and a factor on ρ_s.
+    pub albedo: Image,
+    /// Number of the material.
+    pub material: Image,
+    /// Reversed depth: near / distance; 0 is background.
+    pub depth: Image,
+}
+
+/// The pass and its images.
+pub struct Gbuffer {
+    pipeline: Pipeline,
+    surfaces: Surfaces,
+}
+
+impl Gbuffer {
+    /// Images of `size` pixels.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn new(context: &Arc<Context>, size: [u32; 2]) -> Result<Self> {
+        // 16 bits a component hold a direction to 0.003°; half floats, which every device renders to, to 0.03°.
+        let normal = context.supported_format(&[Format::R16G16_SNORM, Format::R16G16_SFLOAT])?;
+        let formats = [normal, Format::R16G16B16A16_SFLOAT, Format::R16_UINT];
+        let float3 = Format::R32G32B32_SFLOAT;
+        let pipeline = Pipeline::new(
+            context,
+            &PipelineDesc {
+                name: "G-buffer",
+                stages: &[&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG],
+                vertex: &[float3, float3, Format::R32G32_SFLOAT],
+                colors: &formats,
+                depth: Depth::Write { format: Format::D32_SFLOAT, slope_bias: 0.0 },
+                constants: &[],
+            },
+        )?;
+        let image = |name, format| Image::new(context, &ImageDesc::flat(name, format, size));
+        let surfaces = Surfaces {
+            normal: image("normal", formats[0])?,
+            albedo: image("albedo", formats[1])?,
+            material: image("material", formats[2])?,
+            depth: image("depth", Format::D32_SFLOAT)?,
+        };
+        Ok(Self { pipeline, surfaces })
+    }
+
+    /// Draws the scene.
+    pub fn record(
+        &mut self,
+        recorder: &mut Recorder,
+        geometry: &Geometry,
+        view: &View,
+    ) -> &Surfaces {
+        let clip_from_world = view.clip_from_world();
+        let clear = Load::Clear([0.0; 4]);
+        recorder
+            .pass("G-buffer", &self.pipeline)
+            .color(&self.surfaces.normal, clear)
+            .color(&self.surfaces.albedo, clear)
+            .color(&self.surfaces.material, clear)
+            .depth(&self.surfaces.depth, clear)
+            .draws(|draws| {
+                geometry.draw_surfaces(draws, |draws, material, diffuse, diffuse_map, specular_map| {
+                    let eye = view.camera.eye;
+                    draws.texture("diffuse_map", diffuse_map, Sampler::Repeat);
+                    draws.texture("specular_map", specular_map, Sampler::Repeat);
+                    draws.push(&Push { clip_from_world, eye, diffuse, material });
+                });
+            });
+        &self.surfaces
+    }
+
+    /// The images.
+    pub fn surfaces(&self) -> &Surfaces {
+        &self.surfaces
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{GpuStruct, check_layout};
+
+    #[test]
+    fn host_and_shader_agree() {
+        for stage in [&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG] {
+            assert_eq!(check_layout(Push::FIELDS, stage.push.expect("push")), Ok(()));
+        }
+    }
+}

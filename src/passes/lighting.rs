@@ -1,0 +1,314 @@
+//! Lighting: the lecture's illumination model for each pixel, or one of its addends, or one of its inputs.
+//!
+//! L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r))
+
+use std::sync::Arc;
+
+use clap::ValueEnum;
+use glam::{Mat4, Vec3};
+use serde::Deserialize;
+
+use crate::daylight::sky::Daylight;
+use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
+use crate::gpu::{
+    Buffer, Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder,
+    Result, Sampler, shaders,
+};
+use crate::gpu_struct;
+
+use super::gbuffer::Surfaces;
+use super::kilo;
+use super::shadow_fit::ShadowView;
+use super::view::View;
+
+gpu_struct! {
+    /// The sun and its shadow map.
+    pub struct SunBlock {
+        shadow_from_world: Mat4,
+        direction: Vec3,
+        illuminance: Vec3,
+        luminance: Vec3,
+        cos_radius: f32,
+        limb: f32,
+        normal_offset: f32,
+        max_radiance: f32,
+        specular_scale: f32,
+    }
+}
+
+/// What is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, ValueEnum, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Show {
+    /// The whole picture, cd/m².
+    #[default]
+    Beauty,
+    /// ρ_d/π (n·l) V E_sun, cd/m².
+    Sun,
+    /// ρ_d/π A E_sky(n), cd/m².
+    Sky,
+    /// ρ_s (r·l)^p V E_sun, cd/m².
+    SunSpecular,
+    /// ρ_s L_sky(r), cd/m².
+    SkySpecular,
+    /// Sky, ground and the sun's disc where no surface is, cd/m².
+    Background,
+    /// V, 0..1.
+    Visibility,
+    /// A, 0..1.
+    Occlusion,
+    /// (n·l) V E_sun + A E_sky(n), lux.
+    Irradiance,
+    /// ρ_d, 0..1.
+    Albedo,
+    /// World normal on the viewer's side, −1..1.
+    Normal,
+    /// Distance along the view axis, metres; 0 is background.
+    Depth,
+    /// Luminance of the whole picture, cd/m², as grey.
+    Luminance,
+}
+
+impl Show {
+    /// The addends of the picture: they sum to [`Show::Beauty`].
+    pub const ADDENDS: [Self; 5] =
+        [Self::Sun, Self::Sky, Self::SunSpecular, Self::SkySpecular, Self::Background];
+
+    /// The inputs of the equation, in the order in which files list them.
+    pub const INPUTS: [Self; 6] = [
+        Self::Visibility,
+        Self::Occlusion,
+        Self::Irradiance,
+        Self::Albedo,
+        Self::Normal,
+        Self::Depth,
+    ];
+
+    /// Name on the command line and of layers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Beauty => "beauty",
+            Self::Sun => "sun",
+            Self::Sky => "sky",
+            Self::SunSpecular => "sun-specular",
+            Self::SkySpecular => "sky-specular",
+            Self::Background => "background",
+            Self::Visibility => "visibility",
+            Self::Occlusion => "occlusion",
+            Self::Irradiance => "irradiance",
+            Self::Albedo => "albedo",
+            Self::Normal => "normal",
+            Self::Depth => "depth",
+            Self::Luminance => "luminance",
+        }
+    }
+
+    /// Factor from the device's unit to the file's: kcd/m² and klx to cd/m² and lux.
+    pub fn file_unit(self) -> f32 {
+        match self {
+            Self::Visibility | Self::Occlusion | Self::Albedo | Self::Normal | Self::Depth => 1.0,
+            _ => 1000.0,
+        }
+    }
+
+    fn constants(self) -> [(&'static str, u32); 11] {
+        let whole = matches!(self, Self::Beauty | Self::Luminance);
+        let on = |shown: Self| u32::from(self == shown);
+        let addend = |shown: Self| u32::from(whole || self == shown);
+        [
+            ("SUN", addend(Self::Sun)),
+            ("SKY", addend(Self::Sky)),
+            ("SUN_SPECULAR", addend(Self::SunSpecular)),
+            ("SKY_SPECULAR", addend(Self::SkySpecular)),
+            ("BACKGROUND", addend(Self::Background)),
+            ("SHOW_VISIBILITY", on(Self::Visibility)),
+            ("SHOW_OCCLUSION", on(Self::Occlusion)),
+            ("SHOW_IRRADIANCE", on(Self::Irradiance)),
+            ("SHOW_ALBEDO", on(Self::Albedo)),
+            ("SHOW_NORMAL", on(Self::Normal)),
+            ("SHOW_DEPTH", on(Self::Depth)),
+        ]
+    }
+}
+
+/// Precision of the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// Half floats: for the screen. The sun's disc is cut at 65 504 kcd/m².
+    Half,
+    /// 32-bit floats: for files and sums.
+    Float,
+}
+
+impl Precision {
+    fn format(self) -> Format {
+        match self {
+            Self::Half => Format::R16G16B16A16_SFLOAT,
+            Self::Float => Format::R32G32B32A32_SFLOAT,
+        }
+    }
+
+    /// Largest radiance that the format holds, kcd/m².
+    fn max_radiance(self) -> f32 {
+        match self {
+            Self::Half => 65_504.0,
+            Self::Float => f32::MAX,
+        }
+    }
+}
+
+/// How surfaces are lit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LightingSettings {
+    /// What is shown.
+    pub show: Show,
+    /// Precision of the result.
+    pub precision: Precision,
+    /// Factor on every ρ_s.
+    pub specular_scale: f32,
+    /// Darkens the sun's limb (u of I = I₀ (1 − u (1 − cos θ))); 0: a uniform disc.
+    pub limb_darkening: f32,
+    /// Pixels to a texel of the occlusion, each way.
+    pub occlusion_downscale: u32,
+}
+
+/// What light there is: images and numbers of the moment.
+#[derive(Clone, Copy)]
+pub struct Light<'a> {
+    /// The moment.
+    pub daylight: &'a Daylight,
+    /// Unit vector toward the point of the sun's disc that this frame samples.
+    pub sun_direction: Vec3,
+    /// The sun's view.
+    pub shadow_view: &'a ShadowView,
+    /// Its depth.
+    pub shadow_map: &'a Image,
+    /// E, klx.
+    pub sky_irradiance: &'a Image,
+    /// L, kcd/m².
+    pub sky_radiance: &'a Image,
+}
+
+/// Texels by which receivers are lifted off their surface, along the normal, at grazing light.
+const NORMAL_OFFSET_TEXELS: f32 = 1.5;
+
+/// The pass and its picture.
+pub struct Lighting {
+    settings: LightingSettings,
+    pipeline: Pipeline,
+    radiance: Image,
+}
+
+impl Lighting {
+    /// A picture of `size` pixels.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn new(
+        context: &Arc<Context>,
+        size: [u32; 2],
+        settings: LightingSettings,
+    ) -> Result<Self> {
+        let format = settings.precision.format();
+        let mut constants = settings.show.constants().to_vec();
+        constants.push(("OCCLUSION_DOWNSCALE", settings.occlusion_downscale));
+        let pipeline = Pipeline::new(
+            context,
+            &PipelineDesc {
+                name: "lighting",
+                stages: &[&shaders::FULLSCREEN_VERT, &shaders::LIGHTING_FRAG],
+                vertex: &[],
+                colors: &[format],
+                depth: Depth::Off,
+                constants: &constants,
+            },
+        )?;
+        let radiance = Image::new(context, &ImageDesc::flat("radiance", format, size))?;
+        Ok(Self { settings, pipeline, radiance })
+    }
+
+    /// How it was set.
+    pub fn settings(&self) -> &LightingSettings {
+        &self.settings
+    }
+
+    /// Lights the surfaces.
+    pub fn record(
+        &mut self,
+        recorder: &mut Recorder,
+        surfaces: &Surfaces,
+        materials: &Buffer,
+        occlusion: &Image,
+        light: &Light<'_>,
+        view: &View,
+    ) -> &Image {
+        recorder
+            .pass("lighting", &self.pipeline)
+            .sample("depth", &surfaces.depth, Sampler::Nearest)
+            .sample("normal", &surfaces.normal, Sampler::Nearest)
+            .sample("albedo", &surfaces.albedo, Sampler::Nearest)
+            .sample("material", &surfaces.material, Sampler::Nearest)
+            .sample("occlusion", occlusion, Sampler::Nearest)
+            .sample("shadow_map", light.shadow_map, Sampler::Shadow)
+            .sample("sky_irradiance", light.sky_irradiance, Sampler::Linear)
+            .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
+            .storage("Materials", materials)
+            .uniform("view", &view.block())
+            .uniform("sun", &self.sun_block(light))
+            .color(&self.radiance, Load::Discard)
+            .draw();
+        &self.radiance
+    }
+
+    fn sun_block(&self, light: &Light<'_>) -> SunBlock {
+        let limb = self.settings.limb_darkening;
+        SunBlock {
+            shadow_from_world: light.shadow_view.shadow_from_world,
+            direction: light.sun_direction,
+            illuminance: kilo(light.daylight.sun_illuminance),
+            // The mean over the disc stays: the integral of 1 - u (1 - mu) over it is 1 - u/3.
+            luminance: kilo(light.daylight.sun_luminance) / (1.0 - limb / 3.0),
+            cos_radius: SUN_ANGULAR_RADIUS.cos() as f32,
+            limb,
+            normal_offset: NORMAL_OFFSET_TEXELS * light.shadow_view.texel,
+            max_radiance: self.settings.precision.max_radiance(),
+            specular_scale: self.settings.specular_scale,
+        }
+    }
+
+    /// The picture, kcd/m².
+    pub fn image(&self) -> &Image {
+        &self.radiance
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{GpuStruct, check_layout};
+
+    #[test]
+    fn host_and_shader_agree() {
+        let binding = shaders::LIGHTING_FRAG.bindings.iter().find(|b| b.name == "sun");
+        assert_eq!(check_layout(SunBlock::FIELDS, binding.expect("sun").fields), Ok(()));
+    }
+
+    #[test]
+    fn names_are_those_of_the_command_line() {
+        for show in Show::value_variants() {
+            let value = show.to_possible_value().expect("a value");
+            assert_eq!(value.get_name(), show.name());
+        }
+    }
+
+    #[test]
+    fn each_addend_is_in_the_picture_once() {
+        let beauty = Show::Beauty.constants();
+        for (i, addend) in Show::ADDENDS.iter().enumerate() {
+            let constants = addend.constants();
+            assert_eq!(beauty[i].1, 1);
+            assert_eq!(constants[i].1, 1, "{addend:?}");
+            assert_eq!(constants.iter().map(|c| c.1).sum::<u32>(), 1, "{addend:?}");
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! One file per pass: each owns its pipeline and the images it writes; the images it reads are parameters.
+//!
+//! Units on the device are kcd/m² and klx (half floats end at 65 504); files and the CPU use cd/m² and lux.
+
+pub mod accumulate;
+pub mod exposure;
+pub mod gbuffer;
+pub mod geometry;
+pub mod irradiance;
+pub mod lighting;
+pub mod shadow;
+pub mod shadow_fit;
+pub mod sky_cube;
+pub mod ssao;
+pub mod tone_map;
+pub mod view;
+
+use glam::{DVec3, Vec3};
+
+/// cd/m² to kcd/m², lux to klx.
+fn kilo(rgb: DVec3) -> Vec3 {
+    (rgb * 1e-3).as_vec3()
+}

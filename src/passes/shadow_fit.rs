@@ -1,0 +1,254 @@
+//! The sun's orthographic view: fitted to what the camera sees, deep enough for everything that may cast on it.
+
+use glam::{Mat4, Vec2, Vec3, Vec4};
+
+use crate::scene::Bounds;
+
+use super::view::View;
+
+/// Share of the extent by which the fit may grow before the map changes its scale: the extent is rounded up to a power of this.
+const SCALE_STEP: f32 = 1.25;
+
+/// A fitted map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShadowView {
+    /// World to the map's clip space: depth 1 nearest the sun, 0 farthest.
+    pub shadow_from_world: Mat4,
+    /// Edge of a texel, metres.
+    pub texel: f32,
+}
+
+/// Right, up and toward-the-sun axes of the map.
+fn axes(sun_direction: Vec3) -> [Vec3; 3] {
+    let hint = if sun_direction.y.abs() > 0.99 { Vec3::NEG_Z } else { Vec3::Y };
+    let right = hint.cross(sun_direction).normalize();
+    [right, sun_direction.cross(right), sun_direction]
+}
+
+/// Fits the map of `resolution` texels a side to the part of `bounds` that `view` sees.
+///
+/// The centre moves in whole texels and the extent in steps, so that shadows do not swim under a moving camera.
+pub fn fit(sun_direction: Vec3, bounds: &Bounds, view: &View, resolution: u32) -> ShadowView {
+    let [right, up, toward] = axes(sun_direction);
+    let to_light = |p: Vec3| Vec3::new(right.dot(p), up.dot(p), toward.dot(p));
+    let casters = Bounds::of(bounds.corners().map(to_light));
+    let seen = visible_points(bounds, view);
+    let receivers = if seen.is_empty() {
+        casters
+    } else {
+        Bounds::of(seen.into_iter().map(to_light))
+    };
+    let extent = (receivers.max - receivers.min).truncate().max_element().max(1e-3);
+    // Two texels of margin on each side for the filter and the snapping.
+    let stepped = SCALE_STEP.powf((extent.ln() / SCALE_STEP.ln()).ceil());
+    let whole = (casters.max - casters.min).truncate().max_element().max(1e-3);
+    let side = stepped.min(whole.max(extent)) * (1.0 + 4.0 / resolution as f32);
+    let texel = side / resolution as f32;
+    let centre = 0.5 * (receivers.min + receivers.max).truncate();
+    let centre = (centre / texel).round() * texel;
+    ShadowView {
+        shadow_from_world: orthographic([right, up, toward], centre, side, &casters),
+        texel,
+    }
+}
+
+fn orthographic(axes: [Vec3; 3], centre: Vec2, side: f32, casters: &Bounds) -> Mat4 {
+    let [right, up, toward] = axes;
+    let scale = 2.0 / side;
+    let deep = (casters.max.z - casters.min.z).max(1e-3);
+    // A little slack keeps the nearest and farthest casters inside the clip volume.
+    let (far, depth) = (casters.min.z - 0.01 * deep, 1.02 * deep);
+    let row = |axis: Vec3, scale: f32, offset: f32| (axis * scale).extend(offset);
+    Mat4::from_cols(
+        row(right, scale, -centre.x * scale),
+        row(up, scale, -centre.y * scale),
+        row(toward, 1.0 / depth, -far / depth),
+        Vec4::W,
+    )
+    .transpose()
+}
+
+/// A half-space: inside where `normal · p + offset ≥ 0`.
+#[derive(Clone, Copy)]
+struct Plane {
+    normal: Vec3,
+    offset: f32,
+}
+
+impl Plane {
+    fn distance(&self, p: Vec3) -> f32 {
+        self.normal.dot(p) + self.offset
+    }
+}
+
+/// The corners of the view's pyramid cut with the box: the receivers' hull.
+fn visible_points(bounds: &Bounds, view: &View) -> Vec<Vec3> {
+    let frustum = frustum(view);
+    let mut points = Vec::new();
+    for face in box_faces(bounds) {
+        points.extend(clip(face.to_vec(), &frustum));
+    }
+    // Where the pyramid's own edges end inside the box.
+    let sides = box_planes(bounds);
+    for face in pyramid_faces(bounds, view) {
+        points.extend(clip(face.to_vec(), &sides));
+    }
+    points
+}
+
+/// Cuts a convex polygon with half-spaces (Sutherland and Hodgman 1974).
+fn clip(mut polygon: Vec<Vec3>, planes: &[Plane]) -> Vec<Vec3> {
+    for plane in planes {
+        let mut kept = Vec::with_capacity(polygon.len() + 1);
+        for (i, &b) in polygon.iter().enumerate() {
+            let a = polygon[(i + polygon.len() - 1) % polygon.len()];
+            let (da, db) = (plane.distance(a), plane.distance(b));
+            if (da >= 0.0) != (db >= 0.0) {
+                kept.push(a + (b - a) * (da / (da - db)));
+            }
+            if db >= 0.0 {
+                kept.push(b);
+            }
+        }
+        polygon = kept;
+    }
+    polygon
+}
+
+/// Directions of the pyramid's four edges, in order around it.
+fn edges(view: &View) -> [Vec3; 4] {
+    let block = view.block();
+    [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| {
+        block.world_from_view * (Vec2::new(x, y) * block.ray_scale).extend(-1.0)
+    })
+}
+
+fn frustum(view: &View) -> [Plane; 4] {
+    let (eye, edges, forward) = (view.camera.eye, edges(view), view.camera.forward());
+    std::array::from_fn(|i| {
+        let normal = edges[i].cross(edges[(i + 1) % 4]).normalize();
+        let normal = if normal.dot(forward) < 0.0 { -normal } else { normal };
+        Plane { normal, offset: -normal.dot(eye) }
+    })
+}
+
+fn pyramid_faces(bounds: &Bounds, view: &View) -> [[Vec3; 3]; 4] {
+    let eye = view.camera.eye;
+    // Long enough to leave the box from wherever the eye stands.
+    let reach = 4.0 * (bounds.diagonal() + (eye - bounds.centre()).length());
+    let ends = edges(view).map(|edge| eye + edge * reach);
+    std::array::from_fn(|i| [eye, ends[i], ends[(i + 1) % 4]])
+}
+
+fn box_planes(bounds: &Bounds) -> [Plane; 6] {
+    let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+    std::array::from_fn(|i| {
+        let axis = axes[i / 2];
+        if i % 2 == 0 {
+            Plane { normal: axis, offset: -bounds.min.dot(axis) }
+        } else {
+            Plane { normal: -axis, offset: bounds.max.dot(axis) }
+        }
+    })
+}
+
+fn box_faces(bounds: &Bounds) -> [[Vec3; 4]; 6] {
+    let (a, b) = (bounds.min, bounds.max);
+    let v = Vec3::new;
+    [
+        [v(a.x, a.y, a.z), v(a.x, b.y, a.z), v(a.x, b.y, b.z), v(a.x, a.y, b.z)],
+        [v(b.x, a.y, a.z), v(b.x, b.y, a.z), v(b.x, b.y, b.z), v(b.x, a.y, b.z)],
+        [v(a.x, a.y, a.z), v(b.x, a.y, a.z), v(b.x, a.y, b.z), v(a.x, a.y, b.z)],
+        [v(a.x, b.y, a.z), v(b.x, b.y, a.z), v(b.x, b.y, b.z), v(a.x, b.y, b.z)],
+        [v(a.x, a.y, a.z), v(b.x, a.y, a.z), v(b.x, b.y, a.z), v(a.x, b.y, a.z)],
+        [v(a.x, a.y, b.z), v(b.x, a.y, b.z), v(b.x, b.y, b.z), v(a.x, b.y, b.z)],
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::UVec2;
+
+    use super::*;
+    use crate::scene::Camera;
+
+    fn scene() -> Bounds {
+        Bounds { min: Vec3::new(-10.0, 0.0, -12.0), max: Vec3::new(14.0, 6.0, 9.0) }
+    }
+
+    fn view(eye: Vec3, target: Vec3) -> View {
+        let camera = Camera { eye, target, fov_deg: 45.0, near: 0.01 };
+        View { camera, size: UVec2::new(640, 360), jitter: Vec2::ZERO }
+    }
+
+    fn suns() -> [Vec3; 4] {
+        [
+            Vec3::Y,
+            Vec3::new(0.3, 0.5, 0.8).normalize(),
+            Vec3::new(-0.9, 0.05, 0.1).normalize(),
+            Vec3::new(0.01, 0.995, 0.0).normalize(),
+        ]
+    }
+
+    #[test]
+    fn what_is_seen_lies_in_the_map() {
+        let view = view(Vec3::new(6.0, 3.0, 5.0), Vec3::new(-4.0, 1.0, -6.0));
+        let clip_from_world = view.clip_from_world();
+        for sun in suns() {
+            let map = fit(sun, &scene(), &view, 2048);
+            let mut seen = 0;
+            for i in 0..4096u32 {
+                let unit = Vec3::new(
+                    (i % 16) as f32 / 15.0,
+                    (i / 16 % 16) as f32 / 15.0,
+                    (i / 256) as f32 / 15.0,
+                );
+                let p = scene().min + unit * (scene().max - scene().min);
+                let clip = clip_from_world * p.extend(1.0);
+                let s = map.shadow_from_world.transform_point3(p);
+                assert!((0.0..=1.0).contains(&s.z), "{p} has depth {}", s.z);
+                if clip.w > 0.0 && clip.x.abs() < clip.w && clip.y.abs() < clip.w {
+                    seen += 1;
+                    assert!(s.x.abs() <= 1.0 && s.y.abs() <= 1.0, "{p} seen but at {s}");
+                }
+            }
+            assert!(seen > 50, "{seen}");
+        }
+    }
+
+    #[test]
+    fn depth_grows_toward_the_sun() {
+        let view = view(Vec3::new(30.0, 10.0, 30.0), Vec3::ZERO);
+        for sun in suns() {
+            let map = fit(sun, &scene(), &view, 512).shadow_from_world;
+            let p = Vec3::new(1.0, 2.0, 1.0);
+            let (low, high) = (map.transform_point3(p), map.transform_point3(p + sun));
+            assert!(high.z > low.z);
+            assert!((high - low).truncate().length() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn the_centre_moves_in_whole_texels() {
+        let sun = suns()[1];
+        let at = |x: f32| {
+            let view = view(Vec3::new(6.0 + x, 3.0, 5.0), Vec3::new(-4.0 + x, 1.0, -6.0));
+            fit(sun, &scene(), &view, 1024)
+        };
+        let (a, b) = (at(0.0), at(0.013));
+        if a.texel == b.texel {
+            let p = Vec3::new(1.0, 0.5, -2.0);
+            let texels = |v: &ShadowView| v.shadow_from_world.transform_point3(p).truncate() * 512.0;
+            let moved = texels(&a) - texels(&b);
+            assert!((moved - moved.round()).length() < 0.02, "{moved}");
+        }
+    }
+
+    #[test]
+    fn a_close_view_gets_finer_texels() {
+        let far = fit(suns()[1], &scene(), &view(Vec3::splat(40.0), Vec3::ZERO), 1024);
+        let near =
+            fit(suns()[1], &scene(), &view(Vec3::new(1.0, 0.5, 1.0), Vec3::new(0.0, 0.0, 0.5)), 1024);
+        assert!(near.texel < far.texel, "{} {}", near.texel, far.texel);
+    }
+}

@@ -1,0 +1,182 @@
+//! The sky as a cube map: 6 faces of radiance in kcd/m², without the sun's disc, ground below the horizon.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::daylight::preetham::PerezSky;
+use crate::daylight::sky::{Daylight, Sky};
+use crate::gpu::{
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
+    Shader, shaders,
+};
+use crate::gpu_struct;
+
+use super::kilo;
+
+gpu_struct! {
+    /// The guard around a model, see [`crate::daylight::sky`].
+    pub struct Push {
+        sun_direction: Vec3,
+        scale: f32,
+        night: Vec3,
+        ground: Vec3,
+    }
+}
+
+gpu_struct! {
+    /// Perez coefficients of Y, x and y.
+    pub struct PreethamModel {
+        luminance: [f32; 5],
+        chromaticity_x: [f32; 5],
+        chromaticity_y: [f32; 5],
+        zenith_over_f: Vec3,
+    }
+}
+
+gpu_struct! {
+    /// Coefficients of R, G and B.
+    pub struct HosekModel {
+        coefficients: [f32; 27],
+        mean_radiance: Vec3,
+    }
+}
+
+gpu_struct! {
+    /// The overcast sky needs one number.
+    pub struct OvercastModel {
+        zenith_luminance: f32,
+    }
+}
+
+/// The pass and its cube.
+pub struct SkyCube {
+    preetham: Pipeline,
+    hosek: Pipeline,
+    overcast: Pipeline,
+    radiance: Image,
+    drawn: Option<Daylight>,
+}
+
+fn pipeline(context: &Arc<Context>, name: &str, fragment: &'static Shader) -> Result<Pipeline> {
+    Pipeline::new(
+        context,
+        &PipelineDesc {
+            name,
+            stages: &[&shaders::FULLSCREEN_VERT, &shaders::CUBE_FACES_GEOM, fragment],
+            vertex: &[],
+            colors: &[Format::R16G16B16A16_SFLOAT],
+            depth: Depth::Off,
+            constants: &[],
+        },
+    )
+}
+
+impl SkyCube {
+    /// A cube with faces of `edge` texels.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn new(context: &Arc<Context>, edge: u32) -> Result<Self> {
+        let desc = ImageDesc::cube("sky radiance", Format::R16G16B16A16_SFLOAT, edge);
+        Ok(Self {
+            preetham: pipeline(context, "sky: Preetham", &shaders::SKY_PREETHAM_FRAG)?,
+            hosek: pipeline(context, "sky: Hosek", &shaders::SKY_HOSEK_FRAG)?,
+            overcast: pipeline(context, "sky: overcast", &shaders::SKY_OVERCAST_FRAG)?,
+            radiance: Image::new(context, &desc)?,
+            drawn: None,
+        })
+    }
+
+    /// Draws the sky if it changed. Gives the cube, and whether it is new.
+    pub fn record(&mut self, recorder: &mut Recorder, daylight: &Daylight) -> (&Image, bool) {
+        let changed = self.drawn.as_ref() != Some(daylight);
+        if changed {
+            self.draw(recorder, daylight);
+            self.drawn = Some(daylight.clone());
+        }
+        (&self.radiance, changed)
+    }
+
+    /// Forgets what was drawn, so that the next frame draws it again.
+    pub fn invalidate(&mut self) {
+        self.drawn = None;
+    }
+
+    /// The cube, kcd/m².
+    pub fn image(&self) -> &Image {
+        &self.radiance
+    }
+
+    fn draw(&self, recorder: &mut Recorder, daylight: &Daylight) {
+        let push = Push {
+            sun_direction: daylight.guard.sun_direction.as_vec3(),
+            scale: daylight.guard.scale as f32,
+            night: kilo(daylight.guard.night),
+            ground: kilo(daylight.ground_luminance),
+        };
+        let target = &self.radiance;
+        match &daylight.sky {
+            Sky::Preetham(sky) => {
+                let pass = recorder.pass("sky cube", &self.preetham);
+                pass.uniform("model", &preetham_model(&sky.perez()))
+                    .push(&push)
+                    .color(target, Load::Discard)
+                    .draw();
+            }
+            Sky::CieClear(sky) => {
+                let pass = recorder.pass("sky cube", &self.preetham);
+                pass.uniform("model", &preetham_model(&sky.perez()))
+                    .push(&push)
+                    .color(target, Load::Discard)
+                    .draw();
+            }
+            Sky::Hosek(sky) => {
+                let coefficients = std::array::from_fn(|i| sky.coefficients[i / 9][i % 9] as f32);
+                let model = HosekModel { coefficients, mean_radiance: kilo(sky.mean_radiance) };
+                let pass = recorder.pass("sky cube", &self.hosek);
+                pass.uniform("model", &model).push(&push).color(target, Load::Discard).draw();
+            }
+            Sky::Overcast(sky) => {
+                let zenith_luminance = (sky.zenith_luminance * 1e-3) as f32;
+                let pass = recorder.pass("sky cube", &self.overcast);
+                pass.uniform("model", &OvercastModel { zenith_luminance })
+                    .push(&push)
+                    .color(target, Load::Discard)
+                    .draw();
+            }
+        }
+    }
+}
+
+fn preetham_model(perez: &PerezSky) -> PreethamModel {
+    let [luminance, chromaticity_x, chromaticity_y] =
+        perez.coefficients.map(|row| row.map(|c| c as f32));
+    let [y_zenith, x, y] = perez.zenith_over_f;
+    PreethamModel {
+        luminance,
+        chromaticity_x,
+        chromaticity_y,
+        zenith_over_f: Vec3::new((y_zenith * 1e-3) as f32, x as f32, y as f32),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{GpuStruct, check_layout};
+
+    #[test]
+    fn host_and_shader_agree() {
+        for stage in
+            [&shaders::SKY_PREETHAM_FRAG, &shaders::SKY_HOSEK_FRAG, &shaders::SKY_OVERCAST_FRAG]
+        {
+            assert_eq!(check_layout(Push::FIELDS, stage.push.expect("push")), Ok(()));
+        }
+        let model = |stage: &Shader| stage.bindings[0].fields;
+        let check = |host, stage| assert_eq!(check_layout(host, model(stage)), Ok(()));
+        check(PreethamModel::FIELDS, &shaders::SKY_PREETHAM_FRAG);
+        check(HosekModel::FIELDS, &shaders::SKY_HOSEK_FRAG);
+        check(OvercastModel::FIELDS, &shaders::SKY_OVERCAST_FRAG);
+    }
+}

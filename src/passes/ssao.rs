@@ -1,0 +1,143 @@
+//! Screen-space ambient occlusion: the share A of the sky that surfaces within a radius leave visible.
+
+use std::sync::Arc;
+
+use crate::gpu::{
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
+    Sampler, Shader, shaders,
+};
+use crate::gpu_struct;
+
+use super::gbuffer::Surfaces;
+use super::view::View;
+
+gpu_struct! {
+    /// Radius and noise.
+    pub struct Push {
+        radius: f32,
+        phase: f32,
+    }
+}
+
+/// How the occlusion is computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SsaoSettings {
+    /// Metres; 0 turns it off (A = 1).
+    pub radius: f32,
+    /// Pixels of the picture to one of the occlusion, each way: 1 or 2.
+    pub downscale: u32,
+    /// Slices through the view direction.
+    pub slices: u32,
+    /// Depth samples on each side of a slice.
+    pub steps: u32,
+}
+
+impl Default for SsaoSettings {
+    fn default() -> Self {
+        Self { radius: 1.0, downscale: 2, slices: 2, steps: 6 }
+    }
+}
+
+/// The passes and their images.
+pub struct Ssao {
+    settings: SsaoSettings,
+    trace: Pipeline,
+    blur: Pipeline,
+    noisy: Image,
+    smooth: Image,
+}
+
+/// A in the first channel, distance along the view axis (m) in the second, for depth-aware filters.
+const FORMAT: Format = Format::R16G16_SFLOAT;
+
+fn pipeline(
+    context: &Arc<Context>,
+    name: &str,
+    fragment: &'static Shader,
+    constants: &[(&str, u32)],
+) -> Result<Pipeline> {
+    Pipeline::new(
+        context,
+        &PipelineDesc {
+            name,
+            stages: &[&shaders::FULLSCREEN_VERT, fragment],
+            vertex: &[],
+            colors: &[FORMAT],
+            depth: Depth::Off,
+            constants,
+        },
+    )
+}
+
+impl Ssao {
+    /// For pictures of `size` pixels.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn new(context: &Arc<Context>, size: [u32; 2], settings: SsaoSettings) -> Result<Self> {
+        let constants = [
+            ("SLICES", settings.slices),
+            ("STEPS", settings.steps),
+            ("DOWNSCALE", settings.downscale),
+        ];
+        let half = size.map(|edge| edge.div_ceil(settings.downscale));
+        let image = |name| Image::new(context, &ImageDesc::flat(name, FORMAT, half));
+        Ok(Self {
+            settings,
+            trace: pipeline(context, "SSAO", &shaders::SSAO_FRAG, &constants)?,
+            blur: pipeline(context, "SSAO blur", &shaders::SSAO_BLUR_FRAG, &[])?,
+            noisy: image("occlusion, noisy")?,
+            smooth: image("occlusion")?,
+        })
+    }
+
+    /// How it was set.
+    pub fn settings(&self) -> &SsaoSettings {
+        &self.settings
+    }
+
+    /// Computes A for the surfaces in view. `phase` (0..1) turns the noise from frame to frame.
+    pub fn record(
+        &mut self,
+        recorder: &mut Recorder,
+        surfaces: &Surfaces,
+        view: &View,
+        phase: f32,
+    ) -> &Image {
+        if self.settings.radius <= 0.0 {
+            // Nothing occludes: every texel is A = 1 (the distance only steers filters, which find no edges).
+            recorder
+                .pass("SSAO off", &self.blur)
+                .sample("noisy_occlusion", &self.noisy, Sampler::Nearest)
+                .color(&self.smooth, Load::Clear([1.0, 0.0, 0.0, 0.0]))
+                .draws(|_| ());
+            return &self.smooth;
+        }
+        recorder
+            .pass("SSAO", &self.trace)
+            .sample("depth", &surfaces.depth, Sampler::Nearest)
+            .sample("normal", &surfaces.normal, Sampler::Nearest)
+            .uniform("view", &view.block())
+            .push(&Push { radius: self.settings.radius, phase })
+            .color(&self.noisy, Load::Discard)
+            .draw();
+        recorder
+            .pass("SSAO blur", &self.blur)
+            .sample("noisy_occlusion", &self.noisy, Sampler::Nearest)
+            .color(&self.smooth, Load::Discard)
+            .draw();
+        &self.smooth
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{GpuStruct, check_layout};
+
+    #[test]
+    fn host_and_shader_agree() {
+        let push = shaders::SSAO_FRAG.push.expect("push");
+        assert_eq!(check_layout(Push::FIELDS, push), Ok(()));
+    }
+}

@@ -1,0 +1,100 @@
+//! The camera as the screen-space shaders see it.
+
+use glam::{Mat3, Mat4, UVec2, Vec2, Vec3};
+
+use crate::gpu_struct;
+use crate::scene::Camera;
+
+gpu_struct! {
+    /// `VIEW_BLOCK` of `include/view.glsl`.
+    pub struct ViewBlock {
+        world_from_view: Mat3,
+        eye: Vec3,
+        ray_scale: Vec2,
+        ray_offset: Vec2,
+        near: f32,
+    }
+}
+
+/// A camera with the size of its picture and a sub-pixel jitter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// The camera.
+    pub camera: Camera,
+    /// Width and height, pixels.
+    pub size: UVec2,
+    /// Offset of the sample in the pixel, in pixels, −0.5..0.5; zero is the pixel's centre.
+    pub jitter: Vec2,
+}
+
+impl View {
+    /// Width over height.
+    pub fn aspect(&self) -> f32 {
+        self.size.x as f32 / self.size.y as f32
+    }
+
+    /// World to Vulkan clip space, jittered.
+    pub fn clip_from_world(&self) -> Mat4 {
+        self.jitter_matrix()
+            * self.camera.clip_from_view(self.aspect())
+            * self.camera.view_from_world()
+    }
+
+    /// Moving the picture by −jitter brings the sample to the pixel's centre.
+    fn jitter_matrix(&self) -> Mat4 {
+        let shift = -2.0 * self.jitter / self.size.as_vec2();
+        Mat4::from_translation(shift.extend(0.0))
+    }
+
+    /// What the shaders need to reconstruct positions and rays.
+    pub fn block(&self) -> ViewBlock {
+        let tan_y = (0.5 * self.camera.fov_deg.to_radians()).tan();
+        // Vulkan's rows run down, the camera's y runs up.
+        let ray_scale = Vec2::new(tan_y * self.aspect(), -tan_y);
+        ViewBlock {
+            world_from_view: Mat3::from_mat4(self.camera.world_from_view()),
+            eye: self.camera.eye,
+            ray_scale,
+            ray_offset: 2.0 * self.jitter / self.size.as_vec2() * ray_scale,
+            near: self.camera.near,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{GpuStruct, check_layout, shaders};
+
+    fn view(jitter: Vec2) -> View {
+        let camera = Camera {
+            eye: Vec3::new(3.0, 2.0, 7.0),
+            target: Vec3::new(-1.0, 0.5, 0.0),
+            fov_deg: 50.0,
+            near: 0.01,
+        };
+        View { camera, size: UVec2::new(640, 360), jitter }
+    }
+
+    #[test]
+    fn host_and_shader_agree() {
+        for stage in [&shaders::SSAO_FRAG, &shaders::LIGHTING_FRAG] {
+            let binding = stage.bindings.iter().find(|b| b.name == "view").expect("view");
+            assert_eq!(check_layout(ViewBlock::FIELDS, binding.fields), Ok(()));
+        }
+    }
+
+    #[test]
+    fn rays_undo_the_projection() {
+        for jitter in [Vec2::ZERO, Vec2::new(0.4, -0.3)] {
+            let view = view(jitter);
+            let point = Vec3::new(-2.0, 1.2, -1.5);
+            let clip = view.clip_from_world() * point.extend(1.0);
+            let ndc = clip.truncate() / clip.w;
+            let b = view.block();
+            let ray = (ndc.truncate() * b.ray_scale + b.ray_offset).extend(-1.0);
+            let back = b.eye + b.world_from_view * ray * (b.near / ndc.z);
+            assert!((back - point).length() < 1e-3, "{jitter}: {back}");
+        }
+    }
+}

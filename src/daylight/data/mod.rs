@@ -1,0 +1,4 @@
+//! Published tables, as Rust data.
+
+pub mod cie_1931_2deg;
+pub mod preetham_spectra;

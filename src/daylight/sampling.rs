@@ -1,0 +1,164 @@
+//! Points and directions: the course framework's random numbers, low-discrepancy points, warps.
+//!
+//! The integer functions are exact twins of what a shader does: same bits, same order.
+
+use std::f64::consts::PI;
+
+use glam::{DVec2, DVec3};
+
+/// Zafar, Olano & Curtis 2010 (after Wheeler & Needham's TEA): hash of two words in `ROUNDS` rounds. The framework
+/// seeds with four rounds of (pixel index, layer + 6 · iteration).
+pub fn tea<const ROUNDS: u32>(mut v0: u32, mut v1: u32) -> u32 {
+    let mut sum = 0u32;
+    for _ in 0..ROUNDS {
+        sum = sum.wrapping_add(0x9e37_79b9);
+        v0 = v0.wrapping_add(
+            (v1 << 4).wrapping_add(0xa341_316c)
+                ^ v1.wrapping_add(sum)
+                ^ (v1 >> 5).wrapping_add(0xc801_3ea4),
+        );
+        v1 = v1.wrapping_add(
+            (v0 << 4).wrapping_add(0xad90_777d)
+                ^ v0.wrapping_add(sum)
+                ^ (v0 >> 5).wrapping_add(0x7e95_761e),
+        );
+    }
+    v0
+}
+
+/// Numerical Recipes' linear congruential generator: steps `state`, returns its low 24 bits.
+pub fn lcg(state: &mut u32) -> u32 {
+    *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+    *state & 0x00ff_ffff
+}
+
+/// Random number in [0, 1) on a grid of 2⁻²⁴: the framework's `rnd(t)`.
+pub fn rnd(state: &mut u32) -> f64 {
+    f64::from(lcg(state)) / f64::from(0x0100_0000u32)
+}
+
+/// Roberts 2018, R2 sequence: point `index` in [0, 1)²; progressive (every prefix is well spread).
+pub fn r2(index: u32) -> DVec2 {
+    // 1/g and 1/g² for the plastic number g, the real root of g³ = g + 1.
+    const A: DVec2 = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_2);
+    (DVec2::splat(0.5) + f64::from(index) * A).fract()
+}
+
+/// Van der Corput's radical inverse in base 2, in [0, 1): the bits of `index` behind the binary point.
+pub fn radical_inverse(index: u32) -> f64 {
+    f64::from(index.reverse_bits()) / 2f64.powi(32)
+}
+
+/// Hammersley point `index` of `count` in [0, 1)²; not progressive.
+pub fn hammersley(index: u32, count: u32) -> DVec2 {
+    DVec2::new(
+        (f64::from(index) + 0.5) / f64::from(count),
+        radical_inverse(index),
+    )
+}
+
+/// Sobol' 1967, first two dimensions: point `index` in [0, 1)²; progressive, best at powers of two.
+pub fn sobol(index: u32) -> DVec2 {
+    let (mut bits, mut direction, mut left) = (0u32, 1u32 << 31, index);
+    while left != 0 {
+        if left & 1 == 1 {
+            bits ^= direction;
+        }
+        direction ^= direction >> 1;
+        left >>= 1;
+    }
+    DVec2::new(radical_inverse(index), f64::from(bits) / 2f64.powi(32))
+}
+
+/// Cranley & Patterson 1976: a point set shifted on the torus, so that texels can differ without losing its spread.
+pub fn rotate(point: DVec2, shift: DVec2) -> DVec2 {
+    (point + shift).fract()
+}
+
+/// Lecture, "Integrating skylight": direction about +z with density cos θ / π from a point in [0, 1)²:
+/// θ = acos √(1 - ξ1), φ = 2π ξ2.
+pub fn cosine_hemisphere(xi: DVec2) -> DVec3 {
+    let (sin_phi, cos_phi) = (2.0 * PI * xi.y).sin_cos();
+    let (cos_theta, sin_theta) = ((1.0 - xi.x).sqrt(), xi.x.sqrt());
+    DVec3::new(cos_phi * sin_theta, sin_phi * sin_theta, cos_theta)
+}
+
+/// Direction with density 1/(4π) from a point in [0, 1)².
+pub fn uniform_sphere(xi: DVec2) -> DVec3 {
+    let (sin_phi, cos_phi) = (2.0 * PI * xi.y).sin_cos();
+    let z = 1.0 - 2.0 * xi.x;
+    let r = (1.0 - z * z).max(0.0).sqrt();
+    DVec3::new(r * cos_phi, r * sin_phi, z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tea_without_rounds_is_its_input_and_with_four_mixes_well() {
+        assert_eq!(tea::<0>(7, 9), 7);
+        // One round by hand: v0 = (0 + 0xa341316c) ^ 0x9e3779b9 ^ 0xc8013ea4.
+        assert_eq!(tea::<1>(0, 0), 0xa341_316c ^ 0x9e37_79b9 ^ 0xc801_3ea4);
+        let flipped: u32 = (0..1000)
+            .map(|i| (tea::<4>(i, 0) ^ tea::<4>(i, 1)).count_ones())
+            .sum();
+        assert!(
+            (14_000..18_000).contains(&flipped),
+            "{flipped} of 32000 bits"
+        );
+    }
+
+    #[test]
+    fn lcg_follows_its_recurrence() {
+        let mut state = 1;
+        assert_eq!(lcg(&mut state), (1_664_525 + 1_013_904_223) & 0x00ff_ffff);
+        assert_eq!(state, 1_664_525 + 1_013_904_223);
+    }
+
+    #[test]
+    fn rnd_is_uniform() {
+        let mut state = tea::<4>(3, 5);
+        let mean: f64 = (0..100_000).map(|_| rnd(&mut state)).sum::<f64>() / 1e5;
+        assert!((mean - 0.5).abs() < 5e-3, "{mean}");
+    }
+
+    #[test]
+    fn low_discrepancy_points_integrate_better_than_chance() {
+        let exact = 0.25;
+        let error = |point: &dyn Fn(u32) -> DVec2| {
+            let sum: f64 = (0..4096).map(|i| point(i)).map(|p| p.x * p.y).sum();
+            (sum / 4096.0 - exact).abs()
+        };
+        for (name, e) in [
+            ("r2", error(&r2)),
+            ("hammersley", error(&|i| hammersley(i, 4096))),
+            ("sobol", error(&sobol)),
+        ] {
+            assert!(e < 5e-4, "{name} {e}");
+        }
+    }
+
+    #[test]
+    fn sobol_fills_every_elementary_square() {
+        let mut seen = [false; 64];
+        for i in 0..64 {
+            let p = sobol(i) * 8.0;
+            // Points lie in [0, 1)²: the cast truncates.
+            seen[p.y as usize * 8 + p.x as usize] = true;
+        }
+        assert!(seen.iter().all(|&s| s));
+    }
+
+    #[test]
+    fn the_warps_have_the_moments_of_their_densities() {
+        let n = 4096;
+        let mean = |f: &dyn Fn(DVec3) -> f64, warp: fn(DVec2) -> DVec3| {
+            (0..n).map(|i| f(warp(hammersley(i, n)))).sum::<f64>() / f64::from(n)
+        };
+        assert!((mean(&|d| d.z, cosine_hemisphere) - 2.0 / 3.0).abs() < 1e-4);
+        assert!((mean(&|d| d.x * d.x, cosine_hemisphere) - 0.25).abs() < 1e-3);
+        assert!((mean(&|d| d.x * d.x, uniform_sphere) - 1.0 / 3.0).abs() < 1e-3);
+        assert!((0..n).all(|i| cosine_hemisphere(hammersley(i, n)).is_normalized()));
+    }
+}

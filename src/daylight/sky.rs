@@ -1,0 +1,308 @@
+//! One daylight: sun, sky and ground of a moment, safe to evaluate for any input.
+//!
+//! The models hold for a sun over the horizon and for a range of turbidities. [`Daylight::new`] guards them, and
+//! gives the guard as plain numbers ([`Guard`]) so that a shader computes the same:
+//!
+//! sky = clip(model(direction, guard.sun_direction)) · guard.scale + guard.night, clip being [`colour::clip_negative`].
+
+use std::f64::consts::PI;
+
+use clap::ValueEnum;
+use glam::DVec3;
+use serde::Deserialize;
+
+use super::cie::{CieClear, Overcast, SkyCover, daylight_availability};
+use super::colour;
+use super::hosek::{self, Hosek};
+use super::preetham::{self, Preetham};
+use super::quadrature::horizontal_irradiance;
+use super::sun_position::direction;
+use super::sunlight::{Sunlight, visible_fraction};
+
+/// Luminance of the sky at night without moon and town, cd/m²: 252 µcd/m² of airglow and stars
+/// (Cinzano, Falchi & Elvidge 2001).
+pub const NIGHT_LUMINANCE: f64 = 2.52e-4;
+
+/// Elevation of the sun at the end of civil twilight, degrees.
+pub const CIVIL_TWILIGHT_DEG: f64 = -6.0;
+
+/// Elevation of the sun at the end of astronomical twilight, degrees; the sky of the models has faded out there.
+pub const NIGHT_DEG: f64 = -18.0;
+
+/// Horizontal illuminance at the end of civil twilight over that at sunset, clear evening: 585..410 lux fall to
+/// 3.5..2 lux (American Meteorological Society, Glossary of Meteorology, "civil twilight"); geometric means.
+const TWILIGHT_RATIO: f64 = 2.65 / 490.0;
+
+/// Which sky.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SkyModel {
+    /// Clear sky of Preetham, Shirley & Smits 1999 (the lecture's).
+    #[default]
+    Preetham,
+    /// Clear sky of Hošek & Wilkie 2012.
+    Hosek,
+    /// CIE standard overcast sky; no sun.
+    Overcast,
+    /// CIE standard clear sky, white.
+    CieClear,
+}
+
+impl SkyModel {
+    /// Turbidities for which the model (or, where it has none, the sun's spectrum) holds.
+    pub fn turbidity_range(self) -> (f64, f64) {
+        match self {
+            Self::Preetham => preetham::TURBIDITY_RANGE,
+            Self::Hosek | Self::Overcast | Self::CieClear => hosek::TURBIDITY_RANGE,
+        }
+    }
+}
+
+/// What determines a daylight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conditions {
+    /// The sky's model.
+    pub model: SkyModel,
+    /// Turbidity T: 2 very clear, 3 clear, 6 hazy, 10 murky. Clamped to [`SkyModel::turbidity_range`].
+    pub turbidity: f64,
+    /// Diffuse reflectance of the ground, 0..=1. 0: black below the horizon.
+    pub ground_albedo: f64,
+    /// Azimuth of the sun, degrees clockwise from north.
+    pub sun_azimuth_deg: f64,
+    /// Apparent elevation of the sun's centre, degrees in -90..=90.
+    pub sun_elevation_deg: f64,
+    /// Horizontal diffuse illuminance of the sky, lux, to which the sky is scaled; `None`: the model's own (for the
+    /// CIE skies [`daylight_availability`]). A measured value is used as it is: no twilight fade.
+    pub horizontal_illuminance: Option<f64>,
+}
+
+impl Default for Conditions {
+    /// Preetham, turbidity 3, albedo 0.2, the sun at 45° in the south.
+    fn default() -> Self {
+        Self {
+            model: SkyModel::default(),
+            turbidity: 3.0,
+            ground_albedo: 0.2,
+            sun_azimuth_deg: 180.0,
+            sun_elevation_deg: 45.0,
+            horizontal_illuminance: None,
+        }
+    }
+}
+
+/// A sky model with its coefficients evaluated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sky {
+    /// See [`Preetham`].
+    Preetham(Preetham),
+    /// See [`Hosek`].
+    Hosek(Hosek),
+    /// See [`Overcast`].
+    Overcast(Overcast),
+    /// See [`CieClear`].
+    CieClear(CieClear),
+}
+
+impl Sky {
+    /// The model's radiance in a unit direction not below the horizon, linear BT.709 RGB, cd/m²; neither clipped nor faded.
+    pub fn radiance(&self, dir: DVec3) -> DVec3 {
+        match self {
+            Self::Preetham(sky) => sky.radiance(dir),
+            Self::Hosek(sky) => sky.radiance(dir),
+            Self::Overcast(sky) => sky.radiance(dir),
+            Self::CieClear(sky) => sky.radiance(dir),
+        }
+    }
+}
+
+/// The validity guard as plain numbers: sky = clip(model) · `scale` + `night`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Guard {
+    /// Unit vector toward the sun with which the model is evaluated: the sun's, or on the horizon under it.
+    pub sun_direction: DVec3,
+    /// Factor on the model's radiance: 1 by day, falling through twilight to 0 at -18° ([`twilight`]); times the scale to a
+    /// given horizontal illuminance.
+    pub scale: f64,
+    /// Radiance added, linear BT.709 RGB, cd/m²: 0 by day, [`NIGHT_LUMINANCE`] (white) after twilight.
+    pub night: DVec3,
+}
+
+/// Sun, sky and ground of one moment. Every number is finite and none is negative.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Daylight {
+    /// Unit vector toward the sun's centre, also when it has set.
+    pub sun_direction: DVec3,
+    /// Illuminance of the sun at normal incidence, linear BT.709 RGB, lux; 0 when its disc has set.
+    pub sun_illuminance: DVec3,
+    /// Luminance of the sun's disc, linear BT.709 RGB, cd/m²; 0 when it has set entirely.
+    pub sun_luminance: DVec3,
+    /// The sky's model.
+    pub sky: Sky,
+    /// How the model is kept within its range.
+    pub guard: Guard,
+    /// Illuminance of the sky on a horizontal plane looking up, linear BT.709 RGB, lux.
+    pub sky_irradiance_up: DVec3,
+    /// Radiance of everything below the horizon, linear BT.709 RGB, cd/m²: albedo/π (E_sun sin el + E_sky).
+    pub ground_luminance: DVec3,
+    /// What had to be changed in the conditions, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+impl Daylight {
+    /// The daylight of `conditions`. Values out of range are replaced and named in `warnings`.
+    pub fn new(conditions: &Conditions) -> Self {
+        let mut warnings = Vec::new();
+        let valid = validated(conditions, &mut warnings);
+        let elevation = valid.sun_elevation_deg;
+        let (sun_illuminance, sun_luminance) = sun(&valid);
+        let above = direction(valid.sun_azimuth_deg, elevation.max(0.0));
+        let sky = sky_of(&valid, above);
+        let guard = guard_of(&valid, &sky, above);
+        let sky_irradiance_up = horizontal_irradiance(|dir| guarded(&sky, &guard, dir));
+        let sun_on_ground = sun_illuminance * elevation.to_radians().sin().max(0.0);
+        Self {
+            sun_direction: direction(valid.sun_azimuth_deg, elevation),
+            sun_illuminance,
+            sun_luminance,
+            sky,
+            guard,
+            sky_irradiance_up,
+            ground_luminance: (sun_on_ground + sky_irradiance_up) * (valid.ground_albedo / PI),
+            warnings,
+        }
+    }
+
+    /// Radiance in the unit direction `dir`, linear BT.709 RGB, cd/m²: the sky without the sun's disc, and the ground below.
+    pub fn radiance(&self, dir: DVec3) -> DVec3 {
+        if dir.y < 0.0 {
+            self.ground_luminance
+        } else {
+            self.sky_radiance(dir)
+        }
+    }
+
+    /// Radiance of the sky alone, cd/m²: black below the horizon.
+    pub fn sky_radiance(&self, dir: DVec3) -> DVec3 {
+        if dir.y < 0.0 {
+            DVec3::ZERO
+        } else {
+            guarded(&self.sky, &self.guard, dir)
+        }
+    }
+}
+
+fn guarded(sky: &Sky, guard: &Guard, dir: DVec3) -> DVec3 {
+    colour::clip_negative(sky.radiance(dir)) * guard.scale + guard.night
+}
+
+/// Illuminance (lux) and luminance (cd/m²) of the sun, in gamut; the illuminance fades as the disc sets.
+fn sun(valid: &Conditions) -> (DVec3, DVec3) {
+    let visible = visible_fraction(valid.sun_elevation_deg);
+    if valid.model == SkyModel::Overcast || visible == 0.0 {
+        return (DVec3::ZERO, DVec3::ZERO);
+    }
+    let sunlight = Sunlight::new(valid.turbidity, valid.sun_elevation_deg);
+    let clip = colour::clip_negative;
+    (
+        clip(sunlight.illuminance()) * visible,
+        clip(sunlight.luminance()),
+    )
+}
+
+fn sky_of(valid: &Conditions, sun_direction: DVec3) -> Sky {
+    let available = |cover| daylight_availability(cover, valid.sun_elevation_deg);
+    match valid.model {
+        SkyModel::Preetham => Sky::Preetham(Preetham::new(valid.turbidity, sun_direction)),
+        SkyModel::Hosek => Sky::Hosek(Hosek::new(
+            valid.turbidity,
+            valid.ground_albedo,
+            sun_direction,
+        )),
+        SkyModel::Overcast => Sky::Overcast(Overcast::new(available(SkyCover::Overcast))),
+        SkyModel::CieClear => {
+            Sky::CieClear(CieClear::new(available(SkyCover::Clear), sun_direction))
+        }
+    }
+}
+
+fn guard_of(valid: &Conditions, sky: &Sky, sun_direction: DVec3) -> Guard {
+    if let Some(lux) = valid.horizontal_illuminance {
+        let own = horizontal_irradiance(|dir| colour::clip_negative(sky.radiance(dir)));
+        let scale = lux / colour::luminance(own);
+        return Guard {
+            sun_direction,
+            scale,
+            night: DVec3::ZERO,
+        };
+    }
+    let scale = twilight(valid.sun_elevation_deg);
+    Guard {
+        sun_direction,
+        scale,
+        night: DVec3::splat(NIGHT_LUMINANCE * (1.0 - scale)),
+    }
+}
+
+/// Brightness of the sky relative to that with the sun on the horizon: 1 above, 0 at -18° and below.
+///
+/// The logarithm falls in proportion to the sun's depression, to 2.65/490 at the end of civil twilight (-6°). The same
+/// slope goes on to -18° (it turns 490 lux into 1.4e-2 at -12°, where 0.8e-2 are seen): a curve that ended at -6° would
+/// switch off the last 3 lux at once. Less its own remainder (1e-7), so that it ends in 0; continuous and monotonic.
+pub fn twilight(elevation_deg: f64) -> f64 {
+    let fall = |deg: f64| TWILIGHT_RATIO.powf(deg / CIVIL_TWILIGHT_DEG);
+    let remainder = fall(NIGHT_DEG);
+    (fall(elevation_deg.clamp(NIGHT_DEG, 0.0)) - remainder) / (1.0 - remainder)
+}
+
+fn validated(conditions: &Conditions, warnings: &mut Vec<String>) -> Conditions {
+    let mut valid = *conditions;
+    let fallback = Conditions::default();
+    let mut limit = |name: &str, value: &mut f64, range: (f64, f64), fallback: f64| {
+        let asked = *value;
+        *value = if asked.is_nan() {
+            fallback
+        } else {
+            asked.clamp(range.0, range.1)
+        };
+        if *value != asked {
+            let (low, high) = range;
+            warnings.push(format!(
+                "{name} {asked} is outside {low}..={high}: {value} is used"
+            ));
+        }
+    };
+    let range = conditions.model.turbidity_range();
+    limit("turbidity", &mut valid.turbidity, range, fallback.turbidity);
+    limit(
+        "ground albedo",
+        &mut valid.ground_albedo,
+        (0.0, 1.0),
+        fallback.ground_albedo,
+    );
+    limit(
+        "sun elevation",
+        &mut valid.sun_elevation_deg,
+        (-90.0, 90.0),
+        fallback.sun_elevation_deg,
+    );
+    limit(
+        "sun azimuth",
+        &mut valid.sun_azimuth_deg,
+        (-1e6, 1e6),
+        fallback.sun_azimuth_deg,
+    );
+    if let Some(lux) = &mut valid.horizontal_illuminance {
+        limit("horizontal illuminance", lux, (0.0, 1e6), 0.0);
+    }
+    if valid.sun_elevation_deg < 0.0 && valid.horizontal_illuminance.is_none() {
+        let elevation = valid.sun_elevation_deg;
+        warnings.push(format!(
+            "the sun is below the horizon ({elevation:.2} degrees): the sky model ends there and is faded to the night's"
+        ));
+    }
+    valid
+}
+
+#[cfg(test)]
+#[path = "sky_tests.rs"]
+mod tests;

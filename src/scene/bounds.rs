@@ -1,0 +1,108 @@
+//! Axis-aligned bounding boxes.
+
+use glam::Vec3;
+
+/// An axis-aligned box in world space, metres. `min > max` on every axis means that it holds nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// Smallest coordinates, metres.
+    pub min: Vec3,
+    /// Largest coordinates, metres.
+    pub max: Vec3,
+}
+
+impl Bounds {
+    /// The box of no points: the neutral element of [`Bounds::union`].
+    pub const EMPTY: Self = Self {
+        min: Vec3::INFINITY,
+        max: Vec3::NEG_INFINITY,
+    };
+
+    /// The smallest box around the points.
+    pub fn of(points: impl IntoIterator<Item = Vec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, Self::with)
+    }
+
+    /// This box grown to hold `point`.
+    #[must_use]
+    pub fn with(self, point: Vec3) -> Self {
+        Self {
+            min: self.min.min(point),
+            max: self.max.max(point),
+        }
+    }
+
+    /// The smallest box around both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+        }
+    }
+
+    /// Whether it holds no point at all.
+    pub fn is_empty(&self) -> bool {
+        !self.min.cmple(self.max).all()
+    }
+
+    /// The middle, metres; the origin for an empty box.
+    pub fn centre(&self) -> Vec3 {
+        if self.is_empty() {
+            return Vec3::ZERO;
+        }
+        0.5 * (self.min + self.max)
+    }
+
+    /// Length of the edges, metres; zero for an empty box.
+    pub fn extent(&self) -> Vec3 {
+        if self.is_empty() {
+            return Vec3::ZERO;
+        }
+        self.max - self.min
+    }
+
+    /// Length of the space diagonal, metres; zero for an empty box.
+    pub fn diagonal(&self) -> f32 {
+        self.extent().length()
+    }
+
+    /// The eight corners; bit 0, 1, 2 of the index chooses `max` along x, y, z.
+    pub fn corners(&self) -> [Vec3; 8] {
+        std::array::from_fn(|i| {
+            let pick = |axis: usize| {
+                if i >> axis & 1 == 1 {
+                    self.max[axis]
+                } else {
+                    self.min[axis]
+                }
+            };
+            Vec3::new(pick(0), pick(1), pick(2))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn holds_exactly_its_points() {
+        let bounds = Bounds::of([Vec3::new(1.0, -2.0, 3.0), Vec3::new(-1.0, 5.0, 0.0)]);
+        assert_eq!(bounds.min, Vec3::new(-1.0, -2.0, 0.0));
+        assert_eq!(bounds.max, Vec3::new(1.0, 5.0, 3.0));
+        assert_eq!(bounds.centre(), Vec3::new(0.0, 1.5, 1.5));
+        assert_eq!(bounds.extent(), Vec3::new(2.0, 7.0, 3.0));
+        assert_eq!(Bounds::of(bounds.corners()), bounds);
+    }
+
+    #[test]
+    fn nothing_is_empty_and_neutral() {
+        let one = Bounds::of([Vec3::ONE]);
+        assert!(Bounds::EMPTY.is_empty());
+        assert!(!one.is_empty(), "a point has a box");
+        assert_eq!(Bounds::EMPTY.union(one), one);
+        assert_eq!(Bounds::EMPTY.diagonal(), 0.0);
+        assert_eq!(Bounds::EMPTY.centre(), Vec3::ZERO);
+    }
+}

@@ -1,0 +1,263 @@
+//! The camera: where it stands, what it sees, and its matrices.
+//!
+//! View space is right-handed with +Y up and −Z forward. Clip space is Vulkan's (y down, depth 0..1) with reversed Z and
+//! an infinite far plane: depth 1 at `near`, 0 at infinity.
+
+use glam::camera::rh::{proj::vulkan, view};
+use glam::{Mat4, Vec3};
+
+use super::bounds::Bounds;
+
+/// Vertical field of view of a camera that was given none, degrees.
+pub const DEFAULT_FOV_DEG: f32 = 45.0;
+
+/// Where the default view stands: degrees clockwise from north, so south-south-east.
+const FRAMING_AZIMUTH_DEG: f32 = 152.0;
+/// How far above the horizon of the model's centre the default view stands, degrees.
+const FRAMING_ELEVATION_DEG: f32 = 14.0;
+/// Room left around the model, as a share of the distance that would just fit it.
+const FRAMING_MARGIN: f32 = 1.05;
+
+/// A perspective camera that stands upright (+Y up).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// Where the eye is, metres.
+    pub eye: Vec3,
+    /// What the eye looks at, metres; never the same point as `eye`.
+    pub target: Vec3,
+    /// Vertical field of view, degrees, within (0, 180).
+    pub fov_deg: f32,
+    /// Distance of the near plane, metres, positive.
+    pub near: f32,
+}
+
+impl Camera {
+    /// The camera that these parts describe; what is missing is chosen so that the model within `bounds` is in view.
+    ///
+    /// With an eye and no target it looks at the middle of the model; with a target and no eye it stands in the
+    /// direction of the default view, far enough to see all of it. `aspect` is width / height.
+    pub fn from_parts(
+        eye: Option<Vec3>,
+        target: Option<Vec3>,
+        fov_deg: Option<f32>,
+        bounds: &Bounds,
+        aspect: f32,
+    ) -> Self {
+        let framed = Self::framing(bounds, fov_deg.unwrap_or(DEFAULT_FOV_DEG), aspect);
+        let (eye, target) = match (eye, target) {
+            (Some(eye), Some(target)) => (eye, target),
+            (Some(eye), None) => (eye, framed.target),
+            (None, Some(target)) => (target + framed.eye - framed.target, target),
+            (None, None) => (framed.eye, framed.target),
+        };
+        // A camera that looks at itself has no direction: let it look north.
+        let target = if eye == target {
+            eye + Vec3::NEG_Z
+        } else {
+            target
+        };
+        Self {
+            eye,
+            target,
+            ..framed
+        }
+    }
+
+    /// A view of everything within `bounds` from the south-south-east, slightly above the model's middle.
+    ///
+    /// `fov_deg` is the vertical field of view in degrees, within (0, 180); `aspect` is width / height.
+    pub fn framing(bounds: &Bounds, fov_deg: f32, aspect: f32) -> Self {
+        let target = bounds.centre();
+        let toward_eye = direction(FRAMING_AZIMUTH_DEG, FRAMING_ELEVATION_DEG);
+        let right = Vec3::Y.cross(toward_eye).normalize();
+        let up = toward_eye.cross(right);
+        let tan_y = (0.5 * fov_deg).to_radians().tan();
+        let tan_x = tan_y * aspect;
+        // The corner q is inside the frame when |x| <= (distance - depth) tan, so each asks for its own distance.
+        let distance = bounds.corners().map(|corner| {
+            let q = if bounds.is_empty() {
+                Vec3::ZERO
+            } else {
+                corner - target
+            };
+            let sideways = (q.dot(right).abs() / tan_x).max(q.dot(up).abs() / tan_y);
+            q.dot(toward_eye) + sideways
+        });
+        let distance = distance.into_iter().fold(0.0, f32::max) * FRAMING_MARGIN;
+        let near = near_plane(bounds);
+        Self {
+            eye: target + toward_eye * distance.max(10.0 * near),
+            target,
+            fov_deg,
+            near,
+        }
+    }
+
+    /// World space to view space: a rotation and a translation.
+    pub fn view_from_world(&self) -> Mat4 {
+        view::look_at_mat4(self.eye, self.target, self.up())
+    }
+
+    /// View space to world space; its last column is the eye.
+    pub fn world_from_view(&self) -> Mat4 {
+        self.view_from_world().inverse()
+    }
+
+    /// View space to Vulkan clip space, reversed Z, infinite far plane. `aspect` is width / height.
+    pub fn clip_from_view(&self, aspect: f32) -> Mat4 {
+        vulkan::perspective_infinite_reverse(self.fov_deg.to_radians(), aspect, self.near)
+    }
+
+    /// Unit vector of the line of sight.
+    pub fn forward(&self) -> Vec3 {
+        (self.target - self.eye).normalize_or(Vec3::NEG_Z)
+    }
+
+    /// +Y, or north when the camera looks straight up or down, where +Y is no direction in the picture.
+    fn up(&self) -> Vec3 {
+        if self.forward().y.abs() > 0.999_999 {
+            Vec3::NEG_Z
+        } else {
+            Vec3::Y
+        }
+    }
+}
+
+/// Unit vector of an azimuth (degrees clockwise from north) and an elevation (degrees).
+fn direction(azimuth_deg: f32, elevation_deg: f32) -> Vec3 {
+    let (sin_az, cos_az) = azimuth_deg.to_radians().sin_cos();
+    let (sin_el, cos_el) = elevation_deg.to_radians().sin_cos();
+    Vec3::new(sin_az * cos_el, sin_el, -cos_az * cos_el)
+}
+
+/// Reversed float depth keeps its relative precision at any distance, so the near plane may be very close; it only
+/// has to shrink with small models.
+fn near_plane(bounds: &Bounds) -> f32 {
+    (1e-3 * bounds.diagonal()).clamp(1e-5, 0.05)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn boxes() -> [Bounds; 5] {
+        let around = |min: [f32; 3], max: [f32; 3]| Bounds {
+            min: min.into(),
+            max: max.into(),
+        };
+        [
+            around([-5.0, 0.0, -5.0], [5.0, 8.0, 5.0]),
+            around([-50.0, -0.1, -20.0], [50.0, 0.0, 20.0]),
+            around([100.0, 100.0, 100.0], [100.1, 140.0, 100.1]),
+            around([-0.01, 0.0, -0.01], [0.01, 0.02, 0.01]),
+            around([1.0, 2.0, 3.0], [1.0, 2.0, 3.0]),
+        ]
+    }
+
+    #[test]
+    fn framing_shows_every_corner() {
+        for bounds in boxes() {
+            for (fov, aspect) in [(45.0, 16.0 / 9.0), (20.0, 1.0), (100.0, 0.4), (60.0, 4.0)] {
+                let camera = Camera::framing(&bounds, fov, aspect);
+                let clip_from_world = camera.clip_from_view(aspect) * camera.view_from_world();
+                for corner in bounds.corners() {
+                    let clip = clip_from_world * corner.extend(1.0);
+                    assert!(
+                        clip.w > camera.near,
+                        "{bounds:?}: {corner} is behind the eye"
+                    );
+                    let inside = clip.x.abs() <= clip.w && clip.y.abs() <= clip.w;
+                    assert!(
+                        inside,
+                        "{bounds:?} fov {fov} aspect {aspect}: {corner} is outside"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn framing_stands_south_east_and_above() {
+        let camera = Camera::framing(&boxes()[0], 45.0, 1.5);
+        let offset = camera.eye - camera.target;
+        assert!(
+            offset.x > 0.0 && offset.y > 0.0 && offset.z > 0.0,
+            "{offset}"
+        );
+    }
+
+    #[test]
+    fn clip_space_is_vulkans_with_reversed_depth() {
+        let camera = Camera {
+            eye: Vec3::ZERO,
+            target: Vec3::NEG_Z,
+            fov_deg: 90.0,
+            near: 0.1,
+        };
+        let clip_from_world = camera.clip_from_view(2.0) * camera.view_from_world();
+        let project = |p: Vec3| clip_from_world.project_point3(p);
+        assert!(
+            (project(Vec3::new(0.0, 0.0, -0.1)).z - 1.0).abs() < 1e-6,
+            "near is 1"
+        );
+        assert!(
+            project(Vec3::new(0.0, 0.0, -1e6)).z.abs() < 1e-6,
+            "far is 0"
+        );
+        assert!(
+            project(Vec3::new(0.0, 1.0, -2.0)).y < 0.0,
+            "up is toward the first row"
+        );
+        assert!(
+            project(Vec3::new(1.0, 0.0, -2.0)).x > 0.0,
+            "east is to the right when looking north"
+        );
+        let edge = project(Vec3::new(2.0, 1.0, -1.0));
+        assert!(
+            (edge.x - 1.0).abs() < 1e-6 && (edge.y + 1.0).abs() < 1e-6,
+            "{edge}"
+        );
+    }
+
+    #[test]
+    fn world_from_view_ends_at_the_eye() {
+        let camera = Camera {
+            eye: Vec3::new(1.0, 2.0, 3.0),
+            target: Vec3::ZERO,
+            fov_deg: 50.0,
+            near: 0.1,
+        };
+        let eye = camera.world_from_view().w_axis.truncate();
+        assert!((eye - camera.eye).length() < 1e-5);
+        let ahead = camera.world_from_view().transform_vector3(Vec3::NEG_Z);
+        assert!((ahead - camera.forward()).length() < 1e-5);
+    }
+
+    #[test]
+    fn straight_down_has_north_at_the_top() {
+        let camera = Camera {
+            eye: Vec3::Y * 10.0,
+            target: Vec3::ZERO,
+            fov_deg: 50.0,
+            near: 0.1,
+        };
+        let clip_from_world = camera.clip_from_view(1.0) * camera.view_from_world();
+        let north = clip_from_world.project_point3(Vec3::NEG_Z);
+        assert!(north.is_finite() && north.y < -0.1, "{north}");
+    }
+
+    #[test]
+    fn parts_fill_in_what_is_missing() {
+        let bounds = boxes()[0];
+        let eye = Vec3::new(9.0, 2.0, 9.0);
+        let looks = Camera::from_parts(Some(eye), None, Some(30.0), &bounds, 1.0);
+        assert_eq!(
+            (looks.eye, looks.target, looks.fov_deg),
+            (eye, bounds.centre(), 30.0)
+        );
+        let itself = Camera::from_parts(Some(eye), Some(eye), None, &bounds, 1.0);
+        assert!(itself.view_from_world().is_finite());
+        let nothing = Camera::from_parts(None, None, None, &Bounds::EMPTY, 1.0);
+        assert!(nothing.view_from_world().is_finite());
+    }
+}

@@ -1,0 +1,69 @@
+//! What can be wrong with a scene: one line each, with the thing and the remedy.
+
+use std::path::PathBuf;
+
+/// Why a scene cannot be shown. Its text is one line that names the file and says what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// No such file.
+    #[error("{}: no such file; check the path", .0.display())]
+    Missing(PathBuf),
+    /// A directory where a file is needed.
+    #[error("{} is a directory; name a .toml or .obj file in it", .0.display())]
+    Directory(PathBuf),
+    /// A pipe, a device, a socket.
+    #[error("{} is not a regular file; save it to disk first", .0.display())]
+    NotAFile(PathBuf),
+    /// The system refused to read it.
+    #[error("{}: cannot be read ({reason}); check its permissions", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// The system's words.
+        reason: String,
+    },
+    /// Larger than [`LoadOptions::max_file_bytes`](super::LoadOptions::max_file_bytes).
+    #[error("{} has {bytes} bytes, the limit is {limit}; split it", path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Its size, bytes.
+        bytes: u64,
+        /// The limit, bytes.
+        limit: u64,
+    },
+    /// A kind of file that is not read (yet).
+    #[error("{}: {what}", path.display())]
+    Unsupported {
+        /// The file.
+        path: PathBuf,
+        /// What is not supported, and what is.
+        what: String,
+    },
+    /// A line of a model that makes no sense.
+    #[error("{}, line {line}: {what}", path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// Counted from 1.
+        line: usize,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// Nothing to draw; `why` is empty or says what was left out, in brackets.
+    #[error("{} has no triangles{why}; export it with faces", path.display())]
+    NoTriangles {
+        /// The file.
+        path: PathBuf,
+        /// What was dropped.
+        why: String,
+    },
+    /// A key or value of a scene file that makes no sense.
+    #[error("{}: {what}", path.display())]
+    SceneFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, with the known words.
+        what: String,
+    },
+}

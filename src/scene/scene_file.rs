@@ -1,0 +1,415 @@
+//! Scene files (TOML): meshes with their places, and options by the names that the command line gives them.
+//!
+//! Options become pairs of text, so that one parser (the command line's) knows what they mean.
+
+use std::path::{Path, PathBuf};
+
+use glam::{Affine3A, EulerRot, Mat3, Quat, Vec3};
+use toml::{Table, Value};
+
+use super::builder::Builder;
+use super::error::SceneError;
+use super::obj::Placement;
+use super::{LoadOptions, append_model};
+
+/// The option tables and the options that each may hold.
+const TABLES: [(&str, &[&str]); 4] = [
+    ("place", &["place", "when", "solar", "sun-position"]),
+    ("sun", &["sun", "place", "when", "solar", "sun-position"]),
+    (
+        "sky",
+        &[
+            "sky",
+            "turbidity",
+            "ground-albedo",
+            "irradiance",
+            "irradiance-samples",
+        ],
+    ),
+    (
+        "exposure",
+        &["ev100", "exposure", "tonemap", "gamma", "scale"],
+    ),
+];
+const CAMERA_KEYS: &[&str] = &["name", "eye", "target", "fov"];
+const MESH_KEYS: &[&str] = &["file", "translate", "rotate", "scale", "up", "smooth"];
+const TOP_KEYS: &[&str] = &["mesh", "place", "sun", "sky", "camera", "exposure"];
+
+/// Pairs of option name and value, as on the command line.
+type Pairs = Vec<(String, String)>;
+
+/// A camera of a scene file that `--camera NAME` chooses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedCamera {
+    /// Its name.
+    pub name: String,
+    /// Its options, for instance `("eye", "1,2,3")`.
+    pub options: Vec<(String, String)>,
+}
+
+/// Adds the meshes of a scene file to the scene; returns its options and named cameras.
+///
+/// Without a nameless `[camera]` the first named one is the camera of the options.
+pub(super) fn append_scene(
+    builder: &mut Builder,
+    path: &Path,
+    defaults: &LoadOptions,
+) -> Result<(Pairs, Vec<NamedCamera>), SceneError> {
+    let text = builder.files.read_text(path)?;
+    let wrong = |what: String| SceneError::SceneFile {
+        path: path.to_owned(),
+        what,
+    };
+    let table = parse(&text).map_err(wrong)?;
+    let meshes = meshes(&table, defaults).map_err(wrong)?;
+    let mut options = options(&table).map_err(wrong)?;
+    let (camera, cameras) = cameras(&table).map_err(wrong)?;
+    options.extend(
+        camera
+            .or_else(|| cameras.first().map(|c| c.options.clone()))
+            .unwrap_or_default(),
+    );
+    let folder = path.parent().unwrap_or(Path::new(""));
+    for mesh in &meshes {
+        append_model(builder, &folder.join(&mesh.file), &mesh.placement)?;
+    }
+    Ok((options, cameras))
+}
+
+fn parse(text: &str) -> Result<Table, String> {
+    let table: Table = text.parse().map_err(|error: toml::de::Error| {
+        let before = error
+            .span()
+            .and_then(|span| text.get(..span.start))
+            .unwrap_or("");
+        let line = before.matches('\n').count() + 1;
+        let what: Vec<&str> = error.message().split_whitespace().collect();
+        format!("line {line} is no TOML: {}", what.join(" "))
+    })?;
+    known_keys(&table, "the scene file", TOP_KEYS)?;
+    Ok(table)
+}
+
+fn known_keys(table: &Table, place: &str, known: &[&str]) -> Result<(), String> {
+    match table.keys().find(|key| !known.contains(&key.as_str())) {
+        Some(key) => Err(format!(
+            "unknown key \"{key}\" in {place}; known are {}",
+            known.join(", ")
+        )),
+        None => Ok(()),
+    }
+}
+
+struct Mesh {
+    file: PathBuf,
+    placement: Placement,
+}
+
+fn meshes(table: &Table, defaults: &LoadOptions) -> Result<Vec<Mesh>, String> {
+    let list = match table.get("mesh") {
+        Some(Value::Array(list)) if !list.is_empty() => list,
+        Some(_) => return Err("mesh must be a list of tables; write [[mesh]]".to_owned()),
+        None => return Err("has no [[mesh]]; add one with file = \"model.obj\"".to_owned()),
+    };
+    list.iter().map(|entry| mesh(entry, defaults)).collect()
+}
+
+fn mesh(entry: &Value, defaults: &LoadOptions) -> Result<Mesh, String> {
+    let table = entry
+        .as_table()
+        .ok_or("mesh must be a list of tables; write [[mesh]]")?;
+    known_keys(table, "[[mesh]]", MESH_KEYS)?;
+    let file = table
+        .get("file")
+        .and_then(Value::as_str)
+        .filter(|file| !file.is_empty());
+    let file = PathBuf::from(file.ok_or("[[mesh]] needs file = \"model.obj\"")?);
+    if file
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+    {
+        return Err(format!(
+            "[[mesh]] file \"{}\" is a scene file; name a model (.obj)",
+            file.display()
+        ));
+    }
+    let smooth_deg = match table.get("smooth") {
+        Some(value) => Some(
+            number(value)
+                .filter(|d| (0.0..=180.0).contains(d))
+                .ok_or("smooth must be 0..180 degrees")?,
+        ),
+        None => defaults.smooth_deg,
+    };
+    Ok(Mesh {
+        file,
+        placement: Placement {
+            world_from_mesh: transform(table)?,
+            smooth_deg,
+        },
+    })
+}
+
+/// First `up`, then `scale`, then `rotate` about x, then y, then z, then `translate`.
+fn transform(table: &Table) -> Result<Affine3A, String> {
+    let translate = vector(table, "translate")?.unwrap_or(Vec3::ZERO);
+    let rotate = vector(table, "rotate")?.unwrap_or(Vec3::ZERO) * 1f32.to_radians();
+    let scale = scale(table)?;
+    let upright = match table.get("up").map(|up| up.as_str()) {
+        None | Some(Some("y")) => Mat3::IDENTITY,
+        Some(Some("z")) => Mat3::from_cols(Vec3::X, Vec3::NEG_Z, Vec3::Y),
+        Some(_) => return Err("up of a [[mesh]] must be \"y\" or \"z\"".to_owned()),
+    };
+    let rotation = Quat::from_euler(EulerRot::ZYX, rotate.z, rotate.y, rotate.x);
+    let placed = Affine3A::from_scale_rotation_translation(scale, rotation, translate);
+    Ok(placed * Affine3A::from_mat3(upright))
+}
+
+fn scale(table: &Table) -> Result<Vec3, String> {
+    let scale = match table.get("scale") {
+        None => Vec3::ONE,
+        Some(Value::Array(_)) => vector(table, "scale")?.unwrap_or(Vec3::ONE),
+        Some(value) => Vec3::splat(number(value).ok_or("scale must be a number or three")?),
+    };
+    // Beyond these a model is a point or leaves the number range.
+    let sound = scale.abs().min_element() >= 1e-6 && scale.abs().max_element() <= 1e6;
+    sound
+        .then_some(scale)
+        .ok_or_else(|| "scale must be 0.000001 to 1000000 (negative mirrors)".to_owned())
+}
+
+fn number(value: &Value) -> Option<f32> {
+    let number = value
+        .as_float()
+        .or_else(|| value.as_integer().map(|i| i as f64))? as f32;
+    number.is_finite().then_some(number)
+}
+
+fn vector(table: &Table, key: &str) -> Result<Option<Vec3>, String> {
+    let Some(value) = table.get(key) else {
+        return Ok(None);
+    };
+    let numbers: Option<Vec<f32>> = value
+        .as_array()
+        .and_then(|list| list.iter().map(number).collect());
+    match numbers.as_deref() {
+        Some([x, y, z]) => Ok(Some(Vec3::new(*x, *y, *z))),
+        _ => Err(format!(
+            "{key} must be three numbers, for instance [0, 1.5, 0]"
+        )),
+    }
+}
+
+fn options(table: &Table) -> Result<Pairs, String> {
+    let mut pairs = Pairs::new();
+    for (name, known) in TABLES {
+        let Some(value) = table.get(name) else {
+            continue;
+        };
+        let table = value
+            .as_table()
+            .ok_or_else(|| format!("{name} must be a table; write [{name}]"))?;
+        let new = table_pairs(table, &format!("[{name}]"), known)?;
+        if let Some((key, _)) = new
+            .iter()
+            .find(|(key, _)| pairs.iter().any(|(old, _)| old == key))
+        {
+            return Err(format!(
+                "\"{key}\" is given twice; keep the one in [{name}]"
+            ));
+        }
+        pairs.extend(new);
+    }
+    Ok(pairs)
+}
+
+fn table_pairs(table: &Table, place: &str, known: &[&str]) -> Result<Pairs, String> {
+    known_keys(table, place, known)?;
+    table
+        .iter()
+        .map(|(key, value)| Ok((key.clone(), text(key, value)?)))
+        .collect()
+}
+
+/// A value as one would type it after `--key=`.
+fn text(key: &str, value: &Value) -> Result<String, String> {
+    match value {
+        Value::String(text) => Ok(text.clone()),
+        Value::Integer(number) => Ok(number.to_string()),
+        Value::Float(number) => Ok(number.to_string()),
+        Value::Datetime(moment) => Ok(moment.to_string()),
+        Value::Array(list) => {
+            let words: Result<Vec<_>, _> = list
+                .iter()
+                .map(|value| {
+                    if value.is_array() {
+                        Err(bad_value(key))
+                    } else {
+                        text(key, value)
+                    }
+                })
+                .collect();
+            Ok(words?.join(","))
+        }
+        Value::Boolean(_) | Value::Table(_) => Err(bad_value(key)),
+    }
+}
+
+fn bad_value(key: &str) -> String {
+    format!("{key} must be a number, a text or a list of numbers")
+}
+
+/// The pairs of the nameless camera, if there is one, and the named cameras.
+fn cameras(table: &Table) -> Result<(Option<Pairs>, Vec<NamedCamera>), String> {
+    let entries: Vec<&Value> = match table.get("camera") {
+        None => Vec::new(),
+        Some(Value::Array(list)) => list.iter().collect(),
+        Some(single) => vec![single],
+    };
+    let mut nameless = None;
+    let mut named: Vec<NamedCamera> = Vec::new();
+    for entry in entries {
+        let table = entry
+            .as_table()
+            .ok_or("camera must be a table; write [camera]")?;
+        let pairs = table_pairs(table, "[camera]", CAMERA_KEYS)?;
+        let (name, options): (Pairs, Pairs) = pairs.into_iter().partition(|(key, _)| key == "name");
+        match name.into_iter().next() {
+            Some((_, name)) if named.iter().any(|c| c.name == name) => {
+                return Err(format!("two cameras are named \"{name}\"; rename one"));
+            }
+            Some((_, name)) => named.push(NamedCamera { name, options }),
+            None if nameless.is_some() => {
+                return Err("two cameras have no name; add name = \"..\"".to_owned());
+            }
+            None => nameless = Some(options),
+        }
+    }
+    Ok((nameless, named))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::files::Files;
+    use crate::scene::{Loaded, load_from};
+
+    const OBJ: &[u8] = b"v 1 0 0\nv 0 0 2\nv 0 1 0\nf 1 2 3\n";
+
+    fn load(toml: &str) -> Result<Loaded, String> {
+        let toml: &'static [u8] = toml.to_owned().into_bytes().leak();
+        let files: Vec<(&'static str, &'static [u8])> =
+            vec![("dir/s.toml", toml), ("dir/m.obj", OBJ)];
+        load_from(
+            Files::Embedded(files.leak()),
+            Path::new("dir/s.toml"),
+            &LoadOptions::default(),
+        )
+        .map_err(|error| error.to_string())
+    }
+
+    fn positions(mesh: &str) -> Vec<[f32; 3]> {
+        load(&format!("[[mesh]]\nfile = \"m.obj\"\n{mesh}"))
+            .expect("good scene")
+            .scene
+            .positions
+    }
+
+    #[test]
+    fn transforms_apply_in_the_documented_order() {
+        assert_eq!(positions("translate = [1, 2, 3]")[0], [2.0, 2.0, 3.0]);
+        assert_eq!(positions("scale = 2")[1], [0.0, 0.0, 4.0]);
+        assert_eq!(positions("up = \"z\"")[1], [0.0, 2.0, 0.0]);
+        let turned = positions("rotate = [0, 90, 0]\ntranslate = [0, 0, 5]")[0];
+        assert!(
+            (Vec3::from(turned) - Vec3::new(0.0, 0.0, 4.0)).length() < 1e-6,
+            "{turned:?}"
+        );
+        // About x first: z goes to −y, then about z: −y goes to x.
+        let twice = positions("rotate = [90, 0, 90]")[1];
+        assert!(
+            (Vec3::from(twice) - Vec3::new(2.0, 0.0, 0.0)).length() < 1e-6,
+            "{twice:?}"
+        );
+    }
+
+    #[test]
+    fn options_become_pairs_of_text() {
+        let loaded = load(
+            "[[mesh]]\nfile = \"m.obj\"\n[place]\nplace = [55.79, 12.52]\nwhen = 2026-06-21T14:00:00+02:00\n\
+             [sky]\nturbidity = 3\n[camera]\neye = [1, -2, 3.5]\n[exposure]\nexposure = \"auto\"\n",
+        )
+        .expect("good scene");
+        let expected = [
+            ("place", "55.79,12.52"),
+            ("when", "2026-06-21T14:00:00+02:00"),
+            ("turbidity", "3"),
+            ("exposure", "auto"),
+            ("eye", "1,-2,3.5"),
+        ];
+        assert_eq!(
+            loaded.options,
+            expected.map(|(k, v)| (k.to_owned(), v.to_owned()))
+        );
+    }
+
+    #[test]
+    fn the_first_named_camera_stands_in_for_a_nameless_one() {
+        let mesh = "[[mesh]]\nfile = \"m.obj\"\n";
+        let named = "[[camera]]\nname = \"a\"\nfov = 30\n[[camera]]\nname = \"b\"\nfov = 40\n";
+        let loaded = load(&format!("{mesh}{named}")).expect("good scene");
+        assert_eq!(loaded.options, [("fov".to_owned(), "30".to_owned())]);
+        assert_eq!(loaded.cameras[1].name, "b");
+        let both = load(&format!("{mesh}{named}[[camera]]\nfov = 50\n")).expect("good scene");
+        assert_eq!(both.options, [("fov".to_owned(), "50".to_owned())]);
+    }
+
+    #[test]
+    fn nonsense_is_named() {
+        let mesh = "[[mesh]]\nfile = \"m.obj\"\n";
+        for (text, part) in [
+            ("".to_owned(), "has no [[mesh]]"),
+            ("mesh = 3".to_owned(), "write [[mesh]]"),
+            ("[[mesh]]\nfile = \"s.toml\"".to_owned(), "is a scene file"),
+            (
+                "[[mesh]]\nfile = \"n.obj\"".to_owned(),
+                "n.obj: no such file",
+            ),
+            ("[[mesh]]\nfile = \"m.glb\"".to_owned(), "not supported yet"),
+            (
+                "[[mesh]]\nfil = \"m.obj\"".to_owned(),
+                "unknown key \"fil\" in [[mesh]]; known are file",
+            ),
+            (
+                format!("{mesh}[sky]\nturbidty = 3"),
+                "unknown key \"turbidty\" in [sky]; known are sky, turbidity",
+            ),
+            (format!("{mesh}[skye]\n"), "unknown key \"skye\""),
+            (format!("{mesh}scale = 0"), "scale must be"),
+            (format!("{mesh}scale = nan"), "scale must be"),
+            (
+                format!("{mesh}translate = [1, 2]"),
+                "translate must be three numbers",
+            ),
+            (format!("{mesh}up = \"x\""), "up of a [[mesh]]"),
+            (format!("{mesh}smooth = 300"), "smooth must be"),
+            (
+                format!("{mesh}[sky]\nturbidity = [[1]]"),
+                "turbidity must be a number",
+            ),
+            (
+                format!("{mesh}[place]\nplace = [1, 2]\n[sun]\nplace = [1, 2]"),
+                "given twice",
+            ),
+            (
+                format!("{mesh}[[camera]]\n[[camera]]\n"),
+                "two cameras have no name",
+            ),
+            (format!("{mesh}= 3"), "line 3 is no TOML"),
+        ] {
+            let error = load(&text).expect_err(&text);
+            assert!(error.contains(part), "{text}: {error}");
+            assert_eq!(error.lines().count(), 1, "{error}");
+        }
+    }
+}

@@ -1,5 +1,7 @@
 //! Real-time daylight whose numbers can be trusted.
 
 pub mod daylight;
+pub mod frame;
 pub mod gpu;
+pub mod passes;
 pub mod scene;

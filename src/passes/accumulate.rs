@@ -19,7 +19,6 @@ gpu_struct! {
 pub struct Accumulate {
     pipeline: Pipeline,
     means: [Image; 2],
-    count: u32,
 }
 
 impl Accumulate {
@@ -41,24 +40,19 @@ impl Accumulate {
             },
         )?;
         let image = |name| Image::new(context, &ImageDesc::flat(name, format, size));
-        Ok(Self { pipeline, means: [image("mean 0")?, image("mean 1")?], count: 0 })
+        Ok(Self { pipeline, means: [image("mean 0")?, image("mean 1")?] })
     }
 
-    /// Starts a new mean.
-    pub fn restart(&mut self) {
-        self.count = 0;
-    }
-
-    /// Adds a frame.
-    pub fn record(&mut self, recorder: &mut Recorder, frame: &Image) -> &Image {
-        self.count += 1;
+    /// Adds frame number `index` of the picture; 0 starts a new mean.
+    pub fn record(&mut self, recorder: &mut Recorder, frame: &Image, index: u32) -> &Image {
+        let count = index + 1;
         self.means.swap(0, 1);
         let [new, old] = &self.means;
         recorder
             .pass("accumulate", &self.pipeline)
             .sample("frame", frame, Sampler::Nearest)
             .sample("previous_mean", old, Sampler::Nearest)
-            .push(&Push { count: self.count })
+            .push(&Push { count })
             .color(new, Load::Discard)
             .draw();
         new

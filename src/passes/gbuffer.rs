@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{Mat4, Vec3};
+use glam::Vec3;
 
 use crate::gpu::{
     Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
@@ -16,7 +16,7 @@ use super::view::View;
 gpu_struct! {
     /// Camera and material of a draw.
     pub struct Push {
-        clip_from_world: Mat4,
+        clip_from_world: [[f32; 4]; 4],
         eye: Vec3,
         diffuse: Vec3,
         material: u32,
@@ -79,7 +79,7 @@ impl Gbuffer {
         geometry: &Geometry,
         view: &View,
     ) -> &Surfaces {
-        let clip_from_world = view.clip_from_world();
+        let clip_from_world = view.clip_from_world().to_cols_array_2d();
         let clear = Load::Clear([0.0; 4]);
         recorder
             .pass("G-buffer", &self.pipeline)

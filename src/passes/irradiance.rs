@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use crate::daylight::sampling::quasi_cosine_direction;
+use crate::daylight::sampling::{cosine_hemisphere, sobol};
 use crate::gpu::{
     Buffer, BufferKind, Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc,
     Recorder, Result, Sampler, shaders, upload_buffer,
@@ -156,7 +156,7 @@ fn upload_samples(recorder: &mut Recorder, settings: &IrradianceSettings) -> Res
         Sampling::MonteCarlo => 1,
     };
     let directions: Vec<[f32; 3]> =
-        (0..count).map(|i| quasi_cosine_direction(i).as_vec3().to_array()).collect();
+        (0..count).map(|i| cosine_hemisphere(sobol(i)).as_vec3().to_array()).collect();
     let bytes = bytemuck::cast_slice(&directions);
     upload_buffer(recorder, "irradiance samples", BufferKind::Storage, bytes)
 }

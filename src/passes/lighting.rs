@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use clap::ValueEnum;
-use glam::{Mat4, Vec3};
+use glam::Vec3;
 use serde::Deserialize;
 
 use crate::daylight::sky::Daylight;
@@ -24,7 +24,7 @@ use super::view::View;
 gpu_struct! {
     /// The sun and its shadow map.
     pub struct SunBlock {
-        shadow_from_world: Mat4,
+        shadow_from_world: [[f32; 4]; 4],
         direction: Vec3,
         illuminance: Vec3,
         luminance: Vec3,
@@ -263,7 +263,7 @@ impl Lighting {
     fn sun_block(&self, light: &Light<'_>) -> SunBlock {
         let limb = self.settings.limb_darkening;
         SunBlock {
-            shadow_from_world: light.shadow_view.shadow_from_world,
+            shadow_from_world: light.shadow_view.shadow_from_world.to_cols_array_2d(),
             direction: light.sun_direction,
             illuminance: kilo(light.daylight.sun_illuminance),
             // The mean over the disc stays: the integral of 1 - u (1 - mu) over it is 1 - u/3.

@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use glam::Mat4;
-
 use crate::gpu::{
     Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
     shaders,
@@ -16,7 +14,7 @@ use super::shadow_fit::ShadowView;
 gpu_struct! {
     /// The sun's view.
     pub struct Push {
-        shadow_from_world: Mat4,
+        shadow_from_world: [[f32; 4]; 4],
     }
 }
 
@@ -67,7 +65,7 @@ impl Shadow {
         if self.drawn.as_ref() != Some(view) {
             recorder
                 .pass("shadow map", &self.pipeline)
-                .push(&Push { shadow_from_world: view.shadow_from_world })
+                .push(&Push { shadow_from_world: view.shadow_from_world.to_cols_array_2d() })
                 .depth(&self.depth, Load::Clear([0.0; 4]))
                 .draws(|draws| geometry.draw_positions(draws));
             self.drawn = Some(*view);

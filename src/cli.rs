@@ -1,0 +1,244 @@
+//! The command line: text to [`Command`]. It touches no file and prints nothing.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
+
+use crate::settings::{Options, one_line};
+
+/// What the user wants done.
+#[derive(Debug, Clone, PartialEq, Subcommand)]
+pub enum Command {
+    /// Render one picture to a file, without a window.
+    Render {
+        /// Scene file (.toml) or model (.obj) [default: the bundled scene].
+        scene: Option<PathBuf>,
+        /// Where to: .png is tone-mapped, .exr is scene-linear cd/m² (lux for irradiance).
+        #[arg(short, long, value_name = "FILE", default_value = "skylight.png", value_parser = picture_path)]
+        output: PathBuf,
+        /// How.
+        #[command(flatten)]
+        options: Box<Options>,
+    },
+    /// Time every pass of the frame.
+    Bench {
+        /// Scene file (.toml) or model (.obj) [default: the bundled scene].
+        scene: Option<PathBuf>,
+        /// Write the table as JSON too.
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+        /// Frames to measure.
+        #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+        frames: u32,
+        /// How.
+        #[command(flatten)]
+        options: Box<Options>,
+    },
+    /// List the Vulkan devices and what each lacks.
+    Info,
+}
+
+/// How the program ends before it starts.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum CliExit {
+    /// Asked-for text for stdout; exit code 0.
+    Help(String),
+    /// One line for stderr; exit code 2.
+    Usage(String),
+}
+
+impl CliExit {
+    /// 0 or 2.
+    pub fn code(&self) -> u8 {
+        match self {
+            Self::Help(_) => 0,
+            Self::Usage(_) => 2,
+        }
+    }
+}
+
+#[derive(Debug, Parser)]
+#[command(name = "skylight", version, max_term_width = 100)]
+#[command(about = "Shows a 3D model in the daylight of a place and a moment, in cd/m² and lux")]
+#[command(
+    after_help = "An option overrides the scene file. Exit code: 0 done, 1 failed, 2 wrong usage."
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+/// Reads the words of the command line; the first is the program's name.
+///
+/// # Errors
+/// Help that was asked for, or one line about what is wrong.
+pub fn parse(words: impl IntoIterator<Item = OsString>) -> Result<Command, CliExit> {
+    let words: Vec<OsString> = words.into_iter().collect();
+    Cli::try_parse_from(&words)
+        .map(|cli| cli.command)
+        .map_err(|error| exit(&error, &words))
+}
+
+fn exit(error: &clap::Error, words: &[OsString]) -> CliExit {
+    match error.kind() {
+        ErrorKind::DisplayHelp
+        | ErrorKind::DisplayVersion
+        | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            let text = error.render().to_string();
+            // Help that nobody asked for is an error of usage, but the whole of it is the best hint.
+            if error.exit_code() == 0 {
+                CliExit::Help(text)
+            } else {
+                CliExit::Usage(missing_command())
+            }
+        }
+        ErrorKind::MissingSubcommand => CliExit::Usage(missing_command()),
+        _ => {
+            let command = words
+                .get(1)
+                .and_then(|word| word.to_str())
+                .filter(|word| is_command(word));
+            let hint = command.map_or("skylight --help".to_owned(), |word| {
+                format!("skylight {word} --help")
+            });
+            CliExit::Usage(format!("{} (see {hint})", one_line(error)))
+        }
+    }
+}
+
+fn is_command(word: &str) -> bool {
+    Command::has_subcommand(word)
+}
+
+fn missing_command() -> String {
+    "no command given; try: skylight render (see skylight --help)".to_owned()
+}
+
+fn picture_path(text: &str) -> Result<PathBuf, String> {
+    let path = Path::new(text);
+    let extension = path
+        .extension()
+        .map(|e| e.to_string_lossy().to_ascii_lowercase());
+    match extension.as_deref() {
+        Some("png" | "exr") => Ok(path.to_owned()),
+        _ => Err("the name must end in .png or .exr".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    fn words(line: &str) -> Vec<OsString> {
+        std::iter::once("skylight")
+            .chain(line.split_whitespace())
+            .map(OsString::from)
+            .collect()
+    }
+
+    fn render(line: &str) -> (Option<PathBuf>, PathBuf, Options) {
+        match parse(words(line)) {
+            Ok(Command::Render {
+                scene,
+                output,
+                options,
+            }) => (scene, output, *options),
+            other => panic!("{line}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn the_definition_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn negative_numbers_are_values() {
+        for line in [
+            "render --eye=-17.5,3,13 --place=-33.8,-70",
+            "render --eye -17.5,3,13 --place -33.8,-70",
+        ] {
+            let (_, _, options) = render(line);
+            assert_eq!(options.eye, Some([-17.5, 3.0, 13.0]));
+            assert_eq!(options.place.map(|p| p.longitude), Some(-70.0));
+        }
+    }
+
+    #[test]
+    fn good_lines() {
+        let (scene, output, options) =
+            render("render a.toml -o b.EXR --size 4x3 --layers --when 2026-06-21T14:00+02:00");
+        assert_eq!(scene, Some("a.toml".into()));
+        assert_eq!(output, Path::new("b.EXR"));
+        assert!(options.layers && options.when.is_some());
+        assert_eq!(render("render").1, Path::new("skylight.png"));
+        assert_eq!(parse(words("info")), Ok(Command::Info));
+        assert!(matches!(
+            parse(words("bench --frames 3 --json t.json")),
+            Ok(Command::Bench { frames: 3, .. })
+        ));
+    }
+
+    #[test]
+    fn bad_lines_are_one_line_each() {
+        for (line, part) in [
+            ("", "no command given"),
+            ("paint", "'paint'"),
+            ("render --size 0x0", "1 to 16384"),
+            ("render --size", "--size"),
+            ("render --turbidity abc", "not a number"),
+            ("render --turbidity nan", "finite"),
+            ("render --turbidity -1", "turbidity must be 1 to 10"),
+            ("render --turbidty 3", "--turbidity"),
+            (
+                "render --when 2026-02-30T12:00Z",
+                "a date that does not exist",
+            ),
+            ("render --sky blue", "preetham"),
+            (
+                "render --sun 1,2 --when 2026-02-01T12:00Z",
+                "cannot be used with",
+            ),
+            ("render --ev100 3 --exposure auto", "cannot be used with"),
+            ("render --eye 1,2", "three numbers"),
+            ("render -o picture.jpg", ".png or .exr"),
+            ("render -o png", ".png or .exr"),
+            ("render --samples 0", "--samples"),
+            ("render a.obj b.obj", "b.obj"),
+            ("render --size 1x1 --size 2x2", "--size"),
+            ("bench --frames 0", "--frames"),
+            ("info --size 3x3", "--size"),
+        ] {
+            match parse(words(line)) {
+                Err(CliExit::Usage(text)) => {
+                    assert!(text.contains(part), "{line}: {text}");
+                    assert_eq!(text.lines().count(), 1, "{line}: {text}");
+                    assert!(text.contains("--help"), "{line}: {text}");
+                }
+                other => panic!("{line}: {other:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn help_is_no_error_and_names_every_group() {
+        let Err(CliExit::Help(text)) = parse(words("render --help")) else {
+            panic!("no help")
+        };
+        for part in [
+            "Picture:",
+            "Sun and sky:",
+            "Camera:",
+            "Tone:",
+            "Light:",
+            "Program:",
+            "[default: 1280x720]",
+        ] {
+            assert!(text.contains(part), "{part} is missing in {text}");
+        }
+        assert!(matches!(parse(words("--version")), Err(CliExit::Help(_))));
+    }
+}

@@ -1,0 +1,193 @@
+//! What a picture is made with: [`Options`] as the user gave them, on the command line or in a scene file, and
+//! [`Settings`] with everything decided.
+
+mod choices;
+mod resolve;
+mod values;
+
+use chrono::{DateTime, FixedOffset};
+use clap::{Args, Command, FromArgMatches};
+
+pub use choices::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCurve};
+pub use resolve::{CameraParts, Exposure, Settings, SunInput};
+pub use values::{AoResolution, Direction, ExposureMode, Place, Preset, Show, Size, SolarTime};
+
+/// A value or a name that makes no sense: one line that names it and the remedy.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct SettingsError(pub String);
+
+/// Every option; none is set unless the user did. The same struct reads the command line and scene files.
+#[derive(Debug, Clone, Default, PartialEq, Args)]
+pub struct Options {
+    /// Size of the picture, pixels [default: 1280x720].
+    #[arg(long, value_name = "WxH", value_parser = values::size, help_heading = "Picture")]
+    pub size: Option<Size>,
+    /// Frames to accumulate: anti-aliasing, soft sun, less noise [default: 1].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536), help_heading = "Picture")]
+    pub samples: Option<u32>,
+    /// What to show: the picture, or one quantity of the equation [default: beauty].
+    #[arg(long, value_enum, value_name = "WHAT", help_heading = "Picture")]
+    pub show: Option<Show>,
+    /// Write every addend, V, A, normal, depth and albedo as named layers (render to .exr only).
+    #[arg(long, help_heading = "Picture")]
+    pub layers: bool,
+    /// Defaults of the lecture: its sun, sky, sampling and scale; other options still rule.
+    #[arg(long, value_enum, value_name = "NAME", help_heading = "Picture")]
+    pub preset: Option<Preset>,
+
+    /// Latitude and longitude, degrees, north and east positive [default: 55.79,12.52].
+    #[arg(long, value_name = "LAT,LON", value_parser = values::place, allow_hyphen_values = true, help_heading = "Sun and sky")]
+    pub place: Option<Place>,
+    /// Moment with its UTC offset [default: 2026-06-21T15:00+02:00].
+    #[arg(long, value_name = "MOMENT", value_parser = values::when, help_heading = "Sun and sky")]
+    pub when: Option<DateTime<FixedOffset>>,
+    /// Where the sun stands, degrees: azimuth clockwise from north, elevation above the horizon.
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = values::sun, allow_hyphen_values = true,
+          conflicts_with_all = ["place", "when", "solar"], help_heading = "Sun and sky")]
+    pub sun: Option<Direction>,
+    /// Day of the year and solar time in hours, with the latitude of --place.
+    #[arg(long, value_name = "J,T", value_parser = values::solar, conflicts_with = "when", help_heading = "Sun and sky")]
+    pub solar: Option<SolarTime>,
+    /// Formulas of the sun's position [default: spa].
+    #[arg(long, value_enum, value_name = "METHOD", help_heading = "Sun and sky")]
+    pub sun_position: Option<SunPositionMethod>,
+    /// Model of the sky [default: preetham].
+    #[arg(long, value_enum, value_name = "MODEL", help_heading = "Sun and sky")]
+    pub sky: Option<SkyModel>,
+    /// Haze: 1 pure air, 3 clear, 10 hazy [default: 3].
+    #[arg(long, value_name = "T", value_parser = values::turbidity, allow_hyphen_values = true, help_heading = "Sun and sky")]
+    pub turbidity: Option<f64>,
+    /// Reflectance of the ground below the horizon, 0 to 1; 0 is black [default: 0.2].
+    #[arg(long, value_name = "ALBEDO", value_parser = values::ground_albedo, allow_hyphen_values = true, help_heading = "Sun and sky")]
+    pub ground_albedo: Option<f64>,
+
+    /// Name of a camera of the scene file.
+    #[arg(long, value_name = "NAME", help_heading = "Camera")]
+    pub camera: Option<String>,
+    /// Where the eye is, metres: east, up, south [default: the whole model in view].
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::point, allow_hyphen_values = true, help_heading = "Camera")]
+    pub eye: Option<[f64; 3]>,
+    /// What the eye looks at, metres [default: the middle of the model].
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::point, allow_hyphen_values = true, help_heading = "Camera")]
+    pub target: Option<[f64; 3]>,
+    /// Vertical field of view, degrees, 1 to 170 [default: 45].
+    #[arg(long, value_name = "DEG", value_parser = values::fov, allow_hyphen_values = true, help_heading = "Camera")]
+    pub fov: Option<f64>,
+
+    /// Exposure value at ISO 100; 15 is bright sun.
+    #[arg(long, value_name = "EV", value_parser = values::ev100, allow_hyphen_values = true, conflicts_with = "exposure", help_heading = "Tone")]
+    pub ev100: Option<f64>,
+    /// Exposure from the picture itself [default: auto].
+    #[arg(long, value_enum, value_name = "MODE", help_heading = "Tone")]
+    pub exposure: Option<ExposureMode>,
+    /// Tone curve of .png pictures and the window [default: reinhard].
+    #[arg(long, value_enum, value_name = "CURVE", help_heading = "Tone")]
+    pub tonemap: Option<ToneCurve>,
+    /// Gamma instead of the sRGB curve, 0.1 to 10.
+    #[arg(long, value_name = "G", value_parser = values::gamma, allow_hyphen_values = true, help_heading = "Tone")]
+    pub gamma: Option<f64>,
+    /// Factor before the tone curve, instead of an exposure.
+    #[arg(long, value_name = "S", value_parser = values::scale, allow_hyphen_values = true, help_heading = "Tone")]
+    pub scale: Option<f64>,
+
+    /// How the light of the sky is integrated [default: quasi].
+    #[arg(long, value_enum, value_name = "METHOD", help_heading = "Light")]
+    pub irradiance: Option<IrradianceMethod>,
+    /// Samples of the irradiance cube, 1 to 65536 [default: 1024].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536), help_heading = "Light")]
+    pub irradiance_samples: Option<u32>,
+    /// Radius of ambient occlusion, metres; 0 turns it off [default: 1].
+    #[arg(long, value_name = "METRES", value_parser = values::ao_radius, allow_hyphen_values = true, help_heading = "Light")]
+    pub ao_radius: Option<f64>,
+    /// Resolution of ambient occlusion [default: full].
+    #[arg(long, value_enum, value_name = "WHICH", help_heading = "Light")]
+    pub ao_resolution: Option<AoResolution>,
+    /// Multiplies every specular reflectance; 0 turns mirrors off [default: 1].
+    #[arg(long, value_name = "SCALE", value_parser = values::specular, allow_hyphen_values = true, help_heading = "Light")]
+    pub specular: Option<f64>,
+    /// Edge of the shadow map, texels, 64 to 16384 [default: 2048].
+    #[arg(long, value_name = "TEXELS", value_parser = clap::value_parser!(u32).range(64..=16_384), help_heading = "Light")]
+    pub shadow_size: Option<u32>,
+    /// Smooth models without normals below this angle between faces, degrees, 0 to 180.
+    #[arg(long, value_name = "DEGREES", value_parser = values::crease, allow_hyphen_values = true, help_heading = "Light")]
+    pub smooth: Option<f64>,
+
+    /// Vulkan device: part of its name, or its number in `skylight info`.
+    #[arg(long, value_name = "NAME|INDEX", help_heading = "Program")]
+    pub device: Option<String>,
+    /// No progress, no warnings.
+    #[arg(long, help_heading = "Program")]
+    pub quiet: bool,
+    /// Check every Vulkan call with the validation layers; slow.
+    #[arg(long, help_heading = "Program")]
+    pub validate: bool,
+}
+
+/// Takes each named field from the first that has it.
+macro_rules! first_of {
+    ($over:ident, $base:ident; $($field:ident)*; $($flag:ident)*) => {
+        Options { $($field: $over.$field.or($base.$field),)* $($flag: $over.$flag || $base.$flag,)* }
+    };
+}
+
+impl Options {
+    /// Options from pairs such as `("turbidity", "3")`: the same parser as for `--turbidity=3`.
+    ///
+    /// # Errors
+    /// An unknown name, a bad value, or options that exclude each other.
+    pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, SettingsError> {
+        let words = pairs
+            .iter()
+            .map(|(name, value)| format!("--{name}={value}"));
+        let command = Self::augment_args(Command::new("scene").no_binary_name(true));
+        let matches = command.try_get_matches_from(words);
+        let options = matches.and_then(|matches| Self::from_arg_matches(&matches));
+        options.map_err(|error| SettingsError(one_line(&error)))
+    }
+
+    /// These options where set, else those of `base`.
+    ///
+    /// The sun is one matter: a direction here replaces place and moment there, and the other way round; so is the
+    /// exposure, and a named camera here replaces the camera there.
+    #[must_use]
+    pub fn over(self, mut base: Self) -> Self {
+        if self.sun.is_some() {
+            (base.place, base.when, base.solar) = (None, None, None);
+        }
+        if self.place.is_some() || self.when.is_some() || self.solar.is_some() {
+            base.sun = None;
+        }
+        if self.when.is_some() {
+            base.solar = None;
+        }
+        if self.solar.is_some() {
+            base.when = None;
+        }
+        if self.camera.is_some() {
+            (base.eye, base.target, base.fov) = (None, None, None);
+        }
+        if self.ev100.is_some() || self.exposure.is_some() {
+            (base.ev100, base.exposure) = (None, None);
+        }
+        first_of!(self, base;
+            size samples show preset place when sun solar sun_position sky turbidity ground_albedo camera eye target fov
+            ev100 exposure tonemap gamma scale irradiance irradiance_samples ao_radius ao_resolution specular shadow_size
+            smooth device;
+            layers quiet validate)
+    }
+}
+
+/// A message of `clap` (several lines with usage and hints) as one line.
+pub(crate) fn one_line(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let lines = text
+        .lines()
+        .map(str::trim)
+        .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
+    let line = lines
+        .filter(|line| !line.is_empty())
+        .collect::<Vec<_>>()
+        .join(" ");
+    line.trim_start_matches("error: ").to_owned()
+}

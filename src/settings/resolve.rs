@@ -1,0 +1,535 @@
+//! From what the user gave to what is used: defaults, presets, cameras by name.
+
+use chrono::{DateTime, FixedOffset};
+use clap::ValueEnum;
+use glam::Vec3;
+
+use super::{
+    AoResolution, Direction, IrradianceMethod, Options, Place, Preset, SettingsError, Show, Size,
+    SkyModel, SolarTime, SunPositionMethod, ToneCurve, values,
+};
+use crate::scene::{Bounds, Camera, Loaded};
+
+/// The default place: the lecture's university, degrees.
+const DEFAULT_PLACE: Place = Place {
+    latitude: 55.79,
+    longitude: 12.52,
+};
+/// The default moment: a summer afternoon there.
+const DEFAULT_WHEN: &str = "2026-06-21T15:00:00+02:00";
+
+/// What `--preset lecture` sets, by the course's own defaults.
+const LECTURE: [(&str, &str); 14] = [
+    ("place", "45,0"),
+    ("solar", "200,10"),
+    ("sun-position", "lecture"),
+    ("sky", "preetham"),
+    ("turbidity", "2.4"),
+    ("ground-albedo", "0"),
+    ("fov", "55"),
+    ("tonemap", "linear"),
+    ("scale", "0.025"),
+    ("gamma", "1"),
+    ("irradiance", "monte-carlo"),
+    ("irradiance-samples", "2000"),
+    ("ao-resolution", "half"),
+    ("shadow-size", "4096"),
+];
+
+/// Where the sun comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SunInput {
+    /// A place and a moment.
+    Place {
+        /// Degrees, north positive, −90..90.
+        latitude: f64,
+        /// Degrees, east positive, −180..180.
+        longitude: f64,
+        /// The moment, with its UTC offset.
+        when: DateTime<FixedOffset>,
+    },
+    /// The lecture's inputs.
+    Solar {
+        /// Day of the year, 1..366.
+        day: u32,
+        /// Solar time, hours, 0..24.
+        hours: f64,
+        /// Degrees, north positive, −90..90.
+        latitude: f64,
+    },
+    /// A direction.
+    Direction {
+        /// Degrees clockwise from north, 0..360.
+        azimuth_deg: f64,
+        /// Degrees above the horizon, −90..90.
+        elevation_deg: f64,
+    },
+}
+
+/// How the picture is exposed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Exposure {
+    /// From the log-average luminance.
+    Auto,
+    /// Exposure value at ISO 100.
+    Ev100(f64),
+}
+
+/// What is known of the camera; [`Settings::camera`] chooses the rest.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CameraParts {
+    /// Where the eye is, metres.
+    pub eye: Option<[f64; 3]>,
+    /// What it looks at, metres.
+    pub target: Option<[f64; 3]>,
+    /// Vertical field of view, degrees, 1..170.
+    pub fov_deg: Option<f64>,
+    /// The camera of the scene file that was asked for by name.
+    pub name: Option<String>,
+}
+
+/// Everything that decides a picture, besides the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Of the picture.
+    pub size: Size,
+    /// Frames to accumulate, at least 1.
+    pub samples: u32,
+    /// Where the sun comes from.
+    pub sun: SunInput,
+    /// Formulas of its position.
+    pub sun_position: SunPositionMethod,
+    /// Model of the sky.
+    pub sky: SkyModel,
+    /// 2..10 with the Preetham sky, else 1..10.
+    pub turbidity: f64,
+    /// 0..1; 0 is black below the horizon.
+    pub ground_albedo: f64,
+    /// What is known of the camera.
+    pub camera: CameraParts,
+    /// How bright.
+    pub exposure: Exposure,
+    /// Of pictures with 8 bits.
+    pub tone_curve: ToneCurve,
+    /// Instead of the sRGB curve.
+    pub gamma: Option<f64>,
+    /// Factor before the tone curve, instead of an exposure.
+    pub scale: Option<f64>,
+    /// What the picture shows.
+    pub show: Show,
+    /// How the light of the sky is integrated.
+    pub irradiance: IrradianceMethod,
+    /// Samples of the irradiance cube.
+    pub irradiance_samples: u32,
+    /// Metres; 0 is off.
+    pub ao_radius: f64,
+    /// Of the occlusion image.
+    pub ao_resolution: AoResolution,
+    /// Multiplies every specular reflectance.
+    pub specular: f64,
+    /// Where the defaults came from.
+    pub preset: Option<Preset>,
+    /// Whether all addends are written (EXR).
+    pub layers: bool,
+    /// Crease angle for models without normals, degrees.
+    pub smooth: Option<f64>,
+    /// Edge of the shadow map, texels.
+    pub shadow_size: u32,
+    /// Part of a device's name, or its number.
+    pub device: Option<String>,
+    /// No progress, no warnings.
+    pub quiet: bool,
+    /// Validation layers on.
+    pub validate: bool,
+}
+
+impl Settings {
+    /// The user's options over the scene file's, over the preset's, over the defaults.
+    ///
+    /// # Errors
+    /// A bad value in the scene file, an unknown camera, an eye that looks at itself.
+    pub fn resolve(user: Options, loaded: &Loaded) -> Result<Self, SettingsError> {
+        let scene_file = |e: SettingsError| SettingsError(format!("scene file: {e}"));
+        let mut file = Options::from_pairs(&loaded.options).map_err(scene_file)?;
+        if let Some(name) = &user.camera {
+            let named = Options::from_pairs(camera_named(loaded, name)?).map_err(scene_file)?;
+            // Not a mixture of two cameras: what the named one leaves open is open.
+            (file.eye, file.target, file.fov) = (named.eye, named.target, named.fov);
+        }
+        let camera = user.camera.clone();
+        let given = Options {
+            camera: None,
+            ..user
+        }
+        .over(file);
+        let base = match given.preset {
+            Some(Preset::Lecture) => {
+                Options::from_pairs(&LECTURE.map(|(k, v)| (k.to_owned(), v.to_owned())))?
+            }
+            None => Options::default(),
+        };
+        Self::with_defaults(Options {
+            camera,
+            ..given.over(base)
+        })
+    }
+
+    fn with_defaults(o: Options) -> Result<Self, SettingsError> {
+        if o.eye.is_some() && o.eye == o.target {
+            return Err(SettingsError(
+                "--eye and --target are the same point; move one".to_owned(),
+            ));
+        }
+        let (sky, turbidity) = (o.sky.unwrap_or_default(), o.turbidity.unwrap_or(3.0));
+        if sky == SkyModel::Preetham && turbidity < 2.0 {
+            let what = "turbidity must be 2 to 10 with the preetham sky; use --sky hosek";
+            return Err(SettingsError(what.to_owned()));
+        }
+        Ok(Self {
+            sun: sun(&o)?,
+            size: o.size.unwrap_or(Size {
+                width: 1280,
+                height: 720,
+            }),
+            samples: o.samples.unwrap_or(1),
+            sun_position: o.sun_position.unwrap_or_default(),
+            sky,
+            turbidity,
+            ground_albedo: o.ground_albedo.unwrap_or(0.2),
+            camera: CameraParts {
+                eye: o.eye,
+                target: o.target,
+                fov_deg: o.fov,
+                name: o.camera,
+            },
+            exposure: o.ev100.map_or(Exposure::Auto, Exposure::Ev100),
+            tone_curve: o.tonemap.unwrap_or_default(),
+            gamma: o.gamma,
+            scale: o.scale,
+            show: o.show.unwrap_or_default(),
+            irradiance: o.irradiance.unwrap_or_default(),
+            irradiance_samples: o.irradiance_samples.unwrap_or(1024),
+            ao_radius: o.ao_radius.unwrap_or(1.0),
+            ao_resolution: o.ao_resolution.unwrap_or_default(),
+            specular: o.specular.unwrap_or(1.0),
+            preset: o.preset,
+            layers: o.layers,
+            smooth: o.smooth,
+            shadow_size: o.shadow_size.unwrap_or(2048),
+            device: o.device,
+            quiet: o.quiet,
+            validate: o.validate,
+        })
+    }
+
+    /// The camera for a model within `bounds`; what was not given is chosen so that the model is in view.
+    pub fn camera(&self, bounds: &Bounds) -> Camera {
+        let point = |p: [f64; 3]| Vec3::from(p.map(|v| v as f32));
+        let parts = &self.camera;
+        let aspect = self.size.width as f32 / self.size.height as f32;
+        let fov = parts.fov_deg.map(|fov| fov as f32);
+        Camera::from_parts(
+            parts.eye.map(point),
+            parts.target.map(point),
+            fov,
+            bounds,
+            aspect,
+        )
+    }
+
+    /// What decided the picture, by option name: for the metadata of files.
+    pub fn parameters(&self) -> Vec<(&'static str, String)> {
+        let mut list = vec![
+            ("size", format!("{}x{}", self.size.width, self.size.height)),
+            ("samples", self.samples.to_string()),
+            ("show", name(self.show)),
+            ("sun-position", name(self.sun_position)),
+            ("sky", name(self.sky)),
+            ("turbidity", self.turbidity.to_string()),
+            ("ground-albedo", self.ground_albedo.to_string()),
+            ("irradiance", name(self.irradiance)),
+            ("irradiance-samples", self.irradiance_samples.to_string()),
+            ("ao-radius", self.ao_radius.to_string()),
+            ("ao-resolution", name(self.ao_resolution)),
+            ("specular", self.specular.to_string()),
+            ("shadow-size", self.shadow_size.to_string()),
+            ("tonemap", name(self.tone_curve)),
+        ];
+        list.extend(sun_parameters(&self.sun));
+        list.push(match self.exposure {
+            Exposure::Auto => ("exposure", "auto".to_owned()),
+            Exposure::Ev100(ev) => ("ev100", ev.to_string()),
+        });
+        list.extend(self.gamma.map(|v| ("gamma", v.to_string())));
+        list.extend(self.scale.map(|v| ("scale", v.to_string())));
+        list
+    }
+}
+
+fn name(value: impl ValueEnum) -> String {
+    value
+        .to_possible_value()
+        .map_or_else(String::new, |v| v.get_name().to_owned())
+}
+
+fn sun_parameters(sun: &SunInput) -> Vec<(&'static str, String)> {
+    match *sun {
+        SunInput::Place {
+            latitude,
+            longitude,
+            when,
+        } => {
+            vec![
+                ("place", format!("{latitude},{longitude}")),
+                ("when", when.to_rfc3339()),
+            ]
+        }
+        SunInput::Solar {
+            day,
+            hours,
+            latitude,
+        } => {
+            vec![
+                ("place", format!("{latitude},0")),
+                ("solar", format!("{day},{hours}")),
+            ]
+        }
+        SunInput::Direction {
+            azimuth_deg,
+            elevation_deg,
+        } => vec![("sun", format!("{azimuth_deg},{elevation_deg}"))],
+    }
+}
+
+fn camera_named<'a>(
+    loaded: &'a Loaded,
+    name: &str,
+) -> Result<&'a [(String, String)], SettingsError> {
+    let known: Vec<&str> = loaded.cameras.iter().map(|c| c.name.as_str()).collect();
+    match loaded.cameras.iter().find(|c| c.name == name) {
+        Some(camera) => Ok(&camera.options),
+        None if known.is_empty() => Err(SettingsError(format!(
+            "no camera \"{name}\": the scene names no cameras; use --eye and --target"
+        ))),
+        None => Err(SettingsError(format!(
+            "no camera \"{name}\"; the scene has {}",
+            known.join(", ")
+        ))),
+    }
+}
+
+fn sun(o: &Options) -> Result<SunInput, SettingsError> {
+    let Place {
+        latitude,
+        longitude,
+    } = o.place.unwrap_or(DEFAULT_PLACE);
+    if let Some(Direction {
+        azimuth_deg,
+        elevation_deg,
+    }) = o.sun
+    {
+        return Ok(SunInput::Direction {
+            azimuth_deg,
+            elevation_deg,
+        });
+    }
+    if let Some(SolarTime { day, hours }) = o.solar {
+        return Ok(SunInput::Solar {
+            day,
+            hours,
+            latitude,
+        });
+    }
+    let when = o
+        .when
+        .map_or_else(|| values::when(DEFAULT_WHEN), Ok)
+        .map_err(SettingsError)?;
+    Ok(SunInput::Place {
+        latitude,
+        longitude,
+        when,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{NamedCamera, Scene};
+
+    fn pairs(list: &[(&str, &str)]) -> Vec<(String, String)> {
+        list.iter()
+            .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
+            .collect()
+    }
+
+    fn resolve(user: &[(&str, &str)], file: &[(&str, &str)]) -> Result<Settings, String> {
+        let porch = NamedCamera {
+            name: "porch".into(),
+            options: pairs(&[("eye", "1,1,1")]),
+        };
+        let loaded = Loaded {
+            scene: Scene::default(),
+            options: pairs(file),
+            cameras: vec![porch],
+        };
+        let user = Options::from_pairs(&pairs(user)).map_err(|e| e.to_string())?;
+        Settings::resolve(user, &loaded).map_err(|e| e.to_string())
+    }
+
+    fn sun(user: &[(&str, &str)], file: &[(&str, &str)]) -> SunInput {
+        resolve(user, file).expect("good options").sun
+    }
+
+    #[test]
+    fn nothing_given_is_a_summer_afternoon() {
+        let when = DateTime::parse_from_rfc3339(DEFAULT_WHEN).expect("a moment");
+        assert_eq!(
+            sun(&[], &[]),
+            SunInput::Place {
+                latitude: 55.79,
+                longitude: 12.52,
+                when
+            }
+        );
+    }
+
+    #[test]
+    fn the_users_sun_replaces_the_files() {
+        let file = [("place", "10,20"), ("when", "2026-01-01T12:00Z")];
+        let direction = SunInput::Direction {
+            azimuth_deg: 90.0,
+            elevation_deg: 5.0,
+        };
+        assert_eq!(sun(&[("sun", "90,5")], &file), direction);
+        let solar = SunInput::Solar {
+            day: 172,
+            hours: 15.0,
+            latitude: 10.0,
+        };
+        assert_eq!(sun(&[("solar", "172,15")], &file), solar);
+        assert_eq!(sun(&[("sun", "90,5")], &[("solar", "172,15")]), direction);
+        let later = sun(
+            &[("when", "2026-02-01T12:00Z")],
+            &[("sun", "90,5"), ("turbidity", "2")],
+        );
+        assert!(matches!(
+            later,
+            SunInput::Place {
+                latitude: 55.79,
+                ..
+            }
+        ));
+        let moved = sun(&[("place", "-33,151")], &file);
+        assert!(
+            matches!(moved, SunInput::Place { latitude: -33.0, longitude: 151.0, when } if when.timestamp() == 1_767_268_800)
+        );
+    }
+
+    #[test]
+    fn cameras_and_exposures_are_groups() {
+        let file = [
+            ("eye", "9,9,9"),
+            ("target", "0,1,0"),
+            ("fov", "20"),
+            ("ev100", "14"),
+        ];
+        let porch = resolve(&[("camera", "porch")], &file).expect("good").camera;
+        let name = Some("porch".to_owned());
+        assert_eq!(
+            porch,
+            CameraParts {
+                eye: Some([1.0; 3]),
+                name,
+                ..CameraParts::default()
+            }
+        );
+        let eye = resolve(&[("eye", "-5,2,2")], &file).expect("good").camera;
+        assert_eq!(
+            (eye.eye, eye.target),
+            (Some([-5.0, 2.0, 2.0]), Some([0.0, 1.0, 0.0]))
+        );
+        let tuned = resolve(&[("camera", "porch"), ("fov", "70")], &file)
+            .expect("good")
+            .camera;
+        assert_eq!((tuned.eye, tuned.fov_deg), (Some([1.0; 3]), Some(70.0)));
+        let auto = resolve(&[("exposure", "auto")], &file).expect("good");
+        assert_eq!(auto.exposure, Exposure::Auto);
+    }
+
+    #[test]
+    fn the_preset_is_below_what_is_given() {
+        let s = resolve(
+            &[("preset", "lecture"), ("sun", "90,5")],
+            &[("turbidity", "5")],
+        )
+        .expect("good");
+        assert_eq!(
+            (s.turbidity, s.scale, s.tone_curve),
+            (5.0, Some(0.025), ToneCurve::Linear)
+        );
+        assert_eq!(
+            s.sun,
+            SunInput::Direction {
+                azimuth_deg: 90.0,
+                elevation_deg: 5.0
+            }
+        );
+        let bare = resolve(&[("preset", "lecture")], &[]).expect("good");
+        assert_eq!(
+            bare.sun,
+            SunInput::Solar {
+                day: 200,
+                hours: 10.0,
+                latitude: 45.0
+            }
+        );
+    }
+
+    #[test]
+    fn bad_values_are_one_line() {
+        for (user, file, part) in [
+            (("camera", "attic"), ("fov", "30"), "the scene has porch"),
+            (
+                ("fov", "30"),
+                ("turbidity", "abc"),
+                "scene file: invalid value 'abc' for '--turbidity",
+            ),
+            (
+                ("sky", "preetham"),
+                ("turbidity", "1.5"),
+                "turbidity must be 2 to 10",
+            ),
+            (("eye", "0,1,0"), ("target", "0,1,0"), "the same point"),
+            (
+                ("sky", "blue"),
+                ("fov", "30"),
+                "possible values: preetham, hosek",
+            ),
+        ] {
+            let error = resolve(&[user], &[file]).expect_err(part);
+            assert!(error.contains(part), "{error}");
+            assert_eq!(error.lines().count(), 1, "{error}");
+        }
+        let both =
+            resolve(&[("sun", "1,2"), ("when", "2026-01-01T12:00Z")], &[]).expect_err("conflict");
+        assert!(both.contains("cannot be used with"), "{both}");
+    }
+
+    #[test]
+    fn parameters_can_be_given_back() {
+        let first = resolve(&[("sun", "90,5"), ("gamma", "2.2")], &[]).expect("good");
+        let list: Vec<_> = first
+            .parameters()
+            .into_iter()
+            .map(|(k, v)| (k.to_owned(), v))
+            .collect();
+        let loaded = Loaded {
+            scene: Scene::default(),
+            options: Vec::new(),
+            cameras: Vec::new(),
+        };
+        let again =
+            Settings::resolve(Options::from_pairs(&list).expect("options"), &loaded).expect("good");
+        assert_eq!(first, again);
+    }
+}

@@ -1,0 +1,341 @@
+//! Values of options: their types, and text to value with a clear message.
+
+use std::ops::RangeInclusive;
+
+use chrono::{DateTime, FixedOffset, NaiveDate};
+use clap::ValueEnum;
+
+/// Width and height of a picture, pixels, 1..16 384 each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Size {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// A place on the earth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// Degrees, north positive, −90..90.
+    pub latitude: f64,
+    /// Degrees, east positive, −180..180.
+    pub longitude: f64,
+}
+
+/// The lecture's inputs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SolarTime {
+    /// Day of the year, 1..366.
+    pub day: u32,
+    /// Solar time, hours, 0..24; 12 is when the sun is highest.
+    pub hours: f64,
+}
+
+/// Where the sun stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Direction {
+    /// Degrees clockwise from north, 0..360.
+    pub azimuth_deg: f64,
+    /// Degrees above the horizon, −90..90.
+    pub elevation_deg: f64,
+}
+
+/// What the picture shows.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Show {
+    /// Everything, as a camera would.
+    #[default]
+    Beauty,
+    /// Diffuse reflection of the sun.
+    Sun,
+    /// Diffuse reflection of the sky.
+    Sky,
+    /// Mirror reflection of the sun.
+    SunSpecular,
+    /// Mirror reflection of the sky.
+    SkySpecular,
+    /// V: 1 where the sun shines.
+    Visibility,
+    /// A: the share of the sky that corners leave open.
+    Occlusion,
+    /// E of sun and sky on the surface, lux.
+    Irradiance,
+    /// Diffuse reflectance.
+    Albedo,
+    /// World normals.
+    Normal,
+    /// Distance along the line of sight, metres.
+    Depth,
+    /// Luminance in false colours.
+    Luminance,
+}
+
+/// `--exposure`: the opposite of `--ev100`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ExposureMode {
+    /// From the picture's log-average luminance.
+    Auto,
+}
+
+/// A set of defaults.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Preset {
+    /// As in the lecture: its sun, its sky, Monte Carlo, and its linear scale.
+    Lecture,
+}
+
+/// How finely ambient occlusion is computed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum AoResolution {
+    /// Every pixel.
+    #[default]
+    Full,
+    /// Every second pixel of every second row.
+    Half,
+}
+
+/// A finite number.
+pub(super) fn number(text: &str) -> Result<f64, String> {
+    let value: f64 = text
+        .trim()
+        .parse()
+        .map_err(|_| format!("\"{}\" is not a number", text.trim()))?;
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(format!("\"{}\" is not a finite number", text.trim()))
+    }
+}
+
+fn within(name: &str, unit: &str, range: RangeInclusive<f64>, value: f64) -> Result<f64, String> {
+    if range.contains(&value) {
+        return Ok(value);
+    }
+    let unit = if unit.is_empty() {
+        String::new()
+    } else {
+        format!(" {unit}")
+    };
+    Err(format!(
+        "{name} must be {} to {}{unit}",
+        range.start(),
+        range.end()
+    ))
+}
+
+/// Defines a parser of a number within a range.
+macro_rules! ranged {
+    ($($function:ident: $name:literal, $unit:literal, $range:expr;)*) => {
+        $(pub(super) fn $function(text: &str) -> Result<f64, String> {
+            within($name, $unit, $range, number(text)?)
+        })*
+    };
+}
+
+ranged! {
+    turbidity: "turbidity", "", 1.0..=10.0;
+    ground_albedo: "ground albedo", "", 0.0..=1.0;
+    fov: "field of view", "degrees", 1.0..=170.0;
+    ev100: "exposure value", "", -20.0..=40.0;
+    gamma: "gamma", "", 0.1..=10.0;
+    scale: "scale", "", 0.0..=1e6;
+    ao_radius: "radius", "metres", 0.0..=1000.0;
+    specular: "specular scale", "", 0.0..=100.0;
+    crease: "crease angle", "degrees", 0.0..=180.0;
+}
+
+fn list<const N: usize>(text: &str, form: &str) -> Result<[f64; N], String> {
+    let values: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
+    values.try_into().map_err(|_| format!("write {form}"))
+}
+
+/// `X,Y,Z`, metres.
+pub(super) fn point(text: &str) -> Result<[f64; 3], String> {
+    let point = list(text, "three numbers, for instance -17.5,3,13")?;
+    for value in point {
+        within("a coordinate", "metres", -1e9..=1e9, value)?;
+    }
+    Ok(point)
+}
+
+/// `LAT,LON`, degrees.
+pub(super) fn place(text: &str) -> Result<Place, String> {
+    let [latitude, longitude] = list(text, "LAT,LON in degrees, for instance 55.79,12.52")?;
+    within("latitude", "degrees", -90.0..=90.0, latitude)?;
+    within("longitude", "degrees", -180.0..=180.0, longitude)?;
+    Ok(Place {
+        latitude,
+        longitude,
+    })
+}
+
+/// `AZIMUTH,ELEVATION`, degrees.
+pub(super) fn sun(text: &str) -> Result<Direction, String> {
+    let [azimuth, elevation] = list(text, "AZIMUTH,ELEVATION in degrees, for instance 135,40")?;
+    within("azimuth", "degrees", -360.0..=360.0, azimuth)?;
+    within("elevation", "degrees", -90.0..=90.0, elevation)?;
+    Ok(Direction {
+        azimuth_deg: azimuth.rem_euclid(360.0),
+        elevation_deg: elevation,
+    })
+}
+
+/// `J,T`: day of the year and solar time in hours.
+pub(super) fn solar(text: &str) -> Result<SolarTime, String> {
+    let [day, hours] = list(
+        text,
+        "J,T: day of the year and solar time in hours, for instance 172,15",
+    )?;
+    if day.fract() != 0.0 || !(1.0..=366.0).contains(&day) {
+        return Err("the day of the year must be a whole number from 1 to 366".to_owned());
+    }
+    within("solar time", "hours", 0.0..=24.0, hours)?;
+    Ok(SolarTime {
+        day: day as u32,
+        hours,
+    })
+}
+
+/// `1280x720`.
+pub(super) fn size(text: &str) -> Result<Size, String> {
+    let form = || "write WIDTHxHEIGHT in pixels, for instance 1280x720".to_owned();
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(form)?;
+    let edge = |text: &str| match text.trim().parse::<u32>() {
+        Ok(edge @ 1..=16_384) => Ok(edge),
+        Ok(_) => Err("width and height must be 1 to 16384 pixels".to_owned()),
+        Err(_) => Err(form()),
+    };
+    Ok(Size {
+        width: edge(width)?,
+        height: edge(height)?,
+    })
+}
+
+/// RFC 3339 with its offset; seconds may be missing.
+pub(super) fn when(text: &str) -> Result<DateTime<FixedOffset>, String> {
+    let text = text.trim();
+    let zulu = text
+        .strip_suffix(['Z', 'z'])
+        .map(|head| format!("{head}+00:00"));
+    let text = zulu.as_deref().unwrap_or(text);
+    let short = || DateTime::parse_from_str(text, "%Y-%m-%dT%H:%M%:z");
+    let parsed = DateTime::parse_from_rfc3339(text).or_else(|_| short());
+    parsed.map_err(|_| what_is_wrong(text))
+}
+
+fn what_is_wrong(text: &str) -> String {
+    let form = "write a date, a time and its UTC offset, for instance 2026-06-21T15:00+02:00";
+    let (date, time) = text.split_once(['T', 't', ' ']).unwrap_or((text, ""));
+    let parts: Option<Vec<u32>> = date.split('-').map(|part| part.parse().ok()).collect();
+    let Some(&[year, month, day]) = parts.as_deref() else {
+        return form.to_owned();
+    };
+    if NaiveDate::from_ymd_opt(year as i32, month, day).is_none() {
+        return format!("{date} is a date that does not exist");
+    }
+    if time.is_empty() {
+        return format!("the time is missing; {form}");
+    }
+    let (clock, offset) = match time.rfind(['+', '-']) {
+        Some(at) => time.split_at(at),
+        None => (time, ""),
+    };
+    if offset.is_empty() {
+        return format!("the UTC offset is missing; {form}");
+    }
+    let clock: Option<Vec<f64>> = clock.split(':').map(|part| part.parse().ok()).collect();
+    match clock.as_deref() {
+        Some([hour, rest @ ..]) if *hour >= 24.0 || rest.iter().any(|part| *part >= 60.0) => {
+            format!("{time} is a time that does not exist")
+        }
+        _ => form.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moments_need_an_offset_and_may_lack_seconds() {
+        let expected = DateTime::parse_from_rfc3339("2026-06-21T12:00:00Z").expect("a moment");
+        for text in [
+            "2026-06-21T14:00+02:00",
+            "2026-06-21T14:00:00+02:00",
+            "2026-06-21T12:00Z",
+            "2026-06-21 14:00:00+02:00",
+        ] {
+            assert_eq!(when(text), Ok(expected), "{text}");
+        }
+        for (text, part) in [
+            (
+                "2026-02-30T12:00+01:00",
+                "2026-02-30 is a date that does not exist",
+            ),
+            ("2025-02-29T12:00:00Z", "does not exist"),
+            ("2026-13-01T12:00Z", "does not exist"),
+            ("2026-06-21T25:00+02:00", "a time that does not exist"),
+            ("2026-06-21T14:00", "offset is missing"),
+            ("2026-06-21", "time is missing"),
+            ("tomorrow", "write a date"),
+            ("", "write a date"),
+            ("99999999999-01-01T00:00Z", "write a date"),
+            ("2026-06-21T14:00+99:00", "write a date"),
+        ] {
+            let error = when(text).expect_err(text);
+            assert!(error.contains(part), "{text}: {error}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_finite_and_in_range() {
+        assert_eq!(
+            size("1280x720"),
+            Ok(Size {
+                width: 1280,
+                height: 720
+            })
+        );
+        assert_eq!(point("-17.5, 3,13"), Ok([-17.5, 3.0, 13.0]));
+        assert_eq!(
+            sun("-90,10"),
+            Ok(Direction {
+                azimuth_deg: 270.0,
+                elevation_deg: 10.0
+            })
+        );
+        for text in [
+            "0x0",
+            "0x720",
+            "16385x1",
+            "12",
+            "axb",
+            "-1x5",
+            "1x",
+            "99999999999x1",
+        ] {
+            assert!(size(text).is_err(), "{text}");
+        }
+        for text in [
+            "1,2",
+            "1,2,3,4",
+            "1,2,nan",
+            "1,2,inf",
+            "1,2,1e400",
+            "",
+            "a,b,c",
+        ] {
+            assert!(point(text).is_err(), "{text}");
+        }
+        for text in ["91,0", "0,181", "NaN,0", "1", "-90.1,0"] {
+            assert!(place(text).is_err(), "{text}");
+        }
+        for text in ["0,12", "367,12", "1.5,12", "172,25", "172"] {
+            assert!(solar(text).is_err(), "{text}");
+        }
+        for text in ["abc", "inf", "0.5", "11", "-3"] {
+            assert!(turbidity(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,17 +1,19 @@
 //! The frame: owns the passes; [`Frame::record`] is the whole pipeline in reading order.
 
+use std::sync::Arc;
+
 use glam::{DVec2, UVec2, Vec2, Vec3};
 
 use crate::daylight::sampling;
 use crate::daylight::sky::Daylight;
 use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
-use crate::gpu::{Image, Recorder, Result};
+use crate::gpu::{Context, Image, Recorder, Result};
 use crate::passes::accumulate::Accumulate;
 use crate::passes::exposure::Exposure;
 use crate::passes::gbuffer::Gbuffer;
 use crate::passes::geometry::Geometry;
 use crate::passes::irradiance::{Irradiance, IrradianceSettings};
-use crate::passes::lighting::{Light, Lighting, LightingSettings};
+use crate::passes::lighting::{Light, Lighting, LightingSettings, Show};
 use crate::passes::shadow::Shadow;
 use crate::passes::shadow_fit;
 use crate::passes::sky_cube::SkyCube;
@@ -51,6 +53,7 @@ struct Sample {
 
 /// The passes, wired.
 pub struct Frame {
+    context: Arc<Context>,
     settings: FrameSettings,
     geometry: Geometry,
     sky_cube: SkyCube,
@@ -62,15 +65,6 @@ pub struct Frame {
     accumulate: Option<Accumulate>,
     exposure: Exposure,
     tone_map: ToneMap,
-}
-
-/// What a frame leaves behind.
-#[derive(Clone, Copy)]
-pub struct Output<'f> {
-    /// Radiance in kcd/m² (or the quantity shown).
-    pub radiance: &'f Image,
-    /// Display values.
-    pub display: &'f Image,
 }
 
 impl Frame {
@@ -94,6 +88,7 @@ impl Frame {
             exposure: Exposure::new(&context)?,
             tone_map: ToneMap::new(&context, size, settings.tone)?,
             settings,
+            context,
         })
     }
 
@@ -106,7 +101,7 @@ impl Frame {
         daylight: &Daylight,
         camera: &Camera,
         index: u32,
-    ) -> Output<'_> {
+    ) {
         let sample = self.sample(daylight, index);
         let view = View { camera: *camera, size: self.settings.size, jitter: sample.jitter };
 
@@ -136,8 +131,34 @@ impl Frame {
         };
 
         let average = self.exposure.record(rec, radiance);
-        let display = self.tone_map.record(rec, radiance, average);
-        Output { radiance, display }
+        self.tone_map.record(rec, radiance, average);
+    }
+
+    /// Shows something else from the next frame on.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn show(&mut self, show: Show) -> Result<()> {
+        let context = self.context.clone();
+        let size = self.settings.size.to_array();
+        self.settings.lighting.show = show;
+        self.settings.tone.show = show;
+        self.lighting = Lighting::new(&context, size, self.settings.lighting)?;
+        self.tone_map = ToneMap::new(&context, size, self.settings.tone)?;
+        Ok(())
+    }
+
+    /// The picture in kcd/m² (or the quantity shown), averaged over the samples.
+    pub fn radiance(&self) -> &Image {
+        match &self.accumulate {
+            Some(accumulate) => accumulate.image(),
+            None => self.lighting.image(),
+        }
+    }
+
+    /// The picture in display values.
+    pub fn display(&self) -> &Image {
+        self.tone_map.image()
     }
 
     /// Refines the sky's irradiance without drawing a picture; `recorder` must be recording.

@@ -19,6 +19,8 @@ macro_rules! gpu_struct {
         $(#[$meta])*
         #[repr(C)]
         #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+        // The members are documented where they are declared first: in the shader's block of the same names.
+        #[allow(missing_docs)]
         $vis struct $name { $($(#[$field_meta])* $vis $field: $ty),* }
 
         impl $crate::gpu::GpuStruct for $name {

@@ -57,6 +57,11 @@ impl Accumulate {
             .draw();
         new
     }
+
+    /// The newest mean.
+    pub fn image(&self) -> &Image {
+        &self.means[0]
+    }
 }
 
 #[cfg(test)]

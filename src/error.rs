@@ -1,0 +1,46 @@
+//! What ends the program: one line that names the thing and the remedy.
+
+use std::path::PathBuf;
+
+use crate::daylight::sun_position::SunPositionError;
+use crate::gpu::GpuError;
+use crate::scene::SceneError;
+use crate::settings::SettingsError;
+
+/// Result of the faces.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Any failure.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// An option or a name that makes no sense.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// A scene that cannot be shown.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The device.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// A moment for which the sun cannot be placed.
+    #[error(transparent)]
+    Sun(#[from] SunPositionError),
+    /// A file that cannot be written.
+    #[error("cannot write {}: {reason}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why, and what to do.
+        reason: String,
+    },
+}
+
+impl Error {
+    /// 2 for wrong usage, 1 for everything else.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Settings(_) => 2,
+            _ => 1,
+        }
+    }
+}

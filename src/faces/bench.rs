@@ -1,0 +1,170 @@
+//! `skylight bench`: milliseconds of each pass and of the whole frame.
+//!
+//! Each pass is submitted alone and waited for, because timestamps of software drivers are attributed to the wrong
+//! pass. The whole frame is one submission.
+
+use std::path::Path;
+use std::time::Instant;
+
+use serde_json::{Value, json};
+
+use super::job::Job;
+use crate::error::Result;
+use crate::frame::Frame;
+use crate::gpu::{Recorder, Timing};
+use crate::output::write_text;
+use crate::passes::lighting::Precision;
+use crate::settings::Options;
+
+/// Frames that are drawn and forgotten: shaders are compiled at their first use.
+const WARM_UP: u32 = 3;
+
+/// Measures `frames` frames and prints a table.
+///
+/// # Errors
+/// Whatever keeps frames from being drawn.
+pub fn run(
+    scene: Option<&Path>,
+    json: Option<&Path>,
+    frames: u32,
+    mut options: Options,
+) -> Result<()> {
+    options.samples = Some(1);
+    let job = Job::new(scene, options)?;
+    let context = job.context()?;
+    let passes = measure_passes(&job, Recorder::new(&context, Timing::Isolated)?, frames)?;
+    let whole = measure_frames(&job, Recorder::new(&context, Timing::Off)?, frames)?;
+    context.check_validation()?;
+    let device = context.summary();
+    let size = job.settings.size;
+    println!(
+        "{} ({}), {}x{}, {} triangles, {frames} frames",
+        device.name,
+        device.driver.trim(),
+        size.width,
+        size.height,
+        job.scene.triangles()
+    );
+    println!("{:20} {:>9} {:>9} {:>9}  ms", "pass", "median", "p5", "p95");
+    for (name, times) in &passes {
+        println!("{}", row(name, times));
+    }
+    println!("{}", row("whole frame, light unchanged", &whole));
+    if let Some(path) = json {
+        write_json(path, &job, &passes, &whole)?;
+    }
+    Ok(())
+}
+
+/// Times of one name.
+type Samples = Vec<f64>;
+
+/// Every pass with everything drawn anew each frame.
+fn measure_passes(
+    job: &Job,
+    mut recorder: Recorder,
+    frames: u32,
+) -> Result<Vec<(&'static str, Samples)>> {
+    let mut frame = start(job, &mut recorder)?;
+    let mut passes: Vec<(&'static str, Samples)> = Vec::new();
+    for i in 0..WARM_UP + frames {
+        frame.invalidate();
+        recorder.begin()?;
+        frame.record(&mut recorder, &job.daylight, &job.camera, 0);
+        recorder.finish()?;
+        if i < WARM_UP {
+            continue;
+        }
+        for (name, time) in recorder.timings().passes() {
+            match passes.iter_mut().find(|p| p.0 == *name) {
+                Some((_, times)) => times.push(*time),
+                None => passes.push((name, vec![*time])),
+            }
+        }
+    }
+    Ok(passes)
+}
+
+/// The whole frame with sky, irradiance and shadow map done.
+fn measure_frames(job: &Job, mut recorder: Recorder, frames: u32) -> Result<Samples> {
+    let mut frame = start(job, &mut recorder)?;
+    while !frame.is_refined() {
+        recorder.begin()?;
+        frame.record_light(&mut recorder, &job.daylight);
+        recorder.finish()?;
+    }
+    let mut times = Vec::new();
+    for i in 0..WARM_UP + frames {
+        let start = Instant::now();
+        recorder.begin()?;
+        frame.record(&mut recorder, &job.daylight, &job.camera, 0);
+        recorder.finish()?;
+        if i >= WARM_UP {
+            times.push(start.elapsed().as_secs_f64() * 1e3);
+        }
+    }
+    Ok(times)
+}
+
+fn start(job: &Job, recorder: &mut Recorder) -> Result<Frame> {
+    let settings = job.frame_settings(job.settings.show, Precision::Half)?;
+    recorder.begin()?;
+    let frame = Frame::new(recorder, &job.scene, settings)?;
+    recorder.finish()?;
+    Ok(frame)
+}
+
+/// The value below which the share `q` of the samples lies (nearest rank).
+fn quantile(samples: &[f64], q: f64) -> f64 {
+    let mut sorted = samples.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let rank = (q * sorted.len() as f64).ceil() as usize;
+    sorted.get(rank.saturating_sub(1)).copied().unwrap_or(f64::NAN)
+}
+
+fn row(name: &str, times: &[f64]) -> String {
+    let [median, low, high] = [0.5, 0.05, 0.95].map(|q| quantile(times, q));
+    format!("{name:20} {median:9.2} {low:9.2} {high:9.2}")
+}
+
+fn write_json(
+    path: &Path,
+    job: &Job,
+    passes: &[(&'static str, Samples)],
+    whole: &[f64],
+) -> Result<()> {
+    let times = |t: &[f64]| {
+        json!({ "median_ms": quantile(t, 0.5), "p5_ms": quantile(t, 0.05), "p95_ms": quantile(t, 0.95) })
+    };
+    let passes: Vec<Value> = passes
+        .iter()
+        .map(|(name, t)| {
+            let mut value = times(t);
+            value["name"] = json!(name);
+            value
+        })
+        .collect();
+    let size = job.settings.size;
+    let report = json!({
+        "scene": job.name,
+        "size": [size.width, size.height],
+        "triangles": job.scene.triangles(),
+        "passes": passes,
+        "frame": times(whole),
+    });
+    write_text(path, &format!("{report:#}\n"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_samples() {
+        let samples = [5.0, 1.0, 4.0, 2.0, 3.0];
+        assert_eq!(quantile(&samples, 0.5), 3.0);
+        assert_eq!(quantile(&samples, 0.05), 1.0);
+        assert_eq!(quantile(&samples, 0.95), 5.0);
+        assert!(quantile(&[], 0.5).is_nan());
+    }
+}

@@ -1,0 +1,43 @@
+//! `skylight info`: the devices, and what each lacks.
+
+use crate::error::Result;
+use crate::gpu::{DeviceSummary, GpuError, devices};
+
+/// Prints one block a device.
+///
+/// # Errors
+/// When there is no Vulkan, or no device.
+pub fn run() -> Result<()> {
+    let devices = devices()?;
+    if devices.is_empty() {
+        return Err(GpuError::NoDevice.into());
+    }
+    for device in &devices {
+        println!("{}", describe(device));
+    }
+    Ok(())
+}
+
+fn describe(device: &DeviceSummary) -> String {
+    let lacks = if device.missing.is_empty() {
+        "nothing that skylight needs".to_owned()
+    } else {
+        device.missing.join(", ")
+    };
+    let optional: Vec<String> = device
+        .optional
+        .iter()
+        .map(|(name, present)| format!("{name}: {}", if *present { "yes" } else { "no" }))
+        .collect();
+    format!(
+        "{} \"{}\"\n    kind     {}\n    Vulkan   {}\n    driver   {}\n    lacks    {lacks}\n    \
+         optional {}\n    largest  {} pixels",
+        device.index,
+        device.name,
+        device.kind,
+        device.api,
+        device.driver,
+        optional.join(", "),
+        device.max_image_edge
+    )
+}

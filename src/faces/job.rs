@@ -1,0 +1,196 @@
+//! What render, view and bench have in common: from options to a scene, a daylight and the settings of a frame.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::UVec2;
+
+use crate::daylight::exposure::{KEY, factor_from_ev100};
+use crate::daylight::irradiance::IrradianceMethod;
+use crate::daylight::sky::{Conditions, Daylight};
+use crate::daylight::spectrum::LUMINOUS_EFFICACY;
+use crate::daylight::sun_position::{SunPosition, lecture};
+use crate::error::Result;
+use crate::frame::FrameSettings;
+use crate::gpu::{Context, ContextOptions};
+use crate::passes::irradiance::{IrradianceSettings, Sampling};
+use crate::passes::lighting::{LightingSettings, Precision, Show};
+use crate::passes::ssao::SsaoSettings;
+use crate::passes::tone_map::{Scale, ToneSettings};
+use crate::scene::{self, Camera, LoadOptions, Scene};
+use crate::settings::{
+    AoResolution, Exposure, Options, Preset, Settings, SettingsError, SunInput,
+};
+
+/// Luminance that Reinhard's curve maps to white, in units in which the average is at the key.
+const REINHARD_WHITE: f64 = 4.0;
+
+/// A scene under a daylight, and how it is to be drawn.
+pub struct Job {
+    /// Everything decided.
+    pub settings: Settings,
+    /// What is drawn.
+    pub scene: Scene,
+    /// From where.
+    pub camera: Camera,
+    /// Where the sun stands.
+    pub sun: SunPosition,
+    /// Under which light.
+    pub daylight: Daylight,
+    /// Name of the scene, for metadata.
+    pub name: String,
+}
+
+impl Job {
+    /// Loads the scene and decides everything. Warnings go to stderr unless the user wants quiet.
+    ///
+    /// # Errors
+    /// A scene that cannot be read, or options that make no sense.
+    pub fn new(path: Option<&Path>, options: Options) -> Result<Self> {
+        let load = LoadOptions {
+            smooth_deg: options.smooth.map(|s| s as f32),
+            ..LoadOptions::default()
+        };
+        let loaded = match path {
+            Some(path) => scene::load(path, &load)?,
+            None => scene::bundled(&load)?,
+        };
+        let settings = Settings::resolve(options, &loaded)?;
+        let sun = sun_position(&settings)?;
+        let daylight = Daylight::new(&conditions(&settings, &sun));
+        let scene = loaded.scene;
+        if !settings.quiet {
+            for warning in scene.warnings.iter().chain(&daylight.warnings) {
+                eprintln!("warning: {warning}");
+            }
+        }
+        let camera = settings.camera(&scene.bounds);
+        let name = path.map_or("bundled".to_owned(), |p| p.display().to_string());
+        Ok(Self { settings, scene, camera, sun, daylight, name })
+    }
+
+    /// Opens the device that the user wants.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub fn context(&self) -> Result<Arc<Context>> {
+        Ok(Context::new(&ContextOptions {
+            device: self.settings.device.clone(),
+            validate: self.settings.validate,
+            ..ContextOptions::default()
+        })?)
+    }
+
+    /// The settings of the frame.
+    ///
+    /// # Errors
+    /// An irradiance method that the device has no pass for.
+    pub fn frame_settings(&self, show: Show, precision: Precision) -> Result<FrameSettings> {
+        let s = &self.settings;
+        let lecture = s.preset == Some(Preset::Lecture);
+        let downscale = match s.ao_resolution {
+            AoResolution::Full => 1,
+            AoResolution::Half => 2,
+        };
+        Ok(FrameSettings {
+            size: UVec2::new(s.size.width, s.size.height),
+            samples: s.samples,
+            sky_edge: if lecture { 512 } else { 256 },
+            irradiance: self.irradiance_settings()?,
+            shadow_resolution: s.shadow_size,
+            ssao: SsaoSettings {
+                radius: s.ao_radius as f32,
+                downscale,
+                ..SsaoSettings::default()
+            },
+            lighting: LightingSettings {
+                show,
+                precision,
+                specular_scale: s.specular as f32,
+                limb_darkening: 0.0,
+                occlusion_downscale: downscale,
+            },
+            tone: ToneSettings {
+                show,
+                curve: s.tone_curve,
+                scale: self.scale(),
+                white: REINHARD_WHITE,
+                gamma: s.gamma,
+                depth_scale: f64::from(self.scene.bounds.diagonal()).max(1e-3),
+            },
+        })
+    }
+
+    fn irradiance_settings(&self) -> Result<IrradianceSettings> {
+        let s = &self.settings;
+        let sampling = match s.irradiance {
+            IrradianceMethod::MonteCarlo => Sampling::MonteCarlo,
+            IrradianceMethod::Quasi => Sampling::Quasi,
+            IrradianceMethod::Exact | IrradianceMethod::Sh => {
+                let what = "this irradiance method has no pass on the device yet; use quasi or monte-carlo";
+                return Err(SettingsError(what.to_owned()).into());
+            }
+        };
+        let default = IrradianceSettings::default();
+        // The course framework refines by five samples a frame.
+        let lecture = s.preset == Some(Preset::Lecture);
+        let samples_per_pass = if lecture { 5 } else { default.samples_per_pass };
+        let samples = s.irradiance_samples;
+        Ok(IrradianceSettings { sampling, samples, samples_per_pass, ..default })
+    }
+
+    fn scale(&self) -> Scale {
+        match (self.settings.scale, self.settings.exposure) {
+            // The lecture's scale applies to its own unit, luminance / 683.
+            (Some(scale), _) => Scale::Fixed(scale / LUMINOUS_EFFICACY),
+            (None, Exposure::Ev100(ev100)) => Scale::Fixed(factor_from_ev100(ev100)),
+            (None, Exposure::Auto) => Scale::Average(KEY),
+        }
+    }
+
+    /// What makes the picture again, and the numbers of its light.
+    pub fn metadata(&self) -> Vec<(String, String)> {
+        let rgb = |v: glam::DVec3| format!("{},{},{}", v.x, v.y, v.z);
+        let point = |v: glam::Vec3| format!("{},{},{}", v.x, v.y, v.z);
+        let mut list: Vec<(String, String)> = vec![
+            ("Software".into(), concat!("skylight ", env!("CARGO_PKG_VERSION")).into()),
+            ("scene".into(), self.name.clone()),
+            ("eye".into(), point(self.camera.eye)),
+            ("target".into(), point(self.camera.target)),
+            ("fov".into(), self.camera.fov_deg.to_string()),
+            ("sun azimuth".into(), format!("{} deg", self.sun.azimuth_deg)),
+            ("sun elevation".into(), format!("{} deg", self.sun.apparent_elevation_deg)),
+            ("sun illuminance".into(), format!("{} lux (RGB)", rgb(self.daylight.sun_illuminance))),
+            ("sky illuminance".into(), format!("{} lux (RGB)", rgb(self.daylight.sky_irradiance_up))),
+        ];
+        let parameters = self.settings.parameters();
+        list.extend(parameters.into_iter().map(|(key, value)| (key.to_owned(), value)));
+        list
+    }
+}
+
+fn sun_position(settings: &Settings) -> Result<SunPosition> {
+    Ok(match settings.sun {
+        SunInput::Place { latitude, longitude, when } => {
+            settings.sun_position.position(when, latitude, longitude)?
+        }
+        SunInput::Solar { day, hours, latitude } => lecture(day, hours, latitude),
+        // What the user names is what is seen: no refraction on top.
+        SunInput::Direction { azimuth_deg, elevation_deg } => SunPosition {
+            azimuth_deg,
+            elevation_deg,
+            apparent_elevation_deg: elevation_deg,
+        },
+    })
+}
+
+fn conditions(settings: &Settings, sun: &SunPosition) -> Conditions {
+    Conditions {
+        model: settings.sky,
+        turbidity: settings.turbidity,
+        ground_albedo: settings.ground_albedo,
+        sun_azimuth_deg: sun.azimuth_deg,
+        sun_elevation_deg: sun.apparent_elevation_deg,
+        horizontal_illuminance: None,
+    }
+}

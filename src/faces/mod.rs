@@ -1,0 +1,25 @@
+//! The faces of the program: drivers of the same [`Frame`](crate::frame::Frame).
+
+mod bench;
+mod info;
+mod job;
+mod render;
+
+use crate::cli::Command;
+use crate::error::Result;
+
+/// Does what the user asked for.
+///
+/// # Errors
+/// Whatever keeps it from being done, in one line.
+pub fn run(command: Command) -> Result<()> {
+    match command {
+        Command::Render { scene, output, options } => {
+            render::run(scene.as_deref(), &output, *options)
+        }
+        Command::Bench { scene, json, frames, options } => {
+            bench::run(scene.as_deref(), json.as_deref(), frames, *options)
+        }
+        Command::Info => info::run(),
+    }
+}

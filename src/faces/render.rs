@@ -1,0 +1,154 @@
+//! `skylight render`: one picture to a file, without a window.
+
+use std::path::Path;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::job::Job;
+use crate::daylight::exposure::automatic;
+use crate::error::Result;
+use crate::frame::Frame;
+use crate::gpu::{Recorder, Timing, read_back};
+use crate::output::{Channels, Encoding, Layer, check_writable, write_exr, write_png};
+use crate::passes::lighting::{Precision, Show};
+use crate::settings::{Exposure, Options, SettingsError};
+
+/// Renders `scene` to `output`.
+///
+/// # Errors
+/// Whatever keeps the file from being written; an older file is left alone then.
+pub fn run(scene: Option<&Path>, output: &Path, options: Options) -> Result<()> {
+    let exr = output.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"));
+    if options.layers && !exr {
+        let what = "--layers needs an .exr file; choose one with -o";
+        return Err(SettingsError(what.to_owned()).into());
+    }
+    check_writable(output)?;
+    let job = Job::new(scene, options)?;
+    let context = job.context()?;
+    let mut renderer = Renderer::new(&job, Recorder::new(&context, Timing::Off)?, exr)?;
+    let summary =
+        if exr { renderer.to_exr(output) } else { renderer.to_png(output) }?;
+    context.check_validation()?;
+    println!("{}: {summary}", output.display());
+    Ok(())
+}
+
+struct Renderer<'j> {
+    job: &'j Job,
+    recorder: Recorder,
+    frame: Frame,
+    progress: ProgressBar,
+}
+
+impl<'j> Renderer<'j> {
+    fn new(job: &'j Job, mut recorder: Recorder, exr: bool) -> Result<Self> {
+        let precision = if exr { Precision::Float } else { Precision::Half };
+        let settings = job.frame_settings(job.settings.show, precision)?;
+        recorder.begin()?;
+        let frame = Frame::new(&mut recorder, &job.scene, settings)?;
+        recorder.finish()?;
+        let layers = if job.settings.layers { 1 + extra_layers().count() } else { 1 };
+        let steps = layers as u64 * u64::from(settings.samples);
+        Ok(Self { job, recorder, frame, progress: progress(steps, job.settings.quiet) })
+    }
+
+    /// Draws the picture, or the quantity that the frame shows.
+    fn draw(&mut self) -> Result<()> {
+        while !self.frame.is_refined() {
+            self.recorder.begin()?;
+            self.frame.record_light(&mut self.recorder, &self.job.daylight);
+            self.recorder.finish()?;
+        }
+        for index in 0..self.job.settings.samples {
+            self.recorder.begin()?;
+            self.frame.record(&mut self.recorder, &self.job.daylight, &self.job.camera, index);
+            self.recorder.finish()?;
+            self.progress.inc(1);
+        }
+        Ok(())
+    }
+
+    fn to_png(&mut self, path: &Path) -> Result<String> {
+        self.draw()?;
+        let pixels = read_back(&mut self.recorder, self.frame.display())?;
+        let ev100 = self.ev100()?;
+        let mut metadata = self.job.metadata();
+        if let Some(ev100) = ev100 {
+            metadata.push(("ev100 used".into(), format!("{ev100:.3}")));
+        }
+        let encoding = self.job.settings.gamma.map_or(Encoding::Srgb, Encoding::Gamma);
+        write_png(path, pixels.size, &pixels.bytes, encoding, &metadata)?;
+        self.progress.finish_and_clear();
+        let exposure = ev100.map(|ev| format!(", EV100 {ev:.2}")).unwrap_or_default();
+        Ok(format!("{}x{}{exposure}", pixels.size[0], pixels.size[1]))
+    }
+
+    /// The exposure used, of quantities that are exposed.
+    fn ev100(&mut self) -> Result<Option<f64>> {
+        if self.job.settings.scale.is_some() || self.job.settings.show.file_unit() == 1.0 {
+            return Ok(None);
+        }
+        if let Exposure::Ev100(ev100) = self.job.settings.exposure {
+            return Ok(Some(ev100));
+        }
+        let average = read_back(&mut self.recorder, self.frame.average_luminance())?.floats()[0];
+        Ok(Some(automatic(f64::from(average) * 1e3)))
+    }
+
+    fn to_exr(&mut self, path: &Path) -> Result<String> {
+        let shown = self.job.settings.show;
+        let mut layers = vec![self.layer(shown, "")?];
+        if self.job.settings.layers {
+            for show in extra_layers() {
+                self.frame.show(show)?;
+                layers.push(self.layer(show, show.name())?);
+            }
+        }
+        let size = self.frame.settings().size.to_array();
+        write_exr(path, size, &layers, &self.job.metadata())?;
+        self.progress.finish_and_clear();
+        Ok(format!("{}x{}, {} layer(s)", size[0], size[1], layers.len()))
+    }
+
+    fn layer(&mut self, show: Show, name: &'static str) -> Result<Layer> {
+        self.draw()?;
+        let mut texels = read_back(&mut self.recorder, self.frame.radiance())?.rgba();
+        let unit = show.file_unit();
+        if unit != 1.0 {
+            for texel in &mut texels {
+                *texel = texel.map(|v| v * unit);
+            }
+        }
+        Ok(Layer { name, channels: channels(show, name), texels })
+    }
+}
+
+/// The layers beside the picture.
+fn extra_layers() -> impl Iterator<Item = Show> {
+    Show::ADDENDS.into_iter().chain(Show::INPUTS)
+}
+
+/// The picture itself is always RGB, so that every program shows it.
+fn channels(show: Show, name: &str) -> Channels {
+    match show {
+        _ if name.is_empty() => Channels::Rgb,
+        Show::Visibility | Show::Occlusion => Channels::Single,
+        Show::Depth => Channels::Depth,
+        Show::Normal => Channels::Xyz,
+        _ => Channels::Rgb,
+    }
+}
+
+/// A bar on a terminal, nothing in a pipe or when there is but one step.
+fn progress(steps: u64, quiet: bool) -> ProgressBar {
+    if quiet || steps < 2 {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(steps);
+    // The template is constant; were it wrong, the default style would do.
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} samples, {eta} left") {
+        bar.set_style(style);
+    }
+    bar
+}

@@ -1,0 +1,137 @@
+//! OpenEXR: scene-linear 32-bit floats with the parameters as attributes and further quantities as named layers.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use exr::image::write::WritableImage as _;
+use exr::math::Vec2;
+use exr::meta::attribute::{AttributeValue, Chromaticities, Text};
+use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, LayerAttributes};
+
+use super::{Metadata, write_error, write_whole};
+use crate::error::Result;
+
+/// Which channels a layer has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Channels {
+    /// R, G, B.
+    Rgb,
+    /// X, Y, Z: a vector.
+    Xyz,
+    /// Y: one number.
+    Single,
+    /// Z: a distance.
+    Depth,
+}
+
+impl Channels {
+    const fn names(self) -> &'static [&'static str] {
+        match self {
+            Self::Rgb => &["R", "G", "B"],
+            Self::Xyz => &["X", "Y", "Z"],
+            Self::Single => &["Y"],
+            Self::Depth => &["Z"],
+        }
+    }
+}
+
+/// A quantity: texels from the top left, in file units.
+#[derive(Debug, Clone)]
+pub struct Layer {
+    /// Name, before the dot of its channels; empty for the picture itself.
+    pub name: &'static str,
+    /// Its channels.
+    pub channels: Channels,
+    /// Texels; the fourth component is ignored.
+    pub texels: Vec<[f32; 4]>,
+}
+
+/// Writes layers of one size. A channel is called `layer.R`, those of the nameless layer plain `R`.
+///
+/// # Errors
+/// When the file cannot be written; an older one is left alone then.
+pub fn write_exr(path: &Path, size: [u32; 2], layers: &[Layer], metadata: &Metadata) -> Result<()> {
+    let bytes = encode(size, layers, metadata).map_err(|e| write_error(path, e))?;
+    write_whole(path, &bytes)
+}
+
+fn encode(
+    size: [u32; 2],
+    layers: &[Layer],
+    metadata: &Metadata,
+) -> std::result::Result<Vec<u8>, exr::error::Error> {
+    let channels = layers
+        .iter()
+        .flat_map(|layer| {
+            layer.channels.names().iter().enumerate().map(|(i, channel)| {
+                let name = if layer.name.is_empty() {
+                    (*channel).to_owned()
+                } else {
+                    format!("{}.{channel}", layer.name)
+                };
+                let samples = layer.texels.iter().map(|t| t[i]).collect();
+                AnyChannel::new(name.as_str(), FlatSamples::F32(samples))
+            })
+        })
+        .collect();
+    let mut attributes = LayerAttributes { white_luminance: None, ..LayerAttributes::default() };
+    attributes.software_name = Some(Text::from("skylight"));
+    for (key, value) in metadata {
+        let value = AttributeValue::Text(Text::new_or_none(value).unwrap_or_default());
+        attributes.other.insert(Text::from(key.as_str()), value);
+    }
+    let size = Vec2(size[0] as usize, size[1] as usize);
+    let layer = exr::image::Layer::new(
+        size,
+        attributes,
+        Encoding::FAST_LOSSLESS,
+        AnyChannels::sort(channels),
+    );
+    let mut image = Image::from_layer(layer);
+    image.attributes.chromaticities = Some(Chromaticities {
+        red: Vec2(0.64, 0.33),
+        green: Vec2(0.30, 0.60),
+        blue: Vec2(0.15, 0.06),
+        white: Vec2(0.3127, 0.3290),
+    });
+    let mut bytes = Cursor::new(Vec::new());
+    image.write().to_buffered(&mut bytes)?;
+    Ok(bytes.into_inner())
+}
+
+#[cfg(test)]
+mod tests {
+    use exr::prelude::{ReadChannels as _, ReadLayers as _};
+
+    use super::*;
+
+    #[test]
+    fn layers_and_parameters_come_back() {
+        let texels = vec![[1.5, -2.0, 1e9, 0.0]; 6];
+        let layer = |name, channels| Layer { name, channels, texels: texels.clone() };
+        let layers = [layer("", Channels::Rgb), layer("depth", Channels::Depth)];
+        let metadata = vec![("turbidity".to_owned(), "3".to_owned())];
+        let bytes = encode([3, 2], &layers, &metadata).expect("encoded");
+        let image = exr::prelude::read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .first_valid_layer()
+            .all_attributes()
+            .from_buffered(Cursor::new(bytes))
+            .expect("an EXR");
+        let layer = image.layer_data;
+        let names: Vec<String> =
+            layer.channel_data.list.iter().map(|c| c.name.to_string()).collect();
+        assert_eq!(names, ["B", "G", "R", "depth.Z"]);
+        let values: Vec<f32> = layer
+            .channel_data
+            .list
+            .iter()
+            .map(|c| c.sample_data.values_as_f32().next().expect("a sample"))
+            .collect();
+        assert_eq!(values, [1e9, -2.0, 1.5, 1.5]);
+        let value = layer.attributes.other.get(&Text::from("turbidity")).expect("attribute");
+        assert_eq!(value, &AttributeValue::Text(Text::from("3")));
+    }
+}

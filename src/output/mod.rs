@@ -1,0 +1,108 @@
+//! Pictures to files: whole or not at all.
+
+mod exr;
+mod png;
+
+use std::io::Write as _;
+use std::path::Path;
+
+pub use self::exr::{Channels, Layer, write_exr};
+pub use self::png::{Encoding, write_png};
+
+use crate::error::{Error, Result};
+
+/// Parameters of a picture, by option name: what makes it again.
+pub type Metadata = Vec<(String, String)>;
+
+fn write_error(path: &Path, reason: impl ToString) -> Error {
+    Error::Write { path: path.to_owned(), reason: reason.to_string() }
+}
+
+fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// Finds out before the work whether a file could be written.
+///
+/// # Errors
+/// When the folder is missing or not writable, or the name is a folder.
+pub fn check_writable(path: &Path) -> Result<()> {
+    let folder = folder(path);
+    if !folder.is_dir() {
+        let reason = format!("the folder {} does not exist; create it first", folder.display());
+        return Err(write_error(path, reason));
+    }
+    if path.is_dir() {
+        return Err(write_error(path, "it is a folder; give a file name"));
+    }
+    temporary(path).map(|_| ())
+}
+
+fn temporary(path: &Path) -> Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".skylight-");
+    // A temporary file is private by default; a picture is as readable as any file its owner makes.
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder(path)).map_err(|e| write_error(path, reason(&e)))
+}
+
+fn reason(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::PermissionDenied => {
+            "no permission in its folder; choose another with -o".to_owned()
+        }
+        std::io::ErrorKind::StorageFull => "the disk is full".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
+/// Writes beside the target and renames when whole.
+fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    let mut file = temporary(path)?;
+    file.write_all(bytes).map_err(|e| write_error(path, reason(&e)))?;
+    file.as_file().sync_all().map_err(|e| write_error(path, reason(&e)))?;
+    file.persist(path).map_err(|e| write_error(path, reason(&e.error)))?;
+    Ok(())
+}
+
+/// Writes text.
+///
+/// # Errors
+/// When the file cannot be written; an older one is left alone then.
+pub fn write_text(path: &Path, text: &str) -> Result<()> {
+    write_whole(path, text.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_that_cannot_take_a_file_are_named() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let inside = dir.path().join("no/such/a.png");
+        let text = check_writable(&inside).expect_err("missing").to_string();
+        assert!(text.contains("does not exist"), "{text}");
+        let text = check_writable(dir.path()).expect_err("folder").to_string();
+        assert!(text.contains("is a folder"), "{text}");
+        check_writable(&dir.path().join("a.png")).expect("good");
+        assert_eq!(dir.path().read_dir().expect("folder").count(), 0, "nothing is left behind");
+    }
+
+    #[test]
+    fn an_old_file_is_replaced_whole() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let path = dir.path().join("a.bin");
+        write_whole(&path, b"old").expect("written");
+        write_whole(&path, b"new one").expect("written");
+        assert_eq!(std::fs::read(&path).expect("read"), b"new one");
+        assert_eq!(dir.path().read_dir().expect("folder").count(), 1);
+    }
+}

@@ -1,0 +1,79 @@
+//! 8-bit PNG with the parameters as text chunks.
+
+use std::path::Path;
+
+use super::{Metadata, write_error, write_whole};
+use crate::error::Result;
+
+/// How the 8 bits are encoded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Encoding {
+    /// The sRGB curve.
+    Srgb,
+    /// A power: value = linear^(1/γ).
+    Gamma(f64),
+}
+
+/// Writes `rgba` (rows from the top, four bytes a pixel, alpha ignored) as an RGB picture.
+///
+/// # Errors
+/// When the file cannot be written; an older one is left alone then.
+pub fn write_png(
+    path: &Path,
+    size: [u32; 2],
+    rgba: &[u8],
+    encoding: Encoding,
+    metadata: &Metadata,
+) -> Result<()> {
+    let bytes =
+        encode(size, rgba, encoding, metadata).map_err(|e| write_error(path, e))?;
+    write_whole(path, &bytes)
+}
+
+fn encode(
+    size: [u32; 2],
+    rgba: &[u8],
+    encoding: Encoding,
+    metadata: &Metadata,
+) -> std::result::Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    match encoding {
+        Encoding::Srgb => encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual),
+        Encoding::Gamma(gamma) => {
+            encoder.set_source_gamma(png::ScaledFloat::new(gamma.recip() as f32));
+        }
+    }
+    for (key, value) in metadata {
+        // Keys are ours and short; values may hold any language (a path).
+        encoder.add_itxt_chunk(key.clone(), value.clone())?;
+    }
+    let rgb: Vec<u8> = rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&rgb)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_and_parameters_come_back() {
+        let metadata = vec![("turbidity".to_owned(), "3".to_owned())];
+        let rgba = [10, 20, 30, 255, 40, 50, 60, 255];
+        let bytes = encode([2, 1], &rgba, Encoding::Srgb, &metadata).expect("encoded");
+        let decoder = png::Decoder::new(std::io::Cursor::new(&bytes));
+        let mut reader = decoder.read_info().expect("a PNG");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("small")];
+        reader.next_frame(&mut pixels).expect("pixels");
+        assert_eq!(pixels, [10, 20, 30, 40, 50, 60]);
+        let text = &reader.info().utf8_text;
+        assert_eq!(text[0].keyword, "turbidity");
+        assert_eq!(text[0].get_text().expect("text"), "3");
+        assert!(reader.info().srgb.is_some());
+    }
+}

@@ -23,15 +23,10 @@ use super::sunlight::{Sunlight, visible_fraction};
 /// (Cinzano, Falchi & Elvidge 2001).
 pub const NIGHT_LUMINANCE: f64 = 2.52e-4;
 
-/// Elevation of the sun at the end of civil twilight, degrees.
-pub const CIVIL_TWILIGHT_DEG: f64 = -6.0;
-
-/// Elevation of the sun at the end of astronomical twilight, degrees; the sky of the models has faded out there.
-pub const NIGHT_DEG: f64 = -18.0;
-
-/// Horizontal illuminance at the end of civil twilight over that at sunset, clear evening: 585..410 lux fall to
-/// 3.5..2 lux (American Meteorological Society, Glossary of Meteorology, "civil twilight"); geometric means.
-const TWILIGHT_RATIO: f64 = 2.65 / 490.0;
+/// Horizontal illuminances of a clear evening, lux, with the sun at -6°, -12° and -18°: the ends of civil, nautical and
+/// astronomical twilight (American Meteorological Society, Glossary of Meteorology, "civil twilight": 3.5..2 lux at -6°,
+/// "astronomical twilight": 0.008 lux at -12°, 6e-4 lux of scattered sunlight at -18°).
+pub const TWILIGHT_LUX: [f64; 3] = [2.65, 0.008, 6e-4];
 
 /// Which sky.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
@@ -120,10 +115,10 @@ impl Sky {
 pub struct Guard {
     /// Unit vector toward the sun with which the model is evaluated: the sun's, or on the horizon under it.
     pub sun_direction: DVec3,
-    /// Factor on the model's radiance: 1 by day, falling through twilight to 0 at -18° ([`twilight`]); times the scale to a
+    /// Factor on the model's radiance: 1 by day, through twilight falling with [`twilight_illuminance`]; times the scale to a
     /// given horizontal illuminance.
     pub scale: f64,
-    /// Radiance added, linear BT.709 RGB, cd/m²: 0 by day, [`NIGHT_LUMINANCE`] (white) after twilight.
+    /// Radiance added, linear BT.709 RGB, cd/m²: 0 by day, [`NIGHT_LUMINANCE`] (white) after twilight, (1 - `scale`) of it in between.
     pub night: DVec3,
 }
 
@@ -226,16 +221,21 @@ fn sky_of(valid: &Conditions, sun_direction: DVec3) -> Sky {
 }
 
 fn guard_of(valid: &Conditions, sky: &Sky, sun_direction: DVec3) -> Guard {
+    let own = || horizontal_irradiance(|dir| colour::clip_negative(sky.radiance(dir)));
     if let Some(lux) = valid.horizontal_illuminance {
-        let own = horizontal_irradiance(|dir| colour::clip_negative(sky.radiance(dir)));
-        let scale = lux / colour::luminance(own);
+        let scale = lux / colour::luminance(own());
         return Guard {
             sun_direction,
             scale,
             night: DVec3::ZERO,
         };
     }
-    let scale = twilight(valid.sun_elevation_deg);
+    let scale = if valid.sun_elevation_deg < 0.0 {
+        let sunset = colour::luminance(own());
+        twilight_illuminance(valid.sun_elevation_deg, sunset) / sunset
+    } else {
+        1.0
+    };
     Guard {
         sun_direction,
         scale,
@@ -243,15 +243,18 @@ fn guard_of(valid: &Conditions, sky: &Sky, sun_direction: DVec3) -> Guard {
     }
 }
 
-/// Brightness of the sky relative to that with the sun on the horizon: 1 above, 0 at -18° and below.
+/// Horizontal illuminance, lux, of a clear sky with the sun at `elevation_deg` (-90..=0) below the horizon.
 ///
-/// The logarithm falls in proportion to the sun's depression, to 2.65/490 at the end of civil twilight (-6°). The same
-/// slope goes on to -18° (it turns 490 lux into 1.4e-2 at -12°, where 0.8e-2 are seen): a curve that ended at -6° would
-/// switch off the last 3 lux at once. Less its own remainder (1e-7), so that it ends in 0; continuous and monotonic.
-pub fn twilight(elevation_deg: f64) -> f64 {
-    let fall = |deg: f64| TWILIGHT_RATIO.powf(deg / CIVIL_TWILIGHT_DEG);
-    let remainder = fall(NIGHT_DEG);
-    (fall(elevation_deg.clamp(NIGHT_DEG, 0.0)) - remainder) / (1.0 - remainder)
+/// Starts from `sunset_lux` (above 0), the model's own with the sun on the horizon, and passes through
+/// [`TWILIGHT_LUX`]; in between its logarithm is linear, and below -18° it goes on falling. Continuous and
+/// monotonic. Overcast skies get the same values, for want of measured ones.
+pub fn twilight_illuminance(elevation_deg: f64, sunset_lux: f64) -> f64 {
+    let [civil, nautical, astronomical] = TWILIGHT_LUX;
+    let lux = [sunset_lux, civil, nautical, astronomical];
+    let steps = -elevation_deg.min(0.0) / 6.0;
+    // A small whole number: the cast truncates.
+    let i = (steps as usize).min(2);
+    lux[i] * (lux[i + 1] / lux[i]).powf(steps - i as f64)
 }
 
 fn validated(conditions: &Conditions, warnings: &mut Vec<String>) -> Conditions {

@@ -82,25 +82,11 @@ pub struct CubeMap {
 }
 
 impl CubeMap {
-    /// One value per texel, taken at its centre: `f` of the unit direction. `size` texels along an edge.
-    pub fn from_centres(size: usize, f: impl Fn(DVec3) -> DVec3) -> Self {
-        Self::from_averages(size, 1, f)
-    }
-
-    /// Each texel's mean of `f` over `samples`² places, weighted by their solid angles.
-    pub fn from_averages(size: usize, samples: usize, f: impl Fn(DVec3) -> DVec3) -> Self {
-        let fine = size * samples;
-        let mean = |face: usize, i: usize, j: usize| {
-            let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
-            for k in 0..samples * samples {
-                let (a, b) = (i * samples + k % samples, j * samples + k / samples);
-                let weight = texel_solid_angle(a, b, fine);
-                sum += f(texel_direction(face, a, b, fine)) * weight;
-                weights += weight;
-            }
-            sum / weights
-        };
-        let texels = texels(size).map(|(face, i, j)| mean(face, i, j)).collect();
+    /// One value per texel, at its centre: `f` of the unit direction. `size` texels along an edge.
+    pub fn from_fn(size: usize, f: impl Fn(DVec3) -> DVec3) -> Self {
+        let texels = texels(size)
+            .map(|(face, i, j)| f(texel_direction(face, i, j, size)))
+            .collect();
         Self { size, texels }
     }
 
@@ -193,16 +179,10 @@ mod tests {
 
     #[test]
     fn texels_come_back_where_they_were_written() {
-        let map = CubeMap::from_centres(8, |dir| dir);
+        let map = CubeMap::from_fn(8, |dir| dir);
         for ((face, i, j), value) in map.iter() {
             assert_eq!(map.texel(face, i, j), value);
             assert_eq!(map.nearest(value), value);
         }
-        let constant = CubeMap::from_averages(4, 3, |_| DVec3::ONE);
-        assert!(
-            constant
-                .iter()
-                .all(|(_, v)| (v - DVec3::ONE).length() < 1e-14)
-        );
     }
 }

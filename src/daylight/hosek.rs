@@ -2,8 +2,6 @@
 //!
 //! The tables come with the crate `hw-skymodel` in f32. Native radiances times 683 lm/W are cd/m².
 
-use std::f64::consts::FRAC_PI_2;
-
 use glam::DVec3;
 use hw_skymodel::rgb::{SkyParams, SkyState};
 
@@ -34,7 +32,6 @@ impl Hosek {
             turbidity: (turbidity as f32).clamp(1.0, 10.0),
             albedo: [(ground_albedo as f32).clamp(0.0, 1.0); 3],
         };
-        debug_assert!(elevation <= FRAC_PI_2);
         // All three were clamped to the ranges that `new` checks; a NaN leaves a black sky.
         let (coefficients, mean) =
             SkyState::new(&params).map_or(([0.0; 27], [0.0; 3]), |s| s.raw());

@@ -127,7 +127,7 @@ mod tests {
     fn low_discrepancy_points_integrate_better_than_chance() {
         let exact = 0.25;
         let error = |point: &dyn Fn(u32) -> DVec2| {
-            let sum: f64 = (0..4096).map(|i| point(i)).map(|p| p.x * p.y).sum();
+            let sum: f64 = (0..4096).map(point).map(|p| p.x * p.y).sum();
             (sum / 4096.0 - exact).abs()
         };
         for (name, e) in [

@@ -203,3 +203,34 @@ fn a_setting_sun_is_in_gamut_and_half_as_bright_on_the_horizon() {
     assert!(colour::luminance(up.sun_illuminance) > colour::luminance(half.sun_illuminance));
     assert_eq!(day(-0.27).sun_luminance, DVec3::ZERO);
 }
+
+#[test]
+fn the_horizontal_illuminance_is_integrated_finely_enough() {
+    use crate::daylight::quadrature::SphereQuadrature;
+    let fine = SphereQuadrature::upper(256, 512);
+    for model in MODELS {
+        for (turbidity, elevation) in [
+            (2.0, 1.0),
+            (2.0, 30.0),
+            (3.0, 60.0),
+            (8.0, 10.0),
+            (3.0, 90.0),
+        ] {
+            let given = Conditions {
+                turbidity,
+                ..conditions(model, elevation)
+            };
+            let day = Daylight::new(&given);
+            let reference = fine.irradiance(DVec3::Y, |dir| day.sky_radiance(dir));
+            let error = (day.sky_irradiance_up / reference - 1.0)
+                .abs()
+                .max_element();
+            println!(
+                "{model:?} T {turbidity} el {elevation}: {:.0} lux, error {error:.1e}, sun {:.0} lux",
+                colour::luminance(day.sky_irradiance_up),
+                colour::luminance(day.sun_illuminance)
+            );
+            assert!(error < 1e-4, "{given:?} {error:e}");
+        }
+    }
+}

@@ -85,10 +85,14 @@ pub fn xyz_of_black_body(kelvin: f64) -> DVec3 {
 /// S = S0 + M1 S1 + M2 S2. Preetham et al. 1999, A.5 turns the sky's chromaticity into a spectrum with it.
 pub fn daylight_phase(x: f64, y: f64, nm: f64) -> f64 {
     let (m1, m2) = daylight_weights(x, y);
-    let component = |table| TabulatedSpectrum(table).at(nm);
-    component(preetham_spectra::DAYLIGHT_S0)
-        + m1 * component(preetham_spectra::DAYLIGHT_S1)
-        + m2 * component(preetham_spectra::DAYLIGHT_S2)
+    let [s0, s1, s2] = daylight_components(nm);
+    s0 + m1 * s1 + m2 * s2
+}
+
+/// CIE 15:2004, table T.2: the daylight components S0, S1 and S2 at `nm`, relative units.
+pub fn daylight_components(nm: f64) -> [f64; 3] {
+    use preetham_spectra::{DAYLIGHT_S0, DAYLIGHT_S1, DAYLIGHT_S2};
+    [DAYLIGHT_S0, DAYLIGHT_S1, DAYLIGHT_S2].map(|table| TabulatedSpectrum(table).at(nm))
 }
 
 /// CIE 15:2004, 3.1: the weights M1 and M2 of the daylight components for the chromaticity (x, y).

@@ -55,25 +55,25 @@ pub fn aerosol_transmittance(nm: f64, air_mass: f64, turbidity: f64) -> f64 {
 ///
 /// The paper prints 0.04608 T - 0.04586; these are the digits of its authors' program.
 pub fn angstrom_beta(turbidity: f64) -> f64 {
-    0.046_083_658_222_05 * turbidity - 0.045_860_259_285_22
+    0.046_083_658_220_5 * turbidity - 0.045_860_259_285_22
 }
 
 /// Preetham et al. 1999, A.1: ozone absorption exp(-0.35 k_o m).
 pub fn ozone_transmittance(nm: f64, air_mass: f64) -> f64 {
-    (-OZONE_CM * TabulatedSpectrum(spectra::OZONE).at(nm) * air_mass).exp()
+    (-OZONE_CM * ozone_absorption(nm) * air_mass).exp()
 }
 
 /// Preetham et al. 1999, A.1: absorption by the mixed gases (mostly oxygen), exp(-1.41 k_g m / (1 + 118.93 k_g m)^0.45).
 ///
 /// k_g begins at 760 nm where the table of the sun's radiance has ended: it never changes a colour.
 pub fn mixed_gas_transmittance(nm: f64, air_mass: f64) -> f64 {
-    let km = TabulatedSpectrum(spectra::MIXED_GASES).at(nm) * air_mass;
+    let km = mixed_gas_absorption(nm) * air_mass;
     (-1.41 * km / (1.0 + 118.93 * km).powf(0.45)).exp()
 }
 
 /// Preetham et al. 1999, A.1: absorption by water vapour, exp(-0.2385 k_wa w m / (1 + 20.07 k_wa w m)^0.45), w = 2 cm.
 pub fn water_vapour_transmittance(nm: f64, air_mass: f64) -> f64 {
-    let kwm = TabulatedSpectrum(spectra::WATER_VAPOUR).at(nm) * WATER_VAPOUR_CM * air_mass;
+    let kwm = water_vapour_absorption(nm) * WATER_VAPOUR_CM * air_mass;
     (-0.2385 * kwm / (1.0 + 20.07 * kwm).powf(0.45)).exp()
 }
 
@@ -89,6 +89,21 @@ pub fn transmittance(nm: f64, air_mass: f64, turbidity: f64) -> f64 {
 /// Preetham et al. 1999, table 2: radiance of the sun's disc outside the atmosphere at `nm`, W m⁻² nm⁻¹ sr⁻¹.
 pub fn extraterrestrial_radiance(nm: f64) -> f64 {
     TabulatedSpectrum(spectra::SUN_RADIANCE).at(nm)
+}
+
+/// Preetham et al. 1999, table 2: absorption coefficient k_o of ozone at `nm`, 1/cm.
+pub fn ozone_absorption(nm: f64) -> f64 {
+    TabulatedSpectrum(spectra::OZONE).at(nm)
+}
+
+/// Preetham et al. 1999, table 2: absorption coefficient k_g of the mixed gases at `nm`, 1/cm.
+pub fn mixed_gas_absorption(nm: f64) -> f64 {
+    TabulatedSpectrum(spectra::MIXED_GASES).at(nm)
+}
+
+/// Preetham et al. 1999, table 2: absorption coefficient k_wa of water vapour at `nm`, 1/cm.
+pub fn water_vapour_absorption(nm: f64) -> f64 {
+    TabulatedSpectrum(spectra::WATER_VAPOUR).at(nm)
 }
 
 fn micrometres(nm: f64) -> f64 {

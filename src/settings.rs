@@ -1,14 +1,13 @@
 //! What a picture is made with: [`Options`] as the user gave them, on the command line or in a scene file, and
 //! [`Settings`] with everything decided.
 
-mod choices;
 mod resolve;
 mod values;
 
 use chrono::{DateTime, FixedOffset};
 use clap::{Args, Command, FromArgMatches};
 
-pub use choices::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCurve};
+pub use crate::daylight::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCurve};
 pub use resolve::{CameraParts, Exposure, Settings, SunInput};
 pub use values::{AoResolution, Direction, ExposureMode, Place, Preset, Show, Size, SolarTime};
 
@@ -81,7 +80,7 @@ pub struct Options {
     /// Exposure from the picture itself [default: auto].
     #[arg(long, value_enum, value_name = "MODE", help_heading = "Tone")]
     pub exposure: Option<ExposureMode>,
-    /// Tone curve of .png pictures and the window [default: reinhard].
+    /// Tone curve of .png pictures and the window [default: agx].
     #[arg(long, value_enum, value_name = "CURVE", help_heading = "Tone")]
     pub tonemap: Option<ToneCurve>,
     /// Gamma instead of the sRGB curve, 0.1 to 10.

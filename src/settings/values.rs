@@ -5,6 +5,8 @@ use std::ops::RangeInclusive;
 use chrono::{DateTime, FixedOffset, NaiveDate};
 use clap::ValueEnum;
 
+pub use crate::passes::lighting::Show;
+
 /// Width and height of a picture, pixels, 1..16 384 each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Size {
@@ -39,36 +41,6 @@ pub struct Direction {
     pub azimuth_deg: f64,
     /// Degrees above the horizon, −90..90.
     pub elevation_deg: f64,
-}
-
-/// What the picture shows.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub enum Show {
-    /// Everything, as a camera would.
-    #[default]
-    Beauty,
-    /// Diffuse reflection of the sun.
-    Sun,
-    /// Diffuse reflection of the sky.
-    Sky,
-    /// Mirror reflection of the sun.
-    SunSpecular,
-    /// Mirror reflection of the sky.
-    SkySpecular,
-    /// V: 1 where the sun shines.
-    Visibility,
-    /// A: the share of the sky that corners leave open.
-    Occlusion,
-    /// E of sun and sky on the surface, lux.
-    Irradiance,
-    /// Diffuse reflectance.
-    Albedo,
-    /// World normals.
-    Normal,
-    /// Distance along the line of sight, metres.
-    Depth,
-    /// Luminance in false colours.
-    Luminance,
 }
 
 /// `--exposure`: the opposite of `--ev100`.

@@ -191,7 +191,7 @@ mod tests {
             ("render --size", "--size"),
             ("render --turbidity abc", "not a number"),
             ("render --turbidity nan", "finite"),
-            ("render --turbidity -1", "turbidity must be 1 to 10"),
+            ("render --turbidity -1000", "turbidity must be -100 to 100"),
             ("render --turbidty 3", "--turbidity"),
             (
                 "render --when 2026-02-30T12:00Z",

@@ -84,7 +84,9 @@ impl Frame {
             gbuffer: Gbuffer::new(&context, size)?,
             ssao: Ssao::new(&context, size, settings.ssao)?,
             lighting: Lighting::new(&context, size, settings.lighting)?,
-            accumulate: averaged.then(|| Accumulate::new(&context, size)).transpose()?,
+            accumulate: averaged
+                .then(|| Accumulate::new(&context, size))
+                .transpose()?,
             exposure: Exposure::new(&context)?,
             tone_map: ToneMap::new(&context, size, settings.tone)?,
             settings,
@@ -95,15 +97,13 @@ impl Frame {
     /// Records frame number `index` of the picture (0 starts a new average).
     ///
     /// Sky, irradiance and shadow map are drawn only when their inputs changed.
-    pub fn record(
-        &mut self,
-        rec: &mut Recorder,
-        daylight: &Daylight,
-        camera: &Camera,
-        index: u32,
-    ) {
+    pub fn record(&mut self, rec: &mut Recorder, daylight: &Daylight, camera: &Camera, index: u32) {
         let sample = self.sample(daylight, index);
-        let view = View { camera: *camera, size: self.settings.size, jitter: sample.jitter };
+        let view = View {
+            camera: *camera,
+            size: self.settings.size,
+            jitter: sample.jitter,
+        };
 
         let (sky_radiance, new_sky) = self.sky_cube.record(rec, daylight);
         let sky_irradiance = self.irradiance.record(rec, sky_radiance, new_sky);
@@ -124,7 +124,9 @@ impl Frame {
             sky_radiance,
         };
         let materials = self.geometry.materials();
-        let frame = self.lighting.record(rec, surfaces, materials, occlusion, &light, &view);
+        let frame = self
+            .lighting
+            .record(rec, surfaces, materials, occlusion, &light, &view);
         let radiance = match &mut self.accumulate {
             Some(accumulate) => accumulate.record(rec, frame, index),
             None => frame,
@@ -206,7 +208,11 @@ impl Frame {
     fn sample(&self, daylight: &Daylight, index: u32) -> Sample {
         let centre = daylight.sun_direction.as_vec3();
         if self.settings.samples <= 1 {
-            return Sample { jitter: Vec2::ZERO, sun_direction: centre, phase: 0.0 };
+            return Sample {
+                jitter: Vec2::ZERO,
+                sun_direction: centre,
+                phase: 0.0,
+            };
         }
         // Two stretches of one sequence, far apart, so that pixel and disc are not sampled in step.
         let pixel = sampling::r2(index) - 0.5;
@@ -240,7 +246,10 @@ mod tests {
         let largest = angles.iter().copied().fold(0.0, f64::max);
         assert!(largest <= SUN_ANGULAR_RADIUS * 1.001 && largest > SUN_ANGULAR_RADIUS * 0.97);
         // Uniform over the disc: half of the points lie within 1/sqrt(2) of the radius.
-        let inner = angles.iter().filter(|a| **a < SUN_ANGULAR_RADIUS / 2f64.sqrt()).count();
+        let inner = angles
+            .iter()
+            .filter(|a| **a < SUN_ANGULAR_RADIUS / 2f64.sqrt())
+            .count();
         assert!((450..550).contains(&inner), "{inner}");
     }
 }

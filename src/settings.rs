@@ -54,7 +54,7 @@ pub struct Options {
     /// Model of the sky [default: preetham].
     #[arg(long, value_enum, value_name = "MODEL", help_heading = "Sun and sky")]
     pub sky: Option<SkyModel>,
-    /// Haze: 1 pure air, 3 clear, 10 hazy [default: 3].
+    /// Turbidity: 2 very clear, 3 clear, 6 hazy, 10 murky; clamped to what the model holds for [default: 3].
     #[arg(long, value_name = "T", value_parser = values::turbidity, allow_hyphen_values = true, help_heading = "Sun and sky")]
     pub turbidity: Option<f64>,
     /// Reflectance of the ground below the horizon, 0 to 1; 0 is black [default: 0.2].
@@ -80,7 +80,7 @@ pub struct Options {
     /// Exposure from the picture itself [default: auto].
     #[arg(long, value_enum, value_name = "MODE", help_heading = "Tone")]
     pub exposure: Option<ExposureMode>,
-    /// Tone curve of .png pictures and the window [default: agx].
+    /// Tone curve of .png pictures and the window [default: neutral].
     #[arg(long, value_enum, value_name = "CURVE", help_heading = "Tone")]
     pub tonemap: Option<ToneCurve>,
     /// Gamma instead of the sRGB curve, 0.1 to 10.

@@ -2,8 +2,11 @@
 //!
 //! EV100 is the exposure value at ISO 100: it says which luminance a camera just saturates at. Sunny 16 is EV100 15.
 
-/// Middle grey to which [`automatic`] brings the log-average luminance (Reinhard et al. 2002: a = 0.18).
-pub const KEY: f64 = 0.18;
+/// Value to which [`automatic`] brings the log-average luminance (Reinhard et al. 2002, 3.1: a = 0.36 for a high-key picture).
+///
+/// Middle grey, 0.18, suits a picture without a sky. In daylight the sky is a large and bright part of the average, and
+/// what stands in the sun came out a stop too dark.
+pub const KEY: f64 = 0.36;
 
 /// Lagarde & de Rousiers 2014, *Moving Frostbite to PBR*, 5.1.2: luminance that maps to 1, cd/m²: 1.2 · 2^EV100.
 ///
@@ -41,7 +44,7 @@ pub fn log_average(luminances: impl IntoIterator<Item = f64>) -> Option<f64> {
     (count > 0).then(|| (sum / count as f64).exp())
 }
 
-/// EV100 that exposes the log-average luminance (cd/m²) to the key 0.18 (Reinhard et al. 2002, eq. 2).
+/// EV100 that exposes the log-average luminance (cd/m²) to the [`KEY`] (Reinhard et al. 2002, eq. 2).
 pub fn automatic(log_average_luminance: f64) -> f64 {
     ev100_from_factor(KEY / log_average_luminance)
 }

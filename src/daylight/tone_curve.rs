@@ -25,9 +25,9 @@ pub enum ToneCurve {
     /// Reinhard et al. 2002, global operator with white at [`REINHARD_WHITE`], on luminance.
     Reinhard,
     /// AgX, base look.
-    #[default]
     Agx,
-    /// Khronos PBR Neutral.
+    /// Khronos PBR Neutral: colours of surfaces stay as they are up to 0.8.
+    #[default]
     Neutral,
     /// ACES RRT + ODT, Hill's fit.
     Aces,

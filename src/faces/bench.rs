@@ -119,7 +119,10 @@ fn quantile(samples: &[f64], q: f64) -> f64 {
     let mut sorted = samples.to_vec();
     sorted.sort_by(f64::total_cmp);
     let rank = (q * sorted.len() as f64).ceil() as usize;
-    sorted.get(rank.saturating_sub(1)).copied().unwrap_or(f64::NAN)
+    sorted
+        .get(rank.saturating_sub(1))
+        .copied()
+        .unwrap_or(f64::NAN)
 }
 
 fn row(name: &str, times: &[f64]) -> String {
@@ -133,9 +136,7 @@ fn write_json(
     passes: &[(&'static str, Samples)],
     whole: &[f64],
 ) -> Result<()> {
-    let times = |t: &[f64]| {
-        json!({ "median_ms": quantile(t, 0.5), "p5_ms": quantile(t, 0.05), "p95_ms": quantile(t, 0.95) })
-    };
+    let times = |t: &[f64]| json!({ "median_ms": quantile(t, 0.5), "p5_ms": quantile(t, 0.05), "p95_ms": quantile(t, 0.95) });
     let passes: Vec<Value> = passes
         .iter()
         .map(|(name, t)| {

@@ -10,6 +10,7 @@ use crate::daylight::irradiance::IrradianceMethod;
 use crate::daylight::sky::{Conditions, Daylight};
 use crate::daylight::spectrum::LUMINOUS_EFFICACY;
 use crate::daylight::sun_position::{SunPosition, lecture};
+use crate::daylight::tone_curve::REINHARD_WHITE;
 use crate::error::Result;
 use crate::frame::FrameSettings;
 use crate::gpu::{Context, ContextOptions};
@@ -18,12 +19,7 @@ use crate::passes::lighting::{LightingSettings, Precision, Show};
 use crate::passes::ssao::SsaoSettings;
 use crate::passes::tone_map::{Scale, ToneSettings};
 use crate::scene::{self, Camera, LoadOptions, Scene};
-use crate::settings::{
-    AoResolution, Exposure, Options, Preset, Settings, SettingsError, SunInput,
-};
-
-/// Luminance that Reinhard's curve maps to white, in units in which the average is at the key.
-const REINHARD_WHITE: f64 = 4.0;
+use crate::settings::{AoResolution, Exposure, Options, Preset, Settings, SettingsError, SunInput};
 
 /// A scene under a daylight, and how it is to be drawn.
 pub struct Job {
@@ -66,7 +62,14 @@ impl Job {
         }
         let camera = settings.camera(&scene.bounds);
         let name = path.map_or("bundled".to_owned(), |p| p.display().to_string());
-        Ok(Self { settings, scene, camera, sun, daylight, name })
+        Ok(Self {
+            settings,
+            scene,
+            camera,
+            sun,
+            daylight,
+            name,
+        })
     }
 
     /// Opens the device that the user wants.
@@ -136,7 +139,12 @@ impl Job {
         let lecture = s.preset == Some(Preset::Lecture);
         let samples_per_pass = if lecture { 5 } else { default.samples_per_pass };
         let samples = s.irradiance_samples;
-        Ok(IrradianceSettings { sampling, samples, samples_per_pass, ..default })
+        Ok(IrradianceSettings {
+            sampling,
+            samples,
+            samples_per_pass,
+            ..default
+        })
     }
 
     fn scale(&self) -> Scale {
@@ -153,30 +161,58 @@ impl Job {
         let rgb = |v: glam::DVec3| format!("{},{},{}", v.x, v.y, v.z);
         let point = |v: glam::Vec3| format!("{},{},{}", v.x, v.y, v.z);
         let mut list: Vec<(String, String)> = vec![
-            ("Software".into(), concat!("skylight ", env!("CARGO_PKG_VERSION")).into()),
+            (
+                "Software".into(),
+                concat!("skylight ", env!("CARGO_PKG_VERSION")).into(),
+            ),
             ("scene".into(), self.name.clone()),
             ("eye".into(), point(self.camera.eye)),
             ("target".into(), point(self.camera.target)),
             ("fov".into(), self.camera.fov_deg.to_string()),
-            ("sun azimuth".into(), format!("{} deg", self.sun.azimuth_deg)),
-            ("sun elevation".into(), format!("{} deg", self.sun.apparent_elevation_deg)),
-            ("sun illuminance".into(), format!("{} lux (RGB)", rgb(self.daylight.sun_illuminance))),
-            ("sky illuminance".into(), format!("{} lux (RGB)", rgb(self.daylight.sky_irradiance_up))),
+            (
+                "sun azimuth".into(),
+                format!("{} deg", self.sun.azimuth_deg),
+            ),
+            (
+                "sun elevation".into(),
+                format!("{} deg", self.sun.apparent_elevation_deg),
+            ),
+            (
+                "sun illuminance".into(),
+                format!("{} lux (RGB)", rgb(self.daylight.sun_illuminance)),
+            ),
+            (
+                "sky illuminance".into(),
+                format!("{} lux (RGB)", rgb(self.daylight.sky_irradiance_up)),
+            ),
         ];
         let parameters = self.settings.parameters();
-        list.extend(parameters.into_iter().map(|(key, value)| (key.to_owned(), value)));
+        list.extend(
+            parameters
+                .into_iter()
+                .map(|(key, value)| (key.to_owned(), value)),
+        );
         list
     }
 }
 
 fn sun_position(settings: &Settings) -> Result<SunPosition> {
     Ok(match settings.sun {
-        SunInput::Place { latitude, longitude, when } => {
-            settings.sun_position.position(when, latitude, longitude)?
-        }
-        SunInput::Solar { day, hours, latitude } => lecture(day, hours, latitude),
+        SunInput::Place {
+            latitude,
+            longitude,
+            when,
+        } => settings.sun_position.position(when, latitude, longitude)?,
+        SunInput::Solar {
+            day,
+            hours,
+            latitude,
+        } => lecture(day, hours, latitude),
         // What the user names is what is seen: no refraction on top.
-        SunInput::Direction { azimuth_deg, elevation_deg } => SunPosition {
+        SunInput::Direction {
+            azimuth_deg,
+            elevation_deg,
+        } => SunPosition {
             azimuth_deg,
             elevation_deg,
             apparent_elevation_deg: elevation_deg,

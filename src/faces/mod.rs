@@ -14,12 +14,17 @@ use crate::error::Result;
 /// Whatever keeps it from being done, in one line.
 pub fn run(command: Command) -> Result<()> {
     match command {
-        Command::Render { scene, output, options } => {
-            render::run(scene.as_deref(), &output, *options)
-        }
-        Command::Bench { scene, json, frames, options } => {
-            bench::run(scene.as_deref(), json.as_deref(), frames, *options)
-        }
+        Command::Render {
+            scene,
+            output,
+            options,
+        } => render::run(scene.as_deref(), &output, *options),
+        Command::Bench {
+            scene,
+            json,
+            frames,
+            options,
+        } => bench::run(scene.as_deref(), json.as_deref(), frames, *options),
         Command::Info => info::run(),
     }
 }

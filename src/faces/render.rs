@@ -18,7 +18,9 @@ use crate::settings::{Exposure, Options, SettingsError};
 /// # Errors
 /// Whatever keeps the file from being written; an older file is left alone then.
 pub fn run(scene: Option<&Path>, output: &Path, options: Options) -> Result<()> {
-    let exr = output.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"));
+    let exr = output
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("exr"));
     if options.layers && !exr {
         let what = "--layers needs an .exr file; choose one with -o";
         return Err(SettingsError(what.to_owned()).into());
@@ -27,8 +29,11 @@ pub fn run(scene: Option<&Path>, output: &Path, options: Options) -> Result<()> 
     let job = Job::new(scene, options)?;
     let context = job.context()?;
     let mut renderer = Renderer::new(&job, Recorder::new(&context, Timing::Off)?, exr)?;
-    let summary =
-        if exr { renderer.to_exr(output) } else { renderer.to_png(output) }?;
+    let summary = if exr {
+        renderer.save_exr(output)
+    } else {
+        renderer.save_png(output)
+    }?;
     context.check_validation()?;
     println!("{}: {summary}", output.display());
     Ok(())
@@ -43,33 +48,52 @@ struct Renderer<'j> {
 
 impl<'j> Renderer<'j> {
     fn new(job: &'j Job, mut recorder: Recorder, exr: bool) -> Result<Self> {
-        let precision = if exr { Precision::Float } else { Precision::Half };
+        let precision = if exr {
+            Precision::Float
+        } else {
+            Precision::Half
+        };
         let settings = job.frame_settings(job.settings.show, precision)?;
         recorder.begin()?;
         let frame = Frame::new(&mut recorder, &job.scene, settings)?;
         recorder.finish()?;
-        let layers = if job.settings.layers { 1 + extra_layers().count() } else { 1 };
+        let layers = if job.settings.layers {
+            1 + extra_layers().count()
+        } else {
+            1
+        };
         let steps = layers as u64 * u64::from(settings.samples);
-        Ok(Self { job, recorder, frame, progress: progress(steps, job.settings.quiet) })
+        Ok(Self {
+            job,
+            recorder,
+            frame,
+            progress: progress(steps, job.settings.quiet),
+        })
     }
 
     /// Draws the picture, or the quantity that the frame shows.
     fn draw(&mut self) -> Result<()> {
         while !self.frame.is_refined() {
             self.recorder.begin()?;
-            self.frame.record_light(&mut self.recorder, &self.job.daylight);
+            self.frame
+                .record_light(&mut self.recorder, &self.job.daylight);
             self.recorder.finish()?;
         }
         for index in 0..self.job.settings.samples {
             self.recorder.begin()?;
-            self.frame.record(&mut self.recorder, &self.job.daylight, &self.job.camera, index);
+            self.frame.record(
+                &mut self.recorder,
+                &self.job.daylight,
+                &self.job.camera,
+                index,
+            );
             self.recorder.finish()?;
             self.progress.inc(1);
         }
         Ok(())
     }
 
-    fn to_png(&mut self, path: &Path) -> Result<String> {
+    fn save_png(&mut self, path: &Path) -> Result<String> {
         self.draw()?;
         let pixels = read_back(&mut self.recorder, self.frame.display())?;
         let ev100 = self.ev100()?;
@@ -77,10 +101,16 @@ impl<'j> Renderer<'j> {
         if let Some(ev100) = ev100 {
             metadata.push(("ev100 used".into(), format!("{ev100:.3}")));
         }
-        let encoding = self.job.settings.gamma.map_or(Encoding::Srgb, Encoding::Gamma);
+        let encoding = self
+            .job
+            .settings
+            .gamma
+            .map_or(Encoding::Srgb, Encoding::Gamma);
         write_png(path, pixels.size, &pixels.bytes, encoding, &metadata)?;
         self.progress.finish_and_clear();
-        let exposure = ev100.map(|ev| format!(", EV100 {ev:.2}")).unwrap_or_default();
+        let exposure = ev100
+            .map(|ev| format!(", EV100 {ev:.2}"))
+            .unwrap_or_default();
         Ok(format!("{}x{}{exposure}", pixels.size[0], pixels.size[1]))
     }
 
@@ -96,7 +126,7 @@ impl<'j> Renderer<'j> {
         Ok(Some(automatic(f64::from(average) * 1e3)))
     }
 
-    fn to_exr(&mut self, path: &Path) -> Result<String> {
+    fn save_exr(&mut self, path: &Path) -> Result<String> {
         let shown = self.job.settings.show;
         let mut layers = vec![self.layer(shown, "")?];
         if self.job.settings.layers {
@@ -108,7 +138,12 @@ impl<'j> Renderer<'j> {
         let size = self.frame.settings().size.to_array();
         write_exr(path, size, &layers, &self.job.metadata())?;
         self.progress.finish_and_clear();
-        Ok(format!("{}x{}, {} layer(s)", size[0], size[1], layers.len()))
+        Ok(format!(
+            "{}x{}, {} layer(s)",
+            size[0],
+            size[1],
+            layers.len()
+        ))
     }
 
     fn layer(&mut self, show: Show, name: &'static str) -> Result<Layer> {
@@ -120,7 +155,11 @@ impl<'j> Renderer<'j> {
                 *texel = texel.map(|v| v * unit);
             }
         }
-        Ok(Layer { name, channels: channels(show, name), texels })
+        Ok(Layer {
+            name,
+            channels: channels(show, name),
+            texels,
+        })
     }
 }
 

@@ -169,8 +169,7 @@ impl Context {
             && chosen
                 .summary
                 .optional
-                .iter()
-                .any(|o| *o == ("VK_KHR_push_descriptor", true));
+                .contains(&("VK_KHR_push_descriptor", true));
         let device = create_device(&instance.raw, &chosen, push)?;
         // SAFETY: `chosen` comes from this instance; the queue family was found on it.
         let (queue, limits) = unsafe {

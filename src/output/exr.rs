@@ -63,18 +63,26 @@ fn encode(
     let channels = layers
         .iter()
         .flat_map(|layer| {
-            layer.channels.names().iter().enumerate().map(|(i, channel)| {
-                let name = if layer.name.is_empty() {
-                    (*channel).to_owned()
-                } else {
-                    format!("{}.{channel}", layer.name)
-                };
-                let samples = layer.texels.iter().map(|t| t[i]).collect();
-                AnyChannel::new(name.as_str(), FlatSamples::F32(samples))
-            })
+            layer
+                .channels
+                .names()
+                .iter()
+                .enumerate()
+                .map(|(i, channel)| {
+                    let name = if layer.name.is_empty() {
+                        (*channel).to_owned()
+                    } else {
+                        format!("{}.{channel}", layer.name)
+                    };
+                    let samples = layer.texels.iter().map(|t| t[i]).collect();
+                    AnyChannel::new(name.as_str(), FlatSamples::F32(samples))
+                })
         })
         .collect();
-    let mut attributes = LayerAttributes { white_luminance: None, ..LayerAttributes::default() };
+    let mut attributes = LayerAttributes {
+        white_luminance: None,
+        ..LayerAttributes::default()
+    };
     attributes.software_name = Some(Text::from("skylight"));
     for (key, value) in metadata {
         let value = AttributeValue::Text(Text::new_or_none(value).unwrap_or_default());
@@ -108,7 +116,11 @@ mod tests {
     #[test]
     fn layers_and_parameters_come_back() {
         let texels = vec![[1.5, -2.0, 1e9, 0.0]; 6];
-        let layer = |name, channels| Layer { name, channels, texels: texels.clone() };
+        let layer = |name, channels| Layer {
+            name,
+            channels,
+            texels: texels.clone(),
+        };
         let layers = [layer("", Channels::Rgb), layer("depth", Channels::Depth)];
         let metadata = vec![("turbidity".to_owned(), "3".to_owned())];
         let bytes = encode([3, 2], &layers, &metadata).expect("encoded");
@@ -121,8 +133,12 @@ mod tests {
             .from_buffered(Cursor::new(bytes))
             .expect("an EXR");
         let layer = image.layer_data;
-        let names: Vec<String> =
-            layer.channel_data.list.iter().map(|c| c.name.to_string()).collect();
+        let names: Vec<String> = layer
+            .channel_data
+            .list
+            .iter()
+            .map(|c| c.name.to_string())
+            .collect();
         assert_eq!(names, ["B", "G", "R", "depth.Z"]);
         let values: Vec<f32> = layer
             .channel_data
@@ -131,7 +147,11 @@ mod tests {
             .map(|c| c.sample_data.values_as_f32().next().expect("a sample"))
             .collect();
         assert_eq!(values, [1e9, -2.0, 1.5, 1.5]);
-        let value = layer.attributes.other.get(&Text::from("turbidity")).expect("attribute");
+        let value = layer
+            .attributes
+            .other
+            .get(&Text::from("turbidity"))
+            .expect("attribute");
         assert_eq!(value, &AttributeValue::Text(Text::from("3")));
     }
 }

@@ -15,7 +15,10 @@ use crate::error::{Error, Result};
 pub type Metadata = Vec<(String, String)>;
 
 fn write_error(path: &Path, reason: impl ToString) -> Error {
-    Error::Write { path: path.to_owned(), reason: reason.to_string() }
+    Error::Write {
+        path: path.to_owned(),
+        reason: reason.to_string(),
+    }
 }
 
 fn folder(path: &Path) -> &Path {
@@ -32,7 +35,10 @@ fn folder(path: &Path) -> &Path {
 pub fn check_writable(path: &Path) -> Result<()> {
     let folder = folder(path);
     if !folder.is_dir() {
-        let reason = format!("the folder {} does not exist; create it first", folder.display());
+        let reason = format!(
+            "the folder {} does not exist; create it first",
+            folder.display()
+        );
         return Err(write_error(path, reason));
     }
     if path.is_dir() {
@@ -50,7 +56,9 @@ fn temporary(path: &Path) -> Result<tempfile::NamedTempFile> {
         use std::os::unix::fs::PermissionsExt as _;
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(folder(path)).map_err(|e| write_error(path, reason(&e)))
+    builder
+        .tempfile_in(folder(path))
+        .map_err(|e| write_error(path, reason(&e)))
 }
 
 fn reason(error: &std::io::Error) -> String {
@@ -66,9 +74,13 @@ fn reason(error: &std::io::Error) -> String {
 /// Writes beside the target and renames when whole.
 fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut file = temporary(path)?;
-    file.write_all(bytes).map_err(|e| write_error(path, reason(&e)))?;
-    file.as_file().sync_all().map_err(|e| write_error(path, reason(&e)))?;
-    file.persist(path).map_err(|e| write_error(path, reason(&e.error)))?;
+    file.write_all(bytes)
+        .map_err(|e| write_error(path, reason(&e)))?;
+    file.as_file()
+        .sync_all()
+        .map_err(|e| write_error(path, reason(&e)))?;
+    file.persist(path)
+        .map_err(|e| write_error(path, reason(&e.error)))?;
     Ok(())
 }
 
@@ -93,7 +105,11 @@ mod tests {
         let text = check_writable(dir.path()).expect_err("folder").to_string();
         assert!(text.contains("is a folder"), "{text}");
         check_writable(&dir.path().join("a.png")).expect("good");
-        assert_eq!(dir.path().read_dir().expect("folder").count(), 0, "nothing is left behind");
+        assert_eq!(
+            dir.path().read_dir().expect("folder").count(),
+            0,
+            "nothing is left behind"
+        );
     }
 
     #[test]

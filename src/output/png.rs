@@ -25,8 +25,7 @@ pub fn write_png(
     encoding: Encoding,
     metadata: &Metadata,
 ) -> Result<()> {
-    let bytes =
-        encode(size, rgba, encoding, metadata).map_err(|e| write_error(path, e))?;
+    let bytes = encode(size, rgba, encoding, metadata).map_err(|e| write_error(path, e))?;
     write_whole(path, &bytes)
 }
 
@@ -50,7 +49,10 @@ fn encode(
         // Keys are ours and short; values may hold any language (a path).
         encoder.add_itxt_chunk(key.clone(), value.clone())?;
     }
-    let rgb: Vec<u8> = rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+    let rgb: Vec<u8> = rgba
+        .chunks_exact(4)
+        .flat_map(|p| [p[0], p[1], p[2]])
+        .collect();
     let mut writer = encoder.write_header()?;
     writer.write_image_data(&rgb)?;
     writer.finish()?;

@@ -40,7 +40,10 @@ impl Accumulate {
             },
         )?;
         let image = |name| Image::new(context, &ImageDesc::flat(name, format, size));
-        Ok(Self { pipeline, means: [image("mean 0")?, image("mean 1")?] })
+        Ok(Self {
+            pipeline,
+            means: [image("mean 0")?, image("mean 1")?],
+        })
     }
 
     /// Adds frame number `index` of the picture; 0 starts a new mean.

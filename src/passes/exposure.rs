@@ -45,7 +45,8 @@ impl Exposure {
     /// # Errors
     /// When the device refuses.
     pub fn new(context: &Arc<Context>) -> Result<Self> {
-        let image = |name, size| Image::new(context, &ImageDesc::flat(name, Format::R32_SFLOAT, size));
+        let image =
+            |name, size| Image::new(context, &ImageDesc::flat(name, Format::R32_SFLOAT, size));
         Ok(Self {
             tiles_pipeline: pipeline(context, "log luminance", &shaders::LOG_LUMINANCE_FRAG)?,
             average_pipeline: pipeline(

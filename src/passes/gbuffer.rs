@@ -58,7 +58,10 @@ impl Gbuffer {
                 stages: &[&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG],
                 vertex: &[float3, float3, Format::R32G32_SFLOAT],
                 colors: &formats,
-                depth: Depth::Write { format: Format::D32_SFLOAT, slope_bias: 0.0 },
+                depth: Depth::Write {
+                    format: Format::D32_SFLOAT,
+                    slope_bias: 0.0,
+                },
                 constants: &[],
             },
         )?;
@@ -88,12 +91,20 @@ impl Gbuffer {
             .color(&self.surfaces.material, clear)
             .depth(&self.surfaces.depth, clear)
             .draws(|draws| {
-                geometry.draw_surfaces(draws, |draws, material, diffuse, diffuse_map, specular_map| {
-                    let eye = view.camera.eye;
-                    draws.texture("diffuse_map", diffuse_map, Sampler::Repeat);
-                    draws.texture("specular_map", specular_map, Sampler::Repeat);
-                    draws.push(&Push { clip_from_world, eye, diffuse, material });
-                });
+                geometry.draw_surfaces(
+                    draws,
+                    |draws, material, diffuse, diffuse_map, specular_map| {
+                        let eye = view.camera.eye;
+                        draws.texture("diffuse_map", diffuse_map, Sampler::Repeat);
+                        draws.texture("specular_map", specular_map, Sampler::Repeat);
+                        draws.push(&Push {
+                            clip_from_world,
+                            eye,
+                            diffuse,
+                            material,
+                        });
+                    },
+                );
             });
         &self.surfaces
     }
@@ -112,7 +123,10 @@ mod tests {
     #[test]
     fn host_and_shader_agree() {
         for stage in [&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG] {
-            assert_eq!(check_layout(Push::FIELDS, stage.push.expect("push")), Ok(()));
+            assert_eq!(
+                check_layout(Push::FIELDS, stage.push.expect("push")),
+                Ok(())
+            );
         }
     }
 }

@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 use crate::gpu::{
-    Buffer, BufferKind, Draws, Format, Image, ImageDesc, ImageKind, Recorder, Result, upload_buffer,
-    upload_texture,
+    Buffer, BufferKind, Draws, Format, Image, ImageDesc, ImageKind, Recorder, Result,
+    upload_buffer, upload_texture,
 };
 use crate::scene::{Bounds, Material, Scene, Texture};
 
@@ -59,13 +59,25 @@ impl Geometry {
         let mut parts: Vec<Part> = scene
             .parts
             .iter()
-            .map(|p| Part { first: p.first_index, count: p.index_count, material: p.material })
+            .map(|p| Part {
+                first: p.first_index,
+                count: p.index_count,
+                material: p.material,
+            })
             .collect();
         parts.sort_by_key(|p| p.material);
         Ok(Self {
-            positions: vertex(recorder, "positions", bytemuck::cast_slice(&scene.positions))?,
+            positions: vertex(
+                recorder,
+                "positions",
+                bytemuck::cast_slice(&scene.positions),
+            )?,
             normals: vertex(recorder, "normals", bytemuck::cast_slice(&scene.normals))?,
-            texcoords: vertex(recorder, "texcoords", bytemuck::cast_slice(&scene.texcoords))?,
+            texcoords: vertex(
+                recorder,
+                "texcoords",
+                bytemuck::cast_slice(&scene.texcoords),
+            )?,
             indices: upload_buffer(recorder, "indices", BufferKind::Index, indices)?,
             index_count: scene.indices.len() as u32,
             parts,
@@ -110,13 +122,18 @@ impl Geometry {
         draws: &mut Draws<'_, '_>,
         mut bind: impl FnMut(&mut Draws<'_, '_>, u32, Vec3, &Image, &Image),
     ) {
-        draws.geometry(&[&self.positions, &self.normals, &self.texcoords], &self.indices);
+        draws.geometry(
+            &[&self.positions, &self.normals, &self.texcoords],
+            &self.indices,
+        );
         let mut bound = None;
         for part in &self.parts {
             if bound != Some(part.material) {
                 let s = &self.surfaces[part.material as usize];
-                let (diffuse, specular) =
-                    (&self.textures[s.diffuse_map], &self.textures[s.specular_map]);
+                let (diffuse, specular) = (
+                    &self.textures[s.diffuse_map],
+                    &self.textures[s.specular_map],
+                );
                 bind(draws, part.material, s.diffuse, diffuse, specular);
                 bound = Some(part.material);
             }
@@ -140,7 +157,12 @@ fn surface(material: &Material) -> Surface {
 }
 
 fn white() -> Texture {
-    Texture { name: "white".into(), width: 1, height: 1, rgba8: vec![255; 4] }
+    Texture {
+        name: "white".into(),
+        width: 1,
+        height: 1,
+        rgba8: vec![255; 4],
+    }
 }
 
 fn upload(recorder: &mut Recorder, texture: &Texture) -> Result<Image> {

@@ -46,7 +46,12 @@ pub struct IrradianceSettings {
 
 impl Default for IrradianceSettings {
     fn default() -> Self {
-        Self { edge: 32, sampling: Sampling::Quasi, samples: 512, samples_per_pass: 128 }
+        Self {
+            edge: 32,
+            sampling: Sampling::Quasi,
+            samples: 512,
+            samples_per_pass: 128,
+        }
     }
 }
 
@@ -100,7 +105,12 @@ impl Irradiance {
     }
 
     /// Adds the next samples if some are still wanted; starts anew when the sky is new.
-    pub fn record(&mut self, recorder: &mut Recorder, sky_radiance: &Image, new_sky: bool) -> &Image {
+    pub fn record(
+        &mut self,
+        recorder: &mut Recorder,
+        sky_radiance: &Image,
+        new_sky: bool,
+    ) -> &Image {
         if new_sky {
             self.done = 0;
         }
@@ -132,7 +142,10 @@ impl Irradiance {
 
     fn refine(&mut self, recorder: &mut Recorder, sky_radiance: &Image) {
         let left = self.settings.samples - self.done;
-        let push = Push { first: self.done, count: left.min(self.settings.samples_per_pass) };
+        let push = Push {
+            first: self.done,
+            count: left.min(self.settings.samples_per_pass),
+        };
         // The newest sums are always number 0: it becomes what is read.
         self.sums.swap(0, 1);
         let [new, old] = &self.sums;
@@ -155,8 +168,9 @@ fn upload_samples(recorder: &mut Recorder, settings: &IrradianceSettings) -> Res
         // The shader draws its own; the binding must exist all the same.
         Sampling::MonteCarlo => 1,
     };
-    let directions: Vec<[f32; 3]> =
-        (0..count).map(|i| cosine_hemisphere(sobol(i)).as_vec3().to_array()).collect();
+    let directions: Vec<[f32; 3]> = (0..count)
+        .map(|i| cosine_hemisphere(sobol(i)).as_vec3().to_array())
+        .collect();
     let bytes = bytemuck::cast_slice(&directions);
     upload_buffer(recorder, "irradiance samples", BufferKind::Storage, bytes)
 }

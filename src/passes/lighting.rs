@@ -71,8 +71,13 @@ pub enum Show {
 
 impl Show {
     /// The addends of the picture: they sum to [`Show::Beauty`].
-    pub const ADDENDS: [Self; 5] =
-        [Self::Sun, Self::Sky, Self::SunSpecular, Self::SkySpecular, Self::Background];
+    pub const ADDENDS: [Self; 5] = [
+        Self::Sun,
+        Self::Sky,
+        Self::SunSpecular,
+        Self::SkySpecular,
+        Self::Background,
+    ];
 
     /// The inputs of the equation, in the order in which files list them.
     pub const INPUTS: [Self; 6] = [
@@ -204,11 +209,7 @@ impl Lighting {
     ///
     /// # Errors
     /// When the device refuses.
-    pub fn new(
-        context: &Arc<Context>,
-        size: [u32; 2],
-        settings: LightingSettings,
-    ) -> Result<Self> {
+    pub fn new(context: &Arc<Context>, size: [u32; 2], settings: LightingSettings) -> Result<Self> {
         let format = settings.precision.format();
         let mut constants = settings.show.constants().to_vec();
         constants.push(("OCCLUSION_DOWNSCALE", settings.occlusion_downscale));
@@ -224,7 +225,11 @@ impl Lighting {
             },
         )?;
         let radiance = Image::new(context, &ImageDesc::flat("radiance", format, size))?;
-        Ok(Self { settings, pipeline, radiance })
+        Ok(Self {
+            settings,
+            pipeline,
+            radiance,
+        })
     }
 
     /// How it was set.
@@ -289,8 +294,14 @@ mod tests {
 
     #[test]
     fn host_and_shader_agree() {
-        let binding = shaders::LIGHTING_FRAG.bindings.iter().find(|b| b.name == "sun");
-        assert_eq!(check_layout(SunBlock::FIELDS, binding.expect("sun").fields), Ok(()));
+        let binding = shaders::LIGHTING_FRAG
+            .bindings
+            .iter()
+            .find(|b| b.name == "sun");
+        assert_eq!(
+            check_layout(SunBlock::FIELDS, binding.expect("sun").fields),
+            Ok(())
+        );
     }
 
     #[test]

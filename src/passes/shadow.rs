@@ -42,12 +42,19 @@ impl Shadow {
                 stages: &[&shaders::SHADOW_VERT],
                 vertex: &[Format::R32G32B32_SFLOAT],
                 colors: &[],
-                depth: Depth::Write { format, slope_bias: SLOPE_BIAS },
+                depth: Depth::Write {
+                    format,
+                    slope_bias: SLOPE_BIAS,
+                },
                 constants: &[],
             },
         )?;
         let desc = ImageDesc::flat("shadow map", format, [resolution, resolution]);
-        Ok(Self { pipeline, depth: Image::new(context, &desc)?, drawn: None })
+        Ok(Self {
+            pipeline,
+            depth: Image::new(context, &desc)?,
+            drawn: None,
+        })
     }
 
     /// Texels a side.
@@ -65,7 +72,9 @@ impl Shadow {
         if self.drawn.as_ref() != Some(view) {
             recorder
                 .pass("shadow map", &self.pipeline)
-                .push(&Push { shadow_from_world: view.shadow_from_world.to_cols_array_2d() })
+                .push(&Push {
+                    shadow_from_world: view.shadow_from_world.to_cols_array_2d(),
+                })
                 .depth(&self.depth, Load::Clear([0.0; 4]))
                 .draws(|draws| geometry.draw_positions(draws));
             self.drawn = Some(*view);

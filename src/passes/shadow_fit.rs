@@ -20,7 +20,11 @@ pub struct ShadowView {
 
 /// Right, up and toward-the-sun axes of the map.
 fn axes(sun_direction: Vec3) -> [Vec3; 3] {
-    let hint = if sun_direction.y.abs() > 0.99 { Vec3::NEG_Z } else { Vec3::Y };
+    let hint = if sun_direction.y.abs() > 0.99 {
+        Vec3::NEG_Z
+    } else {
+        Vec3::Y
+    };
     let right = hint.cross(sun_direction).normalize();
     [right, sun_direction.cross(right), sun_direction]
 }
@@ -38,10 +42,16 @@ pub fn fit(sun_direction: Vec3, bounds: &Bounds, view: &View, resolution: u32) -
     } else {
         Bounds::of(seen.into_iter().map(to_light))
     };
-    let extent = (receivers.max - receivers.min).truncate().max_element().max(1e-3);
+    let extent = (receivers.max - receivers.min)
+        .truncate()
+        .max_element()
+        .max(1e-3);
     // Two texels of margin on each side for the filter and the snapping.
     let stepped = SCALE_STEP.powf((extent.ln() / SCALE_STEP.ln()).ceil());
-    let whole = (casters.max - casters.min).truncate().max_element().max(1e-3);
+    let whole = (casters.max - casters.min)
+        .truncate()
+        .max_element()
+        .max(1e-3);
     let side = stepped.min(whole.max(extent)) * (1.0 + 4.0 / resolution as f32);
     let texel = side / resolution as f32;
     let centre = 0.5 * (receivers.min + receivers.max).truncate();
@@ -118,17 +128,23 @@ fn clip(mut polygon: Vec<Vec3>, planes: &[Plane]) -> Vec<Vec3> {
 /// Directions of the pyramid's four edges, in order around it.
 fn edges(view: &View) -> [Vec3; 4] {
     let block = view.block();
-    [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| {
-        block.world_from_view * (Vec2::new(x, y) * block.ray_scale).extend(-1.0)
-    })
+    [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+        .map(|(x, y)| block.world_from_view * (Vec2::new(x, y) * block.ray_scale).extend(-1.0))
 }
 
 fn frustum(view: &View) -> [Plane; 4] {
     let (eye, edges, forward) = (view.camera.eye, edges(view), view.camera.forward());
     std::array::from_fn(|i| {
         let normal = edges[i].cross(edges[(i + 1) % 4]).normalize();
-        let normal = if normal.dot(forward) < 0.0 { -normal } else { normal };
-        Plane { normal, offset: -normal.dot(eye) }
+        let normal = if normal.dot(forward) < 0.0 {
+            -normal
+        } else {
+            normal
+        };
+        Plane {
+            normal,
+            offset: -normal.dot(eye),
+        }
     })
 }
 
@@ -145,9 +161,15 @@ fn box_planes(bounds: &Bounds) -> [Plane; 6] {
     std::array::from_fn(|i| {
         let axis = axes[i / 2];
         if i % 2 == 0 {
-            Plane { normal: axis, offset: -bounds.min.dot(axis) }
+            Plane {
+                normal: axis,
+                offset: -bounds.min.dot(axis),
+            }
         } else {
-            Plane { normal: -axis, offset: bounds.max.dot(axis) }
+            Plane {
+                normal: -axis,
+                offset: bounds.max.dot(axis),
+            }
         }
     })
 }
@@ -156,12 +178,42 @@ fn box_faces(bounds: &Bounds) -> [[Vec3; 4]; 6] {
     let (a, b) = (bounds.min, bounds.max);
     let v = Vec3::new;
     [
-        [v(a.x, a.y, a.z), v(a.x, b.y, a.z), v(a.x, b.y, b.z), v(a.x, a.y, b.z)],
-        [v(b.x, a.y, a.z), v(b.x, b.y, a.z), v(b.x, b.y, b.z), v(b.x, a.y, b.z)],
-        [v(a.x, a.y, a.z), v(b.x, a.y, a.z), v(b.x, a.y, b.z), v(a.x, a.y, b.z)],
-        [v(a.x, b.y, a.z), v(b.x, b.y, a.z), v(b.x, b.y, b.z), v(a.x, b.y, b.z)],
-        [v(a.x, a.y, a.z), v(b.x, a.y, a.z), v(b.x, b.y, a.z), v(a.x, b.y, a.z)],
-        [v(a.x, a.y, b.z), v(b.x, a.y, b.z), v(b.x, b.y, b.z), v(a.x, b.y, b.z)],
+        [
+            v(a.x, a.y, a.z),
+            v(a.x, b.y, a.z),
+            v(a.x, b.y, b.z),
+            v(a.x, a.y, b.z),
+        ],
+        [
+            v(b.x, a.y, a.z),
+            v(b.x, b.y, a.z),
+            v(b.x, b.y, b.z),
+            v(b.x, a.y, b.z),
+        ],
+        [
+            v(a.x, a.y, a.z),
+            v(b.x, a.y, a.z),
+            v(b.x, a.y, b.z),
+            v(a.x, a.y, b.z),
+        ],
+        [
+            v(a.x, b.y, a.z),
+            v(b.x, b.y, a.z),
+            v(b.x, b.y, b.z),
+            v(a.x, b.y, b.z),
+        ],
+        [
+            v(a.x, a.y, a.z),
+            v(b.x, a.y, a.z),
+            v(b.x, b.y, a.z),
+            v(a.x, b.y, a.z),
+        ],
+        [
+            v(a.x, a.y, b.z),
+            v(b.x, a.y, b.z),
+            v(b.x, b.y, b.z),
+            v(a.x, b.y, b.z),
+        ],
     ]
 }
 
@@ -173,12 +225,24 @@ mod tests {
     use crate::scene::Camera;
 
     fn scene() -> Bounds {
-        Bounds { min: Vec3::new(-10.0, 0.0, -12.0), max: Vec3::new(14.0, 6.0, 9.0) }
+        Bounds {
+            min: Vec3::new(-10.0, 0.0, -12.0),
+            max: Vec3::new(14.0, 6.0, 9.0),
+        }
     }
 
     fn view(eye: Vec3, target: Vec3) -> View {
-        let camera = Camera { eye, target, fov_deg: 45.0, near: 0.01 };
-        View { camera, size: UVec2::new(640, 360), jitter: Vec2::ZERO }
+        let camera = Camera {
+            eye,
+            target,
+            fov_deg: 45.0,
+            near: 0.01,
+        };
+        View {
+            camera,
+            size: UVec2::new(640, 360),
+            jitter: Vec2::ZERO,
+        }
     }
 
     fn suns() -> [Vec3; 4] {
@@ -238,7 +302,8 @@ mod tests {
         let (a, b) = (at(0.0), at(0.013));
         if a.texel == b.texel {
             let p = Vec3::new(1.0, 0.5, -2.0);
-            let texels = |v: &ShadowView| v.shadow_from_world.transform_point3(p).truncate() * 512.0;
+            let texels =
+                |v: &ShadowView| v.shadow_from_world.transform_point3(p).truncate() * 512.0;
             let moved = texels(&a) - texels(&b);
             assert!((moved - moved.round()).length() < 0.02, "{moved}");
         }
@@ -246,9 +311,18 @@ mod tests {
 
     #[test]
     fn a_close_view_gets_finer_texels() {
-        let far = fit(suns()[1], &scene(), &view(Vec3::splat(40.0), Vec3::ZERO), 1024);
-        let near =
-            fit(suns()[1], &scene(), &view(Vec3::new(1.0, 0.5, 1.0), Vec3::new(0.0, 0.0, 0.5)), 1024);
+        let far = fit(
+            suns()[1],
+            &scene(),
+            &view(Vec3::splat(40.0), Vec3::ZERO),
+            1024,
+        );
+        let near = fit(
+            suns()[1],
+            &scene(),
+            &view(Vec3::new(1.0, 0.5, 1.0), Vec3::new(0.0, 0.0, 0.5)),
+            1024,
+        );
         assert!(near.texel < far.texel, "{} {}", near.texel, far.texel);
     }
 }

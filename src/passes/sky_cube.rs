@@ -63,7 +63,11 @@ fn pipeline(context: &Arc<Context>, name: &str, fragment: &'static Shader) -> Re
         context,
         &PipelineDesc {
             name,
-            stages: &[&shaders::FULLSCREEN_VERT, &shaders::CUBE_FACES_GEOM, fragment],
+            stages: &[
+                &shaders::FULLSCREEN_VERT,
+                &shaders::CUBE_FACES_GEOM,
+                fragment,
+            ],
             vertex: &[],
             colors: &[Format::R16G16B16A16_SFLOAT],
             depth: Depth::Off,
@@ -133,9 +137,15 @@ impl SkyCube {
             }
             Sky::Hosek(sky) => {
                 let coefficients = std::array::from_fn(|i| sky.coefficients[i / 9][i % 9] as f32);
-                let model = HosekModel { coefficients, mean_radiance: kilo(sky.mean_radiance) };
+                let model = HosekModel {
+                    coefficients,
+                    mean_radiance: kilo(sky.mean_radiance),
+                };
                 let pass = recorder.pass("sky cube", &self.hosek);
-                pass.uniform("model", &model).push(&push).color(target, Load::Discard).draw();
+                pass.uniform("model", &model)
+                    .push(&push)
+                    .color(target, Load::Discard)
+                    .draw();
             }
             Sky::Overcast(sky) => {
                 let zenith_luminance = (sky.zenith_luminance * 1e-3) as f32;
@@ -168,10 +178,15 @@ mod tests {
 
     #[test]
     fn host_and_shader_agree() {
-        for stage in
-            [&shaders::SKY_PREETHAM_FRAG, &shaders::SKY_HOSEK_FRAG, &shaders::SKY_OVERCAST_FRAG]
-        {
-            assert_eq!(check_layout(Push::FIELDS, stage.push.expect("push")), Ok(()));
+        for stage in [
+            &shaders::SKY_PREETHAM_FRAG,
+            &shaders::SKY_HOSEK_FRAG,
+            &shaders::SKY_OVERCAST_FRAG,
+        ] {
+            assert_eq!(
+                check_layout(Push::FIELDS, stage.push.expect("push")),
+                Ok(())
+            );
         }
         let model = |stage: &Shader| stage.bindings[0].fields;
         let check = |host, stage| assert_eq!(check_layout(host, model(stage)), Ok(()));

@@ -34,7 +34,12 @@ pub struct SsaoSettings {
 
 impl Default for SsaoSettings {
     fn default() -> Self {
-        Self { radius: 1.0, downscale: 2, slices: 2, steps: 6 }
+        Self {
+            radius: 1.0,
+            downscale: 2,
+            slices: 2,
+            steps: 6,
+        }
     }
 }
 
@@ -118,7 +123,10 @@ impl Ssao {
             .sample("depth", &surfaces.depth, Sampler::Nearest)
             .sample("normal", &surfaces.normal, Sampler::Nearest)
             .uniform("view", &view.block())
-            .push(&Push { radius: self.settings.radius, phase })
+            .push(&Push {
+                radius: self.settings.radius,
+                phase,
+            })
             .color(&self.noisy, Load::Discard)
             .draw();
         recorder

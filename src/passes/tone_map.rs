@@ -96,7 +96,11 @@ impl ToneMap {
             },
         )?;
         let display = Image::new(context, &ImageDesc::flat("display", format, size))?;
-        Ok(Self { settings, pipeline, display })
+        Ok(Self {
+            settings,
+            pipeline,
+            display,
+        })
     }
 
     /// Maps a picture. `average_luminance` is one texel, read only for an automatic exposure.
@@ -124,8 +128,11 @@ impl ToneMap {
             Show::Visibility | Show::Occlusion | Show::Albedo => (1.0, 0.0),
             shown => {
                 // An irradiance is shown as the radiance of white paper under it.
-                let paper =
-                    if shown == Show::Irradiance { std::f64::consts::FRAC_1_PI } else { 1.0 };
+                let paper = if shown == Show::Irradiance {
+                    std::f64::consts::FRAC_1_PI
+                } else {
+                    1.0
+                };
                 match s.scale {
                     Scale::Fixed(per_candela) => (paper * per_candela * 1e3, 0.0),
                     Scale::Average(key) => (key, 0.0),

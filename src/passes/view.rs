@@ -73,13 +73,21 @@ mod tests {
             fov_deg: 50.0,
             near: 0.01,
         };
-        View { camera, size: UVec2::new(640, 360), jitter }
+        View {
+            camera,
+            size: UVec2::new(640, 360),
+            jitter,
+        }
     }
 
     #[test]
     fn host_and_shader_agree() {
         for stage in [&shaders::SSAO_FRAG, &shaders::LIGHTING_FRAG] {
-            let binding = stage.bindings.iter().find(|b| b.name == "view").expect("view");
+            let binding = stage
+                .bindings
+                .iter()
+                .find(|b| b.name == "view")
+                .expect("view");
             assert_eq!(check_layout(ViewBlock::FIELDS, binding.fields), Ok(()));
         }
     }

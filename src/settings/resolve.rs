@@ -101,7 +101,7 @@ pub struct Settings {
     pub sun_position: SunPositionMethod,
     /// Model of the sky.
     pub sky: SkyModel,
-    /// 2..10 with the Preetham sky, else 1..10.
+    /// As given; the daylight clamps it to what the sky model holds for and says so.
     pub turbidity: f64,
     /// 0..1; 0 is black below the horizon.
     pub ground_albedo: f64,
@@ -181,10 +181,6 @@ impl Settings {
             ));
         }
         let (sky, turbidity) = (o.sky.unwrap_or_default(), o.turbidity.unwrap_or(3.0));
-        if sky == SkyModel::Preetham && turbidity < 2.0 {
-            let what = "turbidity must be 2 to 10 with the preetham sky; use --sky hosek";
-            return Err(SettingsError(what.to_owned()));
-        }
         Ok(Self {
             sun: sun(&o)?,
             size: o.size.unwrap_or(Size {

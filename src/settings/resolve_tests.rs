@@ -141,8 +141,8 @@ fn bad_values_are_one_line() {
         ),
         (
             ("sky", "preetham"),
-            ("turbidity", "1.5"),
-            "turbidity must be 2 to 10",
+            ("turbidity", "1500"),
+            "turbidity must be -100 to 100",
         ),
         (("eye", "0,1,0"), ("target", "0,1,0"), "the same point"),
         (

@@ -14,6 +14,12 @@ newmtl ground
 Kd 0.30 0.27 0.19
 newmtl gravel
 Kd 0.42 0.38 0.31
+newmtl slab-light
+Kd 0.55 0.50 0.42
+newmtl slab-middle
+Kd 0.47 0.42 0.34
+newmtl slab-dark
+Kd 0.40 0.35 0.28
 newmtl limestone
 Kd 0.62 0.55 0.43
 newmtl marble
@@ -220,6 +226,7 @@ fn main() -> std::io::Result<()> {
     entablature(&mut model);
     roof(&mut model);
     pool(&mut model);
+    paving(&mut model);
     stones(&mut model);
     urns(&mut model);
     for (i, [x, z, height]) in CYPRESSES.into_iter().enumerate() {
@@ -248,7 +255,7 @@ fn column_places() -> Vec<[f64; 2]> {
 /// Meadow around, gravel near: gently rolling far from the temple, flat under it, with the pool cut out.
 fn ground(model: &mut Model) {
     model.material("ground");
-    let (steps, size) = (96, 140.0);
+    let (steps, size) = (72, 140.0);
     let place = |i: usize| {
         // Finer toward the middle.
         let t = 2.0 * i as f64 / steps as f64 - 1.0;
@@ -320,8 +327,8 @@ fn column(model: &mut Model, foot: Point) {
     let [x, y, z] = foot;
     model.material("marble");
     model.cuboid([x - 0.56, y, z - 0.56], [x + 0.56, y + 0.14, z + 0.56]);
-    let torus: Vec<(f64, f64)> = (0..=8)
-        .map(|i| TAU / 2.0 * f64::from(i) / 8.0)
+    let torus: Vec<(f64, f64)> = (0..=6)
+        .map(|i| TAU / 2.0 * f64::from(i) / 6.0)
         .map(|angle| (0.44 + 0.09 * angle.sin(), 0.23 - 0.09 * angle.cos()))
         .collect();
     model.lathe(foot, &torus, 24);
@@ -353,7 +360,7 @@ fn column(model: &mut Model, foot: Point) {
 
 /// Flutes: shallow arcs between sharp arrises, four facets each.
 fn shaft(model: &mut Model, foot: Point, from: f64, to: f64) {
-    let (facets, rows) = (4, 7);
+    let (facets, rows) = (4, 6);
     let radius = |h: f64| {
         let t = (h - from) / (to - from);
         0.44 - 0.085 * t + 0.018 * (TAU / 2.0 * t).sin()
@@ -453,14 +460,6 @@ fn roof(model: &mut Model) {
             [outer[i], outer[j], inner[j], inner[i]],
             [eave + 0.14, eave + rise],
         );
-        let flat = |p: [f64; 2], y: f64| [p[0], y, p[1]];
-        // The edge of the eave, and the rim of the opening.
-        model.flat(&[
-            flat(outer[i], eave),
-            flat(outer[j], eave),
-            flat(outer[j], eave + 0.14),
-            flat(outer[i], eave + 0.14),
-        ]);
     }
     model.material("timber");
     for i in 0..4 {
@@ -502,21 +501,37 @@ fn slope_of_tiles(model: &mut Model, corners: [[f64; 2]; 4], y: [f64; 2]) {
         |p: [f64; 2], q: [f64; 2], t: f64| [p[0] + (q[0] - p[0]) * t, p[1] + (q[1] - p[1]) * t];
     let columns = 4 * rolls + 1;
     let along = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
-    model.surface(2, columns, |row, column| {
+    let outward = [-along[1], 0.0, along[0]];
+    let place = |row: usize, column: usize| {
         let s = column as f64 / (columns - 1) as f64;
-        let p = if row == 0 { mix(a, b, s) } else { mix(d, c, s) };
-        let phase = TAU * rolls as f64 * s;
-        let height = y[row] + 0.045 * (1.0 - phase.cos());
-        let slope = 0.045 * phase.sin() * TAU * rolls as f64 / length;
-        let up = 0.32 * 0.5;
         (
-            [p[0], height, p[1]],
+            if row == 0 { mix(a, b, s) } else { mix(d, c, s) },
+            TAU * rolls as f64 * s,
+        )
+    };
+    let roll = |phase: f64| 0.045 * (1.0 - phase.cos());
+    model.surface(2, columns, |row, column| {
+        let (p, phase) = place(row, column);
+        let slope = 0.045 * phase.sin() * TAU * rolls as f64 / length;
+        let up = 0.16;
+        (
+            [p[0], y[row] + roll(phase), p[1]],
             [
                 -slope * along[0] - up * along[1],
                 1.0,
                 -slope * along[1] + up * along[0],
             ],
         )
+    });
+    // The face of the eave follows the rolls.
+    model.surface(2, columns, |row, column| {
+        let (p, phase) = place(0, column);
+        let height = if row == 0 {
+            y[0] - 0.14
+        } else {
+            y[0] + roll(phase)
+        };
+        ([p[0], height, p[1]], outward)
     });
 }
 
@@ -538,6 +553,41 @@ fn pool(model: &mut Model) {
     model.cuboid([x1, -0.3, z0], [x1 + rim, top, z1]);
 }
 
+/// Slabs of three tones around the pool, with joints of gravel; some are missing at the edge.
+fn paving(model: &mut Model) {
+    let mut chance = Chance(4);
+    let ([columns, rows], edge, joint) = ([18, 18], 1.0, 0.025);
+    let mut slabs: [Vec<[f64; 2]>; 3] = Default::default();
+    for (row, column) in grid(rows, columns) {
+        let (x, z) = (column as f64 - 9.0, row as f64 + 5.95);
+        let (tone, missing) = (chance.next(), chance.next());
+        let inside = x + edge > POOL[0][0] - 0.5
+            && x < POOL[1][0] + 0.5
+            && z + edge > POOL[0][1] - 0.5
+            && z < POOL[1][1] + 0.5;
+        let border = (x + 0.5).abs() > 7.6 || z > 21.0;
+        if !inside && !(border && missing > 0.1) {
+            slabs[if tone < -0.35 {
+                0
+            } else if tone < 0.4 {
+                1
+            } else {
+                2
+            }]
+            .push([x, z]);
+        }
+    }
+    for (material, slabs) in ["slab-light", "slab-middle", "slab-dark"].iter().zip(slabs) {
+        model.material(material);
+        for [x, z] in slabs {
+            model.cuboid(
+                [x + joint, -0.05, z + joint],
+                [x + edge - joint, 0.045, z + edge - joint],
+            );
+        }
+    }
+}
+
 /// Fallen drums and blocks in the grass, some turned.
 fn stones(model: &mut Model) {
     model.material("limestone");
@@ -547,16 +597,15 @@ fn stones(model: &mut Model) {
         (-11.0, 13.6, 1.1, 1.0, 0.1),
         (9.9, 9.6, 1.7, 0.55, -0.4),
         (10.3, 9.7, 0.8, 1.15, -0.2),
-        (8.2, 21.3, 1.2, 0.6, 0.6),
+        (-10.4, 19.3, 1.2, 0.6, 0.6),
     ] {
         turned_block(model, [x, 0.0, z], [width, height, 0.62 * width], turn);
     }
     model.material("marble");
-    let drum = [(0.0, 0.78), (0.43, 0.78)].map(|(r, h): (f64, f64)| (0.43 - r, h));
-    for [x, z] in [[-12.6, 9.2], [11.9, 14.0]] {
+    for [x, z] in [[-12.6, 9.2], [13.8, 7.4]] {
         let side = [(0.45, 0.0), (0.43, 0.78)];
         model.lathe([x, 0.0, z], &side, 32);
-        model.lathe([x, 0.0, z], &[drum[0], drum[1]], 32);
+        model.lathe([x, 0.0, z], &[(0.43, 0.78), (0.02, 0.78)], 32);
     }
 }
 
@@ -603,7 +652,12 @@ fn urns(model: &mut Model) {
     ];
     let inside: Vec<(f64, f64)> = (0..=8)
         .map(|i| f64::from(i) / 8.0)
-        .map(|t| (0.56 * (1.0 - t), 1.41 - 0.25 * (1.0 - (1.0 - t).powi(2))))
+        .map(|t| {
+            (
+                (0.56 * (1.0 - t)).max(0.02),
+                1.41 - 0.25 * (1.0 - (1.0 - t).powi(2)),
+            )
+        })
         .collect();
     for [x, z] in [[-5.9, 9.0], [5.9, 9.0], [-5.9, 20.4], [5.9, 20.4]] {
         let foot = [x, 0.0, z];
@@ -645,7 +699,7 @@ fn cypress(model: &mut Model, foot: Point, height: f64, seed: u64) {
         let spindle = (TAU / 2.0 * t.powf(0.62)).sin().max(0.0).powf(0.75);
         let lump = 1.0 + 0.16 * lumps[row * sides + column % sides];
         let angle = -TAU * (column % sides) as f64 / sides as f64;
-        let r = 0.092 * height * spindle * lump;
+        let r = (0.092 * height * spindle * lump).max(0.03);
         [
             foot[0] + r * angle.cos(),
             foot[1] + 0.5 + (height - 0.5) * t,

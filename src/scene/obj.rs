@@ -111,7 +111,10 @@ fn left_out(dropped: Dropped, cleaned: &Cleaned, undrawn: Undrawn) -> Vec<String
             undrawn.0,
             "triangles of transparent materials (d < 0.5) left undrawn",
         ),
-        (cleaned.not_faces, "points and lines skipped"),
+        (
+            cleaned.not_faces,
+            "points, lines and faces of fewer than three corners skipped",
+        ),
         (
             cleaned.dangling,
             "faces name normals or texture coordinates that do not exist; computed instead",

@@ -221,10 +221,15 @@ impl Cleaner {
         match corner[0] {
             Index::At(_) => Ok(corner),
             Index::None => Err(format!("\"{word}\" names no vertex")),
-            Index::Nowhere => Err(format!(
-                "\"{word}\" names a vertex that does not exist (there are {})",
-                self.total.0[0]
-            )),
+            Index::Nowhere if word.split('/').next() == Some("0") => {
+                Err(format!("\"{word}\" has number 0; OBJ counts from 1"))
+            }
+            Index::Nowhere => {
+                let total = self.total.0[0];
+                Err(format!(
+                    "\"{word}\" names a vertex that does not exist (there are {total})"
+                ))
+            }
         }
     }
 }
@@ -315,7 +320,7 @@ mod tests {
     fn bad_faces_name_their_line() {
         for (face, part) in [
             ("f 1 2 9", "does not exist"),
-            ("f 0 1 2", "does not exist"),
+            ("f 0 1 2", "counts from 1"),
             ("f 1 2 -4", "does not exist"),
             ("f 1 2 99999999999999999999999", "not a corner"),
             ("f -9223372036854775808 1 2", "does not exist"),

@@ -124,11 +124,11 @@ impl Model {
     /// A surface of revolution around the vertical axis through `centre`; `profile` is (radius, height) from below to
     /// above. Sharp where a point is given twice.
     fn lathe(&mut self, centre: Point, profile: &[(f64, f64)], sides: usize) {
-        for piece in profile.split_inclusive_pairs() {
+        for piece in smooth_pieces(profile) {
             self.surface(piece.len(), sides + 1, |row, column| {
                 let angle = -TAU * column as f64 / sides as f64;
                 let (radius, height) = piece[row];
-                let (dr, dh) = tangent(&piece, row);
+                let (dr, dh) = tangent(piece, row);
                 let (sin, cos) = angle.sin_cos();
                 let point = [
                     centre[0] + radius * cos,
@@ -142,24 +142,11 @@ impl Model {
 }
 
 /// Splits a profile at points that are given twice.
-trait SplitProfile {
-    fn split_inclusive_pairs(&self) -> Vec<Vec<(f64, f64)>>;
-}
-
-impl SplitProfile for [(f64, f64)] {
-    fn split_inclusive_pairs(&self) -> Vec<Vec<(f64, f64)>> {
-        let mut pieces = vec![Vec::new()];
-        for (i, point) in self.iter().enumerate() {
-            if i > 0 && self[i - 1] == *point {
-                pieces.push(Vec::new());
-            }
-            pieces
-                .last_mut()
-                .into_iter()
-                .for_each(|piece| piece.push(*point));
-        }
-        pieces.into_iter().filter(|piece| piece.len() > 1).collect()
-    }
+fn smooth_pieces(profile: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
+    profile
+        .chunk_by(|a, b| a != b)
+        .filter(|piece| piece.len() > 1)
+        .collect()
 }
 
 fn tangent(profile: &[(f64, f64)], row: usize) -> (f64, f64) {
@@ -566,16 +553,9 @@ fn paving(model: &mut Model) {
             && z + edge > POOL[0][1] - 0.5
             && z < POOL[1][1] + 0.5;
         let border = (x + 0.5).abs() > 7.6 || z > 21.0;
-        if !inside && !(border && missing > 0.1) {
-            slabs[if tone < -0.35 {
-                0
-            } else if tone < 0.4 {
-                1
-            } else {
-                2
-            }]
-            .push([x, z]);
-        }
+        let left_out = inside || (border && missing > 0.1);
+        let shade = usize::from(tone > -0.35) + usize::from(tone > 0.4);
+        slabs[shade].extend((!left_out).then_some([x, z]));
     }
     for (material, slabs) in ["slab-light", "slab-middle", "slab-dark"].iter().zip(slabs) {
         model.material(material);

@@ -227,8 +227,11 @@ fn textures_are_found_and_upright() {
     assert!(r - b > 40, "the muzzle is {:?}", &texture.rgba8[at..at + 3]);
 }
 
+/// Names and contents.
+type Files<'a> = &'a [(&'a str, &'a [u8])];
+
 /// A scratch folder with these files; returns the path of the first.
-fn folder(files: &[(&str, &[u8])]) -> (tempfile::TempDir, PathBuf) {
+fn folder(files: Files) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().expect("a scratch folder");
     for (name, bytes) in files {
         fs::write(folder.path().join(name), bytes).expect("a file");
@@ -237,7 +240,7 @@ fn folder(files: &[(&str, &[u8])]) -> (tempfile::TempDir, PathBuf) {
     (folder, first)
 }
 
-fn try_load(files: &[(&str, &[u8])]) -> Result<Loaded, String> {
+fn try_load(files: Files) -> Result<Loaded, String> {
     let (_folder, path) = folder(files);
     load(&path, &LoadOptions::default()).map_err(|error| error.to_string())
 }
@@ -287,7 +290,7 @@ fn hostile_models_are_refused_with_one_line() {
 fn missing_helpers_are_warnings() {
     let obj = format!("mtllib m.mtl\n{TRIANGLE}usemtl a\nf 1 2 3\n");
     let obj = obj.as_bytes();
-    let cases: [(&[(&str, &[u8])], &str); 5] = [
+    let cases: [(Files, &str); 5] = [
         (&[("m.obj", obj)], "material library \"m.mtl\" is missing"),
         (
             &[("m.obj", obj), ("m.mtl", b"newmtl b\n")],

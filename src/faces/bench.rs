@@ -4,14 +4,13 @@
 //! pass. The whole frame is one submission.
 
 use std::path::Path;
-use std::time::Instant;
 
 use serde_json::{Value, json};
 
 use super::job::Job;
 use crate::error::Result;
 use crate::frame::Frame;
-use crate::gpu::{Recorder, Timing};
+use crate::gpu::{Recorder, Stopwatch, Timing};
 use crate::output::write_text;
 use crate::passes::lighting::Precision;
 use crate::settings::Options;
@@ -45,7 +44,10 @@ pub fn run(
         size.height,
         job.scene.triangles()
     );
-    println!("{:20} {:>9} {:>9} {:>9}  ms", "pass", "median", "p5", "p95");
+    println!(
+        "{:30} {:>9} {:>9} {:>9} {:>9}",
+        "milliseconds", "median", "p5", "p95", "CPU"
+    );
     for (name, times) in &passes {
         println!("{}", row(name, times));
     }
@@ -56,8 +58,19 @@ pub fn run(
     Ok(())
 }
 
-/// Times of one name.
-type Samples = Vec<f64>;
+/// Times of one name, milliseconds.
+#[derive(Default)]
+struct Samples {
+    wall: Vec<f64>,
+    cpu: Vec<f64>,
+}
+
+impl Samples {
+    fn push(&mut self, wall: f64, cpu: f64) {
+        self.wall.push(wall);
+        self.cpu.push(cpu);
+    }
+}
 
 /// Every pass with everything drawn anew each frame.
 fn measure_passes(
@@ -75,11 +88,13 @@ fn measure_passes(
         if i < WARM_UP {
             continue;
         }
-        for (name, time) in recorder.timings().passes() {
-            match passes.iter_mut().find(|p| p.0 == *name) {
-                Some((_, times)) => times.push(*time),
-                None => passes.push((name, vec![*time])),
+        for time in recorder.timings().passes() {
+            let known = passes.iter().position(|p| p.0 == time.name);
+            let index = known.unwrap_or(passes.len());
+            if known.is_none() {
+                passes.push((time.name, Samples::default()));
             }
+            passes[index].1.push(time.ms, time.cpu_ms);
         }
     }
     Ok(passes)
@@ -93,14 +108,15 @@ fn measure_frames(job: &Job, mut recorder: Recorder, frames: u32) -> Result<Samp
         frame.record_light(&mut recorder, &job.daylight);
         recorder.finish()?;
     }
-    let mut times = Vec::new();
+    let mut times = Samples::default();
     for i in 0..WARM_UP + frames {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         recorder.begin()?;
         frame.record(&mut recorder, &job.daylight, &job.camera, 0);
         recorder.finish()?;
         if i >= WARM_UP {
-            times.push(start.elapsed().as_secs_f64() * 1e3);
+            let (wall, cpu) = start.elapsed_ms();
+            times.push(wall, cpu);
         }
     }
     Ok(times)
@@ -125,18 +141,23 @@ fn quantile(samples: &[f64], q: f64) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
-fn row(name: &str, times: &[f64]) -> String {
-    let [median, low, high] = [0.5, 0.05, 0.95].map(|q| quantile(times, q));
-    format!("{name:20} {median:9.2} {low:9.2} {high:9.2}")
+fn row(name: &str, times: &Samples) -> String {
+    let [median, low, high] = [0.5, 0.05, 0.95].map(|q| quantile(&times.wall, q));
+    let cpu = quantile(&times.cpu, 0.5);
+    format!("{name:30} {median:9.2} {low:9.2} {high:9.2} {cpu:9.2}")
 }
 
 fn write_json(
     path: &Path,
     job: &Job,
     passes: &[(&'static str, Samples)],
-    whole: &[f64],
+    whole: &Samples,
 ) -> Result<()> {
-    let times = |t: &[f64]| json!({ "median_ms": quantile(t, 0.5), "p5_ms": quantile(t, 0.05), "p95_ms": quantile(t, 0.95) });
+    let times = |t: &Samples| {
+        let [median, low, high] = [0.5, 0.05, 0.95].map(|q| quantile(&t.wall, q));
+        let cpu = quantile(&t.cpu, 0.5);
+        json!({ "median_ms": median, "p5_ms": low, "p95_ms": high, "cpu_median_ms": cpu })
+    };
     let passes: Vec<Value> = passes
         .iter()
         .map(|(name, t)| {

@@ -41,5 +41,5 @@ pub use read_back::{Pixels, read_back};
 pub use recorder::Recorder;
 pub use select::{DeviceSummary, devices};
 pub use shader::{Binding, BindingKind, Field, Shader, Stage, compiled as shaders};
-pub use timings::{Timing, Timings};
+pub use timings::{PassTime, Stopwatch, Timing, Timings};
 pub use upload::{upload_buffer, upload_texture};

@@ -1,7 +1,6 @@
 //! Records commands, submits them, waits for them.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use ash::vk;
 use bytemuck::Pod;
@@ -13,7 +12,7 @@ use super::error::{During, GpuError, Result};
 use super::image::Image;
 use super::pass::Pass;
 use super::pipeline::Pipeline;
-use super::timings::{Queries, Timing, Timings, elapsed_ms};
+use super::timings::{PassTime, Queries, Stopwatch, Timing, Timings};
 
 /// Bytes of uniform blocks a recorder can hold between `begin` and `finish`.
 const UNIFORM_BYTES: u64 = 1 << 16;
@@ -243,9 +242,10 @@ impl Recorder {
     /// With [`Timing::Isolated`], runs the pass that was just recorded and starts anew.
     pub(super) fn isolate(&mut self, mark: &Mark) {
         let Mark::Wall(name) = mark else { return };
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let done = self.submit_and_wait();
-        self.timings.push(name, elapsed_ms(start));
+        let (ms, cpu_ms) = start.elapsed_ms();
+        self.timings.push(PassTime { name, ms, cpu_ms });
         if let Err(fault) = done.and_then(|()| self.begin_commands()) {
             self.fault.get_or_insert(fault);
         }

@@ -1,9 +1,10 @@
 //! Times of passes, by their names.
 
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use ash::vk;
+use cpu_time::ProcessTime;
 
 use super::context::Context;
 use super::error::{During, Result};
@@ -20,10 +21,45 @@ pub enum Timing {
     Isolated,
 }
 
-/// Times of the passes of one frame, milliseconds, in the order of recording.
+/// Time of one pass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PassTime {
+    /// Name of the pass.
+    pub name: &'static str,
+    /// Milliseconds of the device, or of the wall clock with [`Timing::Isolated`].
+    pub ms: f64,
+    /// Milliseconds of all threads of this process, with [`Timing::Isolated`]: what a software driver spends. It hardly
+    /// moves with the load of the machine.
+    pub cpu_ms: f64,
+}
+
+/// Times of the passes of one frame, in the order of recording.
 #[derive(Debug, Clone, Default)]
 pub struct Timings {
-    passes: Vec<(&'static str, f64)>,
+    passes: Vec<PassTime>,
+}
+
+/// Wall clock and CPU clock, started together.
+#[derive(Debug, Clone, Copy)]
+pub struct Stopwatch {
+    wall: Instant,
+    cpu: ProcessTime,
+}
+
+impl Stopwatch {
+    /// Starts both.
+    pub fn start() -> Self {
+        Self {
+            wall: Instant::now(),
+            cpu: ProcessTime::now(),
+        }
+    }
+
+    /// Milliseconds since: of the wall, and of all threads of this process.
+    pub fn elapsed_ms(&self) -> (f64, f64) {
+        let ms = |d: Duration| d.as_secs_f64() * 1e3;
+        (ms(self.wall.elapsed()), ms(self.cpu.elapsed()))
+    }
 }
 
 impl Timings {
@@ -31,12 +67,12 @@ impl Timings {
         self.passes.clear();
     }
 
-    pub(super) fn push(&mut self, name: &'static str, milliseconds: f64) {
-        self.passes.push((name, milliseconds));
+    pub(super) fn push(&mut self, time: PassTime) {
+        self.passes.push(time);
     }
 
-    /// Name and milliseconds of each pass.
-    pub fn passes(&self) -> &[(&'static str, f64)] {
+    /// Each pass.
+    pub fn passes(&self) -> &[PassTime] {
         &self.passes
     }
 }
@@ -119,7 +155,12 @@ impl Queries {
         .during("read timestamps")?;
         let to_ms = f64::from(self.context.limits.timestamp_period) * 1e-6;
         for (name, pair) in self.names.iter().zip(ticks.chunks_exact(2)) {
-            into.push(name, pair[1].saturating_sub(pair[0]) as f64 * to_ms);
+            let ms = pair[1].saturating_sub(pair[0]) as f64 * to_ms;
+            into.push(PassTime {
+                name,
+                ms,
+                cpu_ms: f64::NAN,
+            });
         }
         Ok(())
     }
@@ -130,9 +171,4 @@ impl Drop for Queries {
         // SAFETY: the recorder that owns this has waited for its work.
         unsafe { self.context.raw().destroy_query_pool(self.pool, None) };
     }
-}
-
-/// Wall time of a submission.
-pub(super) fn elapsed_ms(since: Instant) -> f64 {
-    since.elapsed().as_secs_f64() * 1e3
 }

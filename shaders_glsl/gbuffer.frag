@@ -12,6 +12,9 @@ layout(location = 0) out vec2 normal;        // world, octahedral
 layout(location = 1) out vec4 albedo;        // rgb: rho_d; a: factor on rho_s
 layout(location = 2) out uint material;      // index into the table of materials
 
+layout(constant_id = 0) const bool DIFFUSE_MAP = true;
+layout(constant_id = 1) const bool SPECULAR_MAP = true;
+
 layout(set = 0, binding = 0) uniform sampler2D diffuse_map;
 layout(set = 0, binding = 1) uniform sampler2D specular_map;
 
@@ -26,7 +29,8 @@ vec3 facing_normal() {
 
 void main() {
     normal = octahedral_encode(facing_normal());
-    vec3 specular = texture(specular_map, surface_uv).rgb;
-    albedo = vec4(push.diffuse * texture(diffuse_map, surface_uv).rgb, dot(specular, vec3(1.0 / 3.0)));
+    albedo = vec4(push.diffuse, 1.0);
+    if (DIFFUSE_MAP) albedo.rgb *= texture(diffuse_map, surface_uv).rgb;
+    if (SPECULAR_MAP) albedo.a = dot(texture(specular_map, surface_uv).rgb, vec3(1.0 / 3.0));
     material = push.material;
 }

@@ -9,6 +9,7 @@ use crate::daylight::sky::Daylight;
 use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
 use crate::gpu::{Context, Image, Recorder, Result};
 use crate::passes::accumulate::Accumulate;
+use crate::passes::background::Background;
 use crate::passes::exposure::Exposure;
 use crate::passes::gbuffer::Gbuffer;
 use crate::passes::geometry::Geometry;
@@ -62,6 +63,7 @@ pub struct Frame {
     gbuffer: Gbuffer,
     ssao: Ssao,
     lighting: Lighting,
+    background: Background,
     accumulate: Option<Accumulate>,
     exposure: Exposure,
     tone_map: ToneMap,
@@ -72,18 +74,27 @@ impl Frame {
     ///
     /// # Errors
     /// When the device refuses or has no memory left.
-    pub fn new(recorder: &mut Recorder, scene: &Scene, settings: FrameSettings) -> Result<Self> {
+    pub fn new(
+        recorder: &mut Recorder,
+        scene: &Scene,
+        mut settings: FrameSettings,
+    ) -> Result<Self> {
         let context = recorder.context().clone();
         let size = settings.size.to_array();
         let averaged = settings.samples > 1;
+        let geometry = Geometry::new(recorder, scene)?;
+        if !geometry.is_specular() {
+            settings.lighting.specular_scale = 0.0;
+        }
         Ok(Self {
-            geometry: Geometry::new(recorder, scene)?,
+            geometry,
             sky_cube: SkyCube::new(&context, settings.sky_edge)?,
             irradiance: Irradiance::new(recorder, settings.irradiance)?,
             shadow: Shadow::new(&context, settings.shadow_resolution)?,
             gbuffer: Gbuffer::new(&context, size)?,
             ssao: Ssao::new(&context, size, settings.ssao)?,
             lighting: Lighting::new(&context, size, settings.lighting)?,
+            background: Background::new(&context, settings.lighting)?,
             accumulate: averaged
                 .then(|| Accumulate::new(&context, size))
                 .transpose()?,
@@ -127,6 +138,8 @@ impl Frame {
         let frame = self
             .lighting
             .record(rec, surfaces, materials, occlusion, &light, &view);
+        self.background
+            .record(rec, &surfaces.depth, &light, &view, frame);
         let radiance = match &mut self.accumulate {
             Some(accumulate) => accumulate.record(rec, frame, index),
             None => frame,
@@ -146,6 +159,7 @@ impl Frame {
         self.settings.lighting.show = show;
         self.settings.tone.show = show;
         self.lighting = Lighting::new(&context, size, self.settings.lighting)?;
+        self.background = Background::new(&context, self.settings.lighting)?;
         self.tone_map = ToneMap::new(&context, size, self.settings.tone)?;
         Ok(())
     }

@@ -13,6 +13,8 @@ pub enum Use {
     DepthAttachment,
     /// Read through a sampler by a fragment or compute shader.
     Sampled,
+    /// A depth image read through a sampler, and perhaps tested against without being written.
+    SampledDepth,
     /// Source of a copy or blit.
     CopySource,
     /// Target of a copy or blit.
@@ -64,6 +66,20 @@ const fn row(of: Use) -> (Stage, Access, Access, Layout) {
             Access::NONE,
             Layout::SHADER_READ_ONLY_OPTIMAL,
         ),
+        Use::SampledDepth => (
+            Stage::from_raw(
+                Stage::FRAGMENT_SHADER.as_raw()
+                    | Stage::COMPUTE_SHADER.as_raw()
+                    | Stage::EARLY_FRAGMENT_TESTS.as_raw()
+                    | Stage::LATE_FRAGMENT_TESTS.as_raw(),
+            ),
+            Access::from_raw(
+                Access::SHADER_SAMPLED_READ.as_raw()
+                    | Access::DEPTH_STENCIL_ATTACHMENT_READ.as_raw(),
+            ),
+            Access::NONE,
+            Layout::DEPTH_READ_ONLY_OPTIMAL,
+        ),
         Use::CopySource => (
             Stage::TRANSFER,
             Access::TRANSFER_READ,
@@ -91,6 +107,11 @@ const fn row(of: Use) -> (Stage, Access, Access, Layout) {
     }
 }
 
+/// The layout in which an image is used.
+pub const fn layout(of: Use) -> Layout {
+    row(of).3
+}
+
 /// The barrier between two uses, or `None` when reads follow reads in the same layout.
 ///
 /// A read after a write waits for the write and sees it; a write after a read only waits; a write after a write
@@ -116,11 +137,12 @@ pub const fn barrier(previous: Use, next: Use) -> Option<Barrier> {
 mod tests {
     use super::*;
 
-    const ALL: [Use; 8] = [
+    const ALL: [Use; 9] = [
         Use::Undefined,
         Use::ColorAttachment,
         Use::DepthAttachment,
         Use::Sampled,
+        Use::SampledDepth,
         Use::CopySource,
         Use::CopyTarget,
         Use::HostRead,
@@ -200,30 +222,28 @@ mod tests {
     }
 
     #[test]
-    fn depth_to_sampled_shows_both_tests() {
+    fn depth_to_sampled_depth_shows_the_write_to_shaders_and_tests() {
+        let tests = Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS;
+        let shaders = Stage::FRAGMENT_SHADER | Stage::COMPUTE_SHADER;
         expect(
             Use::DepthAttachment,
-            Use::Sampled,
-            (
-                Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS,
-                Stage::FRAGMENT_SHADER | Stage::COMPUTE_SHADER,
-            ),
+            Use::SampledDepth,
+            (tests, shaders | tests),
             (
                 Access::DEPTH_STENCIL_ATTACHMENT_WRITE,
-                Access::SHADER_SAMPLED_READ,
+                Access::SHADER_SAMPLED_READ | Access::DEPTH_STENCIL_ATTACHMENT_READ,
             ),
         );
     }
 
     #[test]
-    fn sampled_to_depth_only_waits() {
+    fn sampled_depth_to_depth_only_waits() {
+        let tests = Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS;
+        let shaders = Stage::FRAGMENT_SHADER | Stage::COMPUTE_SHADER;
         expect(
-            Use::Sampled,
+            Use::SampledDepth,
             Use::DepthAttachment,
-            (
-                Stage::FRAGMENT_SHADER | Stage::COMPUTE_SHADER,
-                Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS,
-            ),
+            (shaders | tests, tests),
             (
                 Access::NONE,
                 Access::DEPTH_STENCIL_ATTACHMENT_READ | Access::DEPTH_STENCIL_ATTACHMENT_WRITE,
@@ -276,7 +296,12 @@ mod tests {
 
     #[test]
     fn reads_after_reads_of_one_layout_need_nothing() {
-        for read in [Use::Sampled, Use::CopySource, Use::HostRead] {
+        for read in [
+            Use::Sampled,
+            Use::SampledDepth,
+            Use::CopySource,
+            Use::HostRead,
+        ] {
             assert_eq!(barrier(read, read), None, "{read:?}");
         }
     }

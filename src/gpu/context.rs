@@ -31,16 +31,9 @@ pub enum Sampler {
     Linear,
     /// Trilinear, repeating: surface textures.
     Repeat,
-    /// Bilinear depth comparison, reference ≥ depth passes; outside the map is lit.
-    Shadow,
 }
 
-const SAMPLERS: [Sampler; 4] = [
-    Sampler::Nearest,
-    Sampler::Linear,
-    Sampler::Repeat,
-    Sampler::Shadow,
-];
+const SAMPLERS: [Sampler; 3] = [Sampler::Nearest, Sampler::Linear, Sampler::Repeat];
 
 /// An instance destroyed on drop.
 pub(super) struct InstanceGuard {
@@ -376,12 +369,10 @@ fn create_samplers(device: &ash::Device) -> Result<[vk::Sampler; SAMPLERS.len()]
 fn sampler_info(sampler: Sampler) -> vk::SamplerCreateInfo<'static> {
     let (filter, mipmap) = match sampler {
         Sampler::Nearest => (vk::Filter::NEAREST, vk::SamplerMipmapMode::NEAREST),
-        Sampler::Shadow => (vk::Filter::LINEAR, vk::SamplerMipmapMode::NEAREST),
         Sampler::Linear | Sampler::Repeat => (vk::Filter::LINEAR, vk::SamplerMipmapMode::LINEAR),
     };
     let address = match sampler {
         Sampler::Repeat => vk::SamplerAddressMode::REPEAT,
-        Sampler::Shadow => vk::SamplerAddressMode::CLAMP_TO_BORDER,
         Sampler::Nearest | Sampler::Linear => vk::SamplerAddressMode::CLAMP_TO_EDGE,
     };
     vk::SamplerCreateInfo::default()
@@ -391,9 +382,5 @@ fn sampler_info(sampler: Sampler) -> vk::SamplerCreateInfo<'static> {
         .address_mode_u(address)
         .address_mode_v(address)
         .address_mode_w(address)
-        // The shadow map is reversed too: 0 is farthest from the sun, so the border lights.
-        .border_color(vk::BorderColor::FLOAT_OPAQUE_BLACK)
-        .compare_enable(sampler == Sampler::Shadow)
-        .compare_op(vk::CompareOp::GREATER_OR_EQUAL)
         .max_lod(vk::LOD_CLAMP_NONE)
 }

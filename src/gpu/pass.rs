@@ -4,10 +4,10 @@
 use arrayvec::ArrayVec;
 use ash::vk;
 
-use super::access::Use;
+use super::access::{self, Use};
 use super::buffer::Buffer;
 use super::context::Sampler;
-use super::image::Image;
+use super::image::{Image, is_depth};
 use super::layout::{GpuStruct, check_layout};
 use super::pipeline::{Pipeline, block_size};
 use super::recorder::Recorder;
@@ -38,6 +38,15 @@ enum Resource {
 struct Bound {
     binding: Binding,
     resource: Resource,
+}
+
+/// How a shader reads an image.
+fn sampled_use(image: &Image) -> Use {
+    if is_depth(image.format()) {
+        Use::SampledDepth
+    } else {
+        Use::Sampled
+    }
 }
 
 /// A pass being described. Nothing is recorded before `draw` or `draws`.
@@ -122,6 +131,11 @@ impl<'r> Pass<'r> {
         self
     }
 
+    /// Tests a depth attachment without writing it; the pass may sample it too.
+    pub fn depth_test(self, image: &'r Image) -> Self {
+        self.depth(image, Load::Keep)
+    }
+
     /// Draws one triangle over the whole target (the vertex shader makes it from the vertex index).
     pub fn draw(self) {
         self.draws(|draws| draws.triangle());
@@ -130,12 +144,13 @@ impl<'r> Pass<'r> {
     /// Draws many things with the same pipeline.
     pub fn draws(mut self, record: impl FnOnce(&mut Draws<'_, 'r>)) {
         self.check_attachments();
+        let depth_use = self.depth_use();
         let uses = self
             .reads
             .iter()
-            .map(|i| (*i, Use::Sampled))
+            .map(|i| (*i, sampled_use(i)))
             .chain(self.colors.iter().map(|(i, _)| (*i, Use::ColorAttachment)))
-            .chain(self.depth.iter().map(|(i, _)| (*i, Use::DepthAttachment)));
+            .chain(self.depth.iter().map(|(i, _)| (*i, depth_use)));
         self.recorder.label(self.name);
         let mark = self.recorder.begin_timing(self.name);
         self.recorder.transition(uses);
@@ -151,6 +166,14 @@ impl<'r> Pass<'r> {
         };
         self.recorder.unlabel();
         self.recorder.isolate(&mark);
+    }
+
+    fn depth_use(&self) -> Use {
+        if self.pipeline.writes_depth {
+            Use::DepthAttachment
+        } else {
+            Use::SampledDepth
+        }
     }
 
     fn declared(&self, name: &str, kind: BindingKind) -> Binding {
@@ -184,7 +207,7 @@ impl<'r> Pass<'r> {
         let info = vk::DescriptorImageInfo {
             sampler: self.recorder.context.sampler(sampler),
             image_view: image.sampled_view(),
-            image_layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+            image_layout: access::layout(sampled_use(image)),
         };
         self.bind(binding, Resource::Image(info));
     }
@@ -238,7 +261,7 @@ impl<'r> Pass<'r> {
         match load {
             Load::Keep => info.load_op(vk::AttachmentLoadOp::LOAD),
             Load::Discard => info.load_op(vk::AttachmentLoadOp::DONT_CARE),
-            Load::Clear(value) if super::image::is_depth(image.format()) => info
+            Load::Clear(value) if is_depth(image.format()) => info
                 .load_op(vk::AttachmentLoadOp::CLEAR)
                 .clear_value(vk::ClearValue {
                     depth_stencil: vk::ClearDepthStencilValue {
@@ -261,9 +284,16 @@ impl<'r> Pass<'r> {
             .iter()
             .map(|(i, l)| Self::attachment(i, *l, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL))
             .collect();
-        let depth = self
-            .depth
-            .map(|(i, l)| Self::attachment(i, l, vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL));
+        let depth = self.depth.map(|(image, load)| {
+            let info = Self::attachment(image, load, access::layout(self.depth_use()));
+            let written = self.pipeline.writes_depth;
+            // Storing would count as a write, which a read-only layout forbids.
+            if written {
+                info
+            } else {
+                info.store_op(vk::AttachmentStoreOp::NONE)
+            }
+        });
         let Some(target) = self.colors.first().map(|c| c.0).or(self.depth.map(|d| d.0)) else {
             panic!("pass {}: draws to nothing", self.name)
         };
@@ -382,7 +412,7 @@ pub struct Draws<'p, 'r> {
     pass: &'p mut Pass<'r>,
 }
 
-impl Draws<'_, '_> {
+impl<'r> Draws<'_, 'r> {
     /// Binds a texture for the following draws. It was uploaded before the frame, so it needs no barrier.
     ///
     /// # Panics
@@ -395,6 +425,25 @@ impl Draws<'_, '_> {
             image.name()
         );
         self.pass.bind_image(name, image, sampler);
+    }
+
+    /// Goes on with another pipeline that declares the same.
+    ///
+    /// # Panics
+    /// When it does not.
+    pub fn pipeline(&mut self, pipeline: &'r Pipeline) {
+        assert!(
+            pipeline.is_variant_of(self.pass.pipeline),
+            "pass {}",
+            self.pass.name
+        );
+        self.pass.pipeline = pipeline;
+        self.pass.changed = true;
+        let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
+        // SAFETY: the command buffer is inside the rendering of this pass.
+        unsafe {
+            raw.cmd_bind_pipeline(command, vk::PipelineBindPoint::GRAPHICS, pipeline.raw());
+        }
     }
 
     /// Replaces the push constants for the following draws.

@@ -13,6 +13,11 @@ use super::shader::{Binding, Field, Shader};
 pub enum Depth {
     /// No depth attachment.
     Off,
+    /// Fragments pass where something was drawn (depth is not 0); nothing is written. For full-screen triangles, whose
+    /// own depth is 0.
+    Surface(vk::Format),
+    /// Fragments pass where nothing was drawn (depth is 0); nothing is written. For full-screen triangles.
+    Background(vk::Format),
     /// Nearer (greater) fragments win and are written.
     Write {
         /// Format of the attachment.
@@ -57,6 +62,7 @@ pub struct Pipeline {
     pub(super) colors: Vec<vk::Format>,
     pub(super) depth: Option<vk::Format>,
     pub(super) streams: usize,
+    pub(super) writes_depth: bool,
     name: String,
 }
 
@@ -142,9 +148,12 @@ impl Pipeline {
             colors: desc.colors.to_vec(),
             depth: match desc.depth {
                 Depth::Off => None,
-                Depth::Write { format, .. } => Some(format),
+                Depth::Surface(format)
+                | Depth::Background(format)
+                | Depth::Write { format, .. } => Some(format),
             },
             streams: desc.vertex.len(),
+            writes_depth: matches!(desc.depth, Depth::Write { .. }),
             name: desc.name.to_owned(),
         };
         pipeline.set_layout = pipeline.create_set_layout()?;
@@ -262,6 +271,16 @@ impl Pipeline {
         made.map(|p| p[0])
             .map_err(|(_, result)| result)
             .during("compile a pipeline")
+    }
+
+    /// Whether another pipeline can be used in the same pass with the same bindings.
+    pub(super) fn is_variant_of(&self, other: &Self) -> bool {
+        let slots = |p: &Self| p.slots.iter().map(|s| s.binding).collect::<Vec<_>>();
+        slots(self) == slots(other)
+            && self.push == other.push
+            && self.colors == other.colors
+            && self.depth == other.depth
+            && self.streams == other.streams
     }
 
     /// Name, as given.
@@ -412,9 +431,14 @@ fn rasterization(depth: Depth) -> vk::PipelineRasterizationStateCreateInfo<'stat
 }
 
 fn depth_state(depth: Depth) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
-    let on = depth != Depth::Off;
+    let compare = match depth {
+        // A full-screen triangle has depth 0, which is less than that of any surface.
+        Depth::Surface(_) => vk::CompareOp::LESS,
+        Depth::Background(_) => vk::CompareOp::EQUAL,
+        Depth::Off | Depth::Write { .. } => vk::CompareOp::GREATER,
+    };
     vk::PipelineDepthStencilStateCreateInfo::default()
-        .depth_test_enable(on)
-        .depth_write_enable(on)
-        .depth_compare_op(vk::CompareOp::GREATER)
+        .depth_test_enable(depth != Depth::Off)
+        .depth_write_enable(matches!(depth, Depth::Write { .. }))
+        .depth_compare_op(compare)
 }

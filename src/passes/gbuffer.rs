@@ -10,7 +10,7 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
-use super::geometry::Geometry;
+use super::geometry::{Bound, Geometry};
 use super::view::View;
 
 gpu_struct! {
@@ -37,8 +37,35 @@ pub struct Surfaces {
 
 /// The pass and its images.
 pub struct Gbuffer {
-    pipeline: Pipeline,
+    /// By whether ρ_d and ρ_s have maps: a lookup that is not needed costs as much as one that is.
+    pipelines: [[Pipeline; 2]; 2],
     surfaces: Surfaces,
+}
+
+fn pipeline(
+    context: &Arc<Context>,
+    formats: &[Format],
+    diffuse_map: bool,
+    specular_map: bool,
+) -> Result<Pipeline> {
+    let float3 = Format::R32G32B32_SFLOAT;
+    Pipeline::new(
+        context,
+        &PipelineDesc {
+            name: "G-buffer",
+            stages: &[&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG],
+            vertex: &[float3, float3, Format::R32G32_SFLOAT],
+            colors: formats,
+            depth: Depth::Write {
+                format: Format::D32_SFLOAT,
+                slope_bias: 0.0,
+            },
+            constants: &[
+                ("DIFFUSE_MAP", diffuse_map.into()),
+                ("SPECULAR_MAP", specular_map.into()),
+            ],
+        },
+    )
 }
 
 impl Gbuffer {
@@ -50,21 +77,10 @@ impl Gbuffer {
         // 16 bits a component hold a direction to 0.003°; half floats, which every device renders to, to 0.03°.
         let normal = context.supported_format(&[Format::R16G16_SNORM, Format::R16G16_SFLOAT])?;
         let formats = [normal, Format::R16G16B16A16_SFLOAT, Format::R16_UINT];
-        let float3 = Format::R32G32B32_SFLOAT;
-        let pipeline = Pipeline::new(
-            context,
-            &PipelineDesc {
-                name: "G-buffer",
-                stages: &[&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG],
-                vertex: &[float3, float3, Format::R32G32_SFLOAT],
-                colors: &formats,
-                depth: Depth::Write {
-                    format: Format::D32_SFLOAT,
-                    slope_bias: 0.0,
-                },
-                constants: &[],
-            },
-        )?;
+        let pipelines = [(false, false), (false, true), (true, false), (true, true)]
+            .map(|(diffuse, specular)| pipeline(context, &formats, diffuse, specular));
+        let [plain, specular, diffuse, both] = pipelines;
+        let pipelines = [[plain?, specular?], [diffuse?, both?]];
         let image = |name, format| Image::new(context, &ImageDesc::flat(name, format, size));
         let surfaces = Surfaces {
             normal: image("normal", formats[0])?,
@@ -72,7 +88,10 @@ impl Gbuffer {
             material: image("material", formats[2])?,
             depth: image("depth", Format::D32_SFLOAT)?,
         };
-        Ok(Self { pipeline, surfaces })
+        Ok(Self {
+            pipelines,
+            surfaces,
+        })
     }
 
     /// Draws the scene.
@@ -85,26 +104,33 @@ impl Gbuffer {
         let clip_from_world = view.clip_from_world().to_cols_array_2d();
         let clear = Load::Clear([0.0; 4]);
         recorder
-            .pass("G-buffer", &self.pipeline)
+            .pass("G-buffer", &self.pipelines[0][0])
             .color(&self.surfaces.normal, clear)
             .color(&self.surfaces.albedo, clear)
             .color(&self.surfaces.material, clear)
             .depth(&self.surfaces.depth, clear)
             .draws(|draws| {
-                geometry.draw_surfaces(
-                    draws,
-                    |draws, material, diffuse, diffuse_map, specular_map| {
-                        let eye = view.camera.eye;
-                        draws.texture("diffuse_map", diffuse_map, Sampler::Repeat);
-                        draws.texture("specular_map", specular_map, Sampler::Repeat);
-                        draws.push(&Push {
-                            clip_from_world,
-                            eye,
-                            diffuse,
-                            material,
-                        });
-                    },
-                );
+                let (eye, mut variant) = (view.camera.eye, [0, 0]);
+                geometry.draw_surfaces(draws, |draws, bound| {
+                    let maps = [bound.diffuse_map, bound.specular_map];
+                    let wanted = maps.map(|m| usize::from(m.is_some()));
+                    if wanted != variant {
+                        variant = wanted;
+                        draws.pipeline(&self.pipelines[variant[0]][variant[1]]);
+                    }
+                    let [diffuse_map, specular_map] = maps.map(|m| m.unwrap_or(bound.white));
+                    draws.texture("diffuse_map", diffuse_map, Sampler::Repeat);
+                    draws.texture("specular_map", specular_map, Sampler::Repeat);
+                    let Bound {
+                        material, diffuse, ..
+                    } = *bound;
+                    draws.push(&Push {
+                        clip_from_world,
+                        eye,
+                        diffuse,
+                        material,
+                    });
+                });
             });
         &self.surfaces
     }

@@ -20,10 +20,26 @@ pub struct Part {
 }
 
 /// A material as draws need it.
+#[derive(Debug, Clone, Copy)]
 struct Surface {
     diffuse: Vec3,
-    diffuse_map: usize,
-    specular_map: usize,
+    diffuse_map: Option<usize>,
+    specular_map: Option<usize>,
+}
+
+/// What a draw binds: a material with its maps.
+#[derive(Clone, Copy)]
+pub struct Bound<'g> {
+    /// Number of the material.
+    pub material: u32,
+    /// ρ_d, multiplies its map.
+    pub diffuse: Vec3,
+    /// Map of ρ_d.
+    pub diffuse_map: Option<&'g Image>,
+    /// Map of the factor on ρ_s.
+    pub specular_map: Option<&'g Image>,
+    /// Stands for a map that is not there.
+    pub white: &'g Image,
 }
 
 /// The uploaded scene.
@@ -36,6 +52,8 @@ pub struct Geometry {
     parts: Vec<Part>,
     surfaces: Vec<Surface>,
     textures: Vec<Image>,
+    white: Image,
+    is_specular: bool,
     materials: Buffer,
     bounds: Bounds,
 }
@@ -51,11 +69,12 @@ impl Geometry {
         };
         let indices = bytemuck::cast_slice(&scene.indices);
         let table: Vec<[f32; 4]> = scene.materials.iter().map(table_row).collect();
-        // Texture 0 is white: it stands for "no map".
-        let mut textures = vec![upload(recorder, &white())?];
-        for texture in &scene.textures {
-            textures.push(upload(recorder, texture)?);
-        }
+        let surfaces: Vec<Surface> = scene.materials.iter().map(surface).collect();
+        let textures: Result<Vec<Image>> = scene
+            .textures
+            .iter()
+            .map(|texture| upload(recorder, texture))
+            .collect();
         let mut parts: Vec<Part> = scene
             .parts
             .iter()
@@ -65,7 +84,15 @@ impl Geometry {
                 material: p.material,
             })
             .collect();
-        parts.sort_by_key(|p| p.material);
+        // Materials with the same kinds of maps share a pipeline: as few changes as possible.
+        parts.sort_by_key(|p| {
+            let s = &surfaces[p.material as usize];
+            (
+                s.diffuse_map.is_some(),
+                s.specular_map.is_some(),
+                p.material,
+            )
+        });
         Ok(Self {
             positions: vertex(
                 recorder,
@@ -81,8 +108,10 @@ impl Geometry {
             indices: upload_buffer(recorder, "indices", BufferKind::Index, indices)?,
             index_count: scene.indices.len() as u32,
             parts,
-            surfaces: scene.materials.iter().map(surface).collect(),
-            textures,
+            is_specular: scene.materials.iter().any(|m| m.specular != [0.0; 3]),
+            surfaces,
+            textures: textures?,
+            white: upload(recorder, &white())?,
             materials: upload_buffer(
                 recorder,
                 "materials",
@@ -116,28 +145,40 @@ impl Geometry {
         }
     }
 
-    /// Draws part after part; `bind` is called with each new material: its number, ρ_d, the maps of ρ_d and ρ_s.
-    pub fn draw_surfaces(
-        &self,
-        draws: &mut Draws<'_, '_>,
-        mut bind: impl FnMut(&mut Draws<'_, '_>, u32, Vec3, &Image, &Image),
+    /// Whether any material has a ρ_s.
+    pub fn is_specular(&self) -> bool {
+        self.is_specular
+    }
+
+    /// Draws part after part; `bind` is called with each new material.
+    pub fn draw_surfaces<'g, 'r>(
+        &'g self,
+        draws: &mut Draws<'_, 'r>,
+        mut bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
     ) {
         draws.geometry(
             &[&self.positions, &self.normals, &self.texcoords],
             &self.indices,
         );
-        let mut bound = None;
+        let mut current = None;
         for part in &self.parts {
-            if bound != Some(part.material) {
-                let s = &self.surfaces[part.material as usize];
-                let (diffuse, specular) = (
-                    &self.textures[s.diffuse_map],
-                    &self.textures[s.specular_map],
-                );
-                bind(draws, part.material, s.diffuse, diffuse, specular);
-                bound = Some(part.material);
+            if current != Some(part.material) {
+                bind(draws, &self.bound(part.material));
+                current = Some(part.material);
             }
             draws.indexed(part.first, part.count);
+        }
+    }
+
+    fn bound(&self, material: u32) -> Bound<'_> {
+        let s = &self.surfaces[material as usize];
+        let map = |index: Option<usize>| index.map(|i| &self.textures[i]);
+        Bound {
+            material,
+            diffuse: s.diffuse,
+            diffuse_map: map(s.diffuse_map),
+            specular_map: map(s.specular_map),
+            white: &self.white,
         }
     }
 }
@@ -148,11 +189,10 @@ fn table_row(material: &Material) -> [f32; 4] {
 }
 
 fn surface(material: &Material) -> Surface {
-    let map = |texture: Option<usize>| texture.map_or(0, |t| t + 1);
     Surface {
         diffuse: material.diffuse.into(),
-        diffuse_map: map(material.diffuse_texture),
-        specular_map: map(material.specular_texture),
+        diffuse_map: material.diffuse_texture,
+        specular_map: material.specular_texture,
     }
 }
 

@@ -9,7 +9,6 @@ use glam::Vec3;
 use serde::Deserialize;
 
 use crate::daylight::sky::Daylight;
-use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
 use crate::gpu::{
     Buffer, Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder,
     Result, Sampler, shaders,
@@ -27,9 +26,6 @@ gpu_struct! {
         shadow_from_world: [[f32; 4]; 4],
         direction: Vec3,
         illuminance: Vec3,
-        luminance: Vec3,
-        cos_radius: f32,
-        limb: f32,
         normal_offset: f32,
         max_radiance: f32,
         specular_scale: f32,
@@ -116,16 +112,21 @@ impl Show {
         }
     }
 
-    fn constants(self) -> [(&'static str, u32); 11] {
+    fn constants(self, specular: bool) -> [(&'static str, u32); 10] {
         let whole = matches!(self, Self::Beauty | Self::Luminance);
         let on = |shown: Self| u32::from(self == shown);
         let addend = |shown: Self| u32::from(whole || self == shown);
         [
             ("SUN", addend(Self::Sun)),
             ("SKY", addend(Self::Sky)),
-            ("SUN_SPECULAR", addend(Self::SunSpecular)),
-            ("SKY_SPECULAR", addend(Self::SkySpecular)),
-            ("BACKGROUND", addend(Self::Background)),
+            (
+                "SUN_SPECULAR",
+                u32::from(specular) & addend(Self::SunSpecular),
+            ),
+            (
+                "SKY_SPECULAR",
+                u32::from(specular) & addend(Self::SkySpecular),
+            ),
             ("SHOW_VISIBILITY", on(Self::Visibility)),
             ("SHOW_OCCLUSION", on(Self::Occlusion)),
             ("SHOW_IRRADIANCE", on(Self::Irradiance)),
@@ -146,7 +147,7 @@ pub enum Precision {
 }
 
 impl Precision {
-    fn format(self) -> Format {
+    pub(super) fn format(self) -> Format {
         match self {
             Self::Half => Format::R16G16B16A16_SFLOAT,
             Self::Float => Format::R32G32B32A32_SFLOAT,
@@ -154,7 +155,7 @@ impl Precision {
     }
 
     /// Largest radiance that the format holds, kcd/m².
-    fn max_radiance(self) -> f32 {
+    pub(super) fn max_radiance(self) -> f32 {
         match self {
             Self::Half => 65_504.0,
             Self::Float => f32::MAX,
@@ -169,7 +170,7 @@ pub struct LightingSettings {
     pub show: Show,
     /// Precision of the result.
     pub precision: Precision,
-    /// Factor on every ρ_s.
+    /// Factor on every ρ_s; 0 leaves the lookups out, which [`crate::frame::Frame`] does for scenes without any ρ_s.
     pub specular_scale: f32,
     /// Darkens the sun's limb (u of I = I₀ (1 − u (1 − cos θ))); 0: a uniform disc.
     pub limb_darkening: f32,
@@ -211,7 +212,10 @@ impl Lighting {
     /// When the device refuses.
     pub fn new(context: &Arc<Context>, size: [u32; 2], settings: LightingSettings) -> Result<Self> {
         let format = settings.precision.format();
-        let mut constants = settings.show.constants().to_vec();
+        let mut constants = settings
+            .show
+            .constants(settings.specular_scale > 0.0)
+            .to_vec();
         constants.push(("OCCLUSION_DOWNSCALE", settings.occlusion_downscale));
         let pipeline = Pipeline::new(
             context,
@@ -220,7 +224,7 @@ impl Lighting {
                 stages: &[&shaders::FULLSCREEN_VERT, &shaders::LIGHTING_FRAG],
                 vertex: &[],
                 colors: &[format],
-                depth: Depth::Off,
+                depth: Depth::Surface(Format::D32_SFLOAT),
                 constants: &constants,
             },
         )?;
@@ -237,7 +241,7 @@ impl Lighting {
         &self.settings
     }
 
-    /// Lights the surfaces.
+    /// Lights the surfaces; other pixels are left to [`super::background::Background`].
     pub fn record(
         &mut self,
         recorder: &mut Recorder,
@@ -254,27 +258,23 @@ impl Lighting {
             .sample("albedo", &surfaces.albedo, Sampler::Nearest)
             .sample("material", &surfaces.material, Sampler::Nearest)
             .sample("occlusion", occlusion, Sampler::Nearest)
-            .sample("shadow_map", light.shadow_map, Sampler::Shadow)
+            .sample("shadow_map", light.shadow_map, Sampler::Nearest)
             .sample("sky_irradiance", light.sky_irradiance, Sampler::Linear)
             .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
             .storage("Materials", materials)
             .uniform("view", &view.block())
             .uniform("sun", &self.sun_block(light))
             .color(&self.radiance, Load::Discard)
+            .depth_test(&surfaces.depth)
             .draw();
         &self.radiance
     }
 
     fn sun_block(&self, light: &Light<'_>) -> SunBlock {
-        let limb = self.settings.limb_darkening;
         SunBlock {
             shadow_from_world: light.shadow_view.shadow_from_world.to_cols_array_2d(),
             direction: light.sun_direction,
             illuminance: kilo(light.daylight.sun_illuminance),
-            // The mean over the disc stays: the integral of 1 - u (1 - mu) over it is 1 - u/3.
-            luminance: kilo(light.daylight.sun_luminance) / (1.0 - limb / 3.0),
-            cos_radius: SUN_ANGULAR_RADIUS.cos() as f32,
-            limb,
             normal_offset: NORMAL_OFFSET_TEXELS * light.shadow_view.texel,
             max_radiance: self.settings.precision.max_radiance(),
             specular_scale: self.settings.specular_scale,
@@ -314,9 +314,9 @@ mod tests {
 
     #[test]
     fn each_addend_is_in_the_picture_once() {
-        let beauty = Show::Beauty.constants();
-        for (i, addend) in Show::ADDENDS.iter().enumerate() {
-            let constants = addend.constants();
+        let beauty = Show::Beauty.constants(true);
+        for (i, addend) in Show::ADDENDS.iter().take(4).enumerate() {
+            let constants = addend.constants(true);
             assert_eq!(beauty[i].1, 1);
             assert_eq!(constants[i].1, 1, "{addend:?}");
             assert_eq!(constants.iter().map(|c| c.1).sum::<u32>(), 1, "{addend:?}");

@@ -3,6 +3,7 @@
 //! Units on the device are kcd/m² and klx (half floats end at 65 504); files and the CPU use cd/m² and lux.
 
 pub mod accumulate;
+pub mod background;
 pub mod exposure;
 pub mod gbuffer;
 pub mod geometry;

@@ -61,9 +61,9 @@ pub enum Preset {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum AoResolution {
     /// Every pixel.
-    #[default]
     Full,
     /// Every second pixel of every second row.
+    #[default]
     Half,
 }
 

@@ -1,0 +1,45 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "view.glsl"
+
+// The lecture's slide "Environment mapping - filling the background": the sky cube along the pixel's ray. The depth test
+// leaves only pixels without a surface. The sun's disc is drawn here and nowhere else.
+
+layout(location = 0) out vec4 radiance; // kcd/m^2, or a constant
+
+layout(constant_id = 0) const bool SKY = true;
+// Without the sky: what quantities have where no surface is.
+layout(constant_id = 1) const float EMPTY = 0.0;
+
+layout(set = 0, binding = 0) uniform samplerCube sky_radiance; // kcd/m^2, without the disc
+layout(set = 0, binding = 1, scalar) uniform View { VIEW_BLOCK } view;
+
+layout(push_constant, scalar) uniform Push {
+    vec2 size;          // pixels
+    vec3 direction;     // unit, toward the sun
+    vec3 luminance;     // of the disc's centre, kcd/m^2
+    float sin_radius;   // of the disc
+    float limb;         // limb darkening coefficient u, 0: a uniform disc
+    float max_radiance; // largest value the target holds, kcd/m^2
+} push;
+
+/// Luminance of the disc, limb-darkened: I = I0 (1 - u (1 - mu)).
+vec3 disc(vec3 direction) {
+    // The sine, because float32 has no digits left in cosines of a quarter of a degree.
+    float s = length(cross(direction, push.direction)) / push.sin_radius;
+    float mu = sqrt(max(1.0 - s * s, 0.0));
+    bool inside = s < 1.0 && dot(direction, push.direction) > 0.0;
+    return inside ? push.luminance * (1.0 - push.limb * (1.0 - mu)) : vec3(0.0);
+}
+
+void main() {
+    if (!SKY) {
+        radiance = vec4(vec3(EMPTY), 1.0);
+        return;
+    }
+    vec3 ray = view_ray(gl_FragCoord.xy / push.size, view.ray_scale, view.ray_offset);
+    vec3 direction = normalize(view.world_from_view * ray);
+    vec3 sky = textureLod(sky_radiance, direction, 0.0).rgb + disc(direction);
+    radiance = vec4(min(sky, push.max_radiance), 1.0);
+}

@@ -1,4 +1,44 @@
-//! Real-time daylight whose numbers can be trusted.
+//! Real-time daylight whose numbers can be trusted: a model in the daylight of a place and a moment, in cd/m² and lux.
+//!
+//! # The frame
+//!
+//! ```text
+//!  place + time ──► sun direction ──► sky cube ──► irradiance cube (geometry shader, gl_Layer, progressive)
+//!                         │              │               │
+//!  scene ──► G-buffer ──► SSAO ──┐       │               │
+//!       └──► shadow map ─────────┴──► lighting ◄─────────┘ ──► tone map ──► PNG | EXR
+//! ```
+//!
+//! [`frame::Frame::record`] is that picture in reading order. Lighting evaluates the lecture's illumination model,
+//!
+//! L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r))
+//!
+//! with E_sun the sun's illuminance at normal incidence, V the shadow map, A ambient occlusion (it dims sky light only),
+//! E_sky the irradiance cube (it holds E, not E/π) and L_sky the sky cube without the sun's disc.
+//!
+//! # Rooms
+//!
+//! - [`daylight`]: the physics, CPU only, in `f64`; the reference that the shaders are tested against.
+//! - [`scene`]: models, materials, textures, cameras, scene files; no device.
+//! - [`gpu`]: Vulkan nouns; knows no pass by name.
+//! - [`passes`]: one file a pass; [`frame`] owns them.
+//! - [`cli`] and [`settings`]: text to settings. [`faces`]: drivers of the one frame. [`output`]: files, whole or not at all.
+//!
+//! Imports run one way: faces → frame → passes → gpu, scene, daylight; the last three import nothing of ours.
+//!
+//! # Conventions
+//!
+//! | what | convention |
+//! |---|---|
+//! | world | right-handed, metres, +Y up, +X east, −Z north |
+//! | sun direction | unit vector toward the sun: (sin az cos el, sin el, −cos az cos el) |
+//! | azimuth, elevation | degrees; azimuth clockwise from north; longitude positive east, latitude positive north |
+//! | time | RFC 3339 with its UTC offset; never the machine's time zone |
+//! | colour | linear RGB, BT.709 primaries, D65; Y = 0.2126 R + 0.7152 G + 0.0722 B is luminance |
+//! | radiance, irradiance | cd/m² and lux on the CPU and in files; kcd/m² and klx in GPU images (half floats end at 65 504) |
+//! | cube faces | +X −X +Y −Y +Z −Z with Vulkan's s/t orientation; texel centres at (i + ½)/N |
+//! | depth | reversed Z, infinite far plane |
+//! | matrices | named destination_from_source: `clip_from_view` |
 
 pub mod cli;
 pub mod daylight;

@@ -3,9 +3,11 @@
 use std::io::Cursor;
 use std::path::Path;
 
+use exr::compression::Compression;
+use exr::image::Blocks;
 use exr::image::write::WritableImage as _;
 use exr::math::Vec2;
-use exr::meta::attribute::{AttributeValue, Chromaticities, Text};
+use exr::meta::attribute::{AttributeValue, Chromaticities, LineOrder, Text};
 use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, LayerAttributes};
 
 use super::{Metadata, write_error, write_whole};
@@ -55,6 +57,13 @@ pub fn write_exr(path: &Path, size: [u32; 2], layers: &[Layer], metadata: &Metad
     write_whole(path, &bytes)
 }
 
+/// The form that every reader knows: ZIP, rows from the top.
+const ENCODING: Encoding = Encoding {
+    compression: Compression::ZIP16,
+    blocks: Blocks::ScanLines,
+    line_order: LineOrder::Increasing,
+};
+
 fn encode(
     size: [u32; 2],
     layers: &[Layer],
@@ -86,15 +95,13 @@ fn encode(
     attributes.software_name = Some(Text::from("skylight"));
     for (key, value) in metadata {
         let value = AttributeValue::Text(Text::new_or_none(value).unwrap_or_default());
-        attributes.other.insert(Text::from(key.as_str()), value);
+        // Prefixed: some of our names (exposure) are standard attributes of other types.
+        attributes
+            .other
+            .insert(Text::from(format!("skylight:{key}").as_str()), value);
     }
     let size = Vec2(size[0] as usize, size[1] as usize);
-    let layer = exr::image::Layer::new(
-        size,
-        attributes,
-        Encoding::FAST_LOSSLESS,
-        AnyChannels::sort(channels),
-    );
+    let layer = exr::image::Layer::new(size, attributes, ENCODING, AnyChannels::sort(channels));
     let mut image = Image::from_layer(layer);
     image.attributes.chromaticities = Some(Chromaticities {
         red: Vec2(0.64, 0.33),
@@ -150,7 +157,7 @@ mod tests {
         let value = layer
             .attributes
             .other
-            .get(&Text::from("turbidity"))
+            .get(&Text::from("skylight:turbidity"))
             .expect("attribute");
         assert_eq!(value, &AttributeValue::Text(Text::from("3")));
     }

@@ -116,8 +116,8 @@ impl Frame {
             jitter: sample.jitter,
         };
 
-        let (sky_radiance, new_sky) = self.sky_cube.record(rec, daylight);
-        let sky_irradiance = self.irradiance.record(rec, sky_radiance, new_sky);
+        let sky = self.sky_cube.record(rec, daylight);
+        let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
 
         let (bounds, resolution) = (self.geometry.bounds(), self.shadow.resolution());
         let shadow_view = shadow_fit::fit(sample.sun_direction, bounds, &view, resolution);
@@ -132,7 +132,7 @@ impl Frame {
             shadow_view: &shadow_view,
             shadow_map,
             sky_irradiance,
-            sky_radiance,
+            sky_radiance: sky.radiance,
         };
         let materials = self.geometry.materials();
         let frame = self
@@ -179,8 +179,8 @@ impl Frame {
 
     /// Refines the sky's irradiance without drawing a picture; `recorder` must be recording.
     pub fn record_light(&mut self, rec: &mut Recorder, daylight: &Daylight) {
-        let (sky_radiance, new_sky) = self.sky_cube.record(rec, daylight);
-        self.irradiance.record(rec, sky_radiance, new_sky);
+        let sky = self.sky_cube.record(rec, daylight);
+        self.irradiance.record(rec, &sky, daylight);
     }
 
     /// Whether the sky's irradiance has all its samples.

@@ -123,7 +123,7 @@ fn measure_frames(job: &Job, mut recorder: Recorder, frames: u32) -> Result<Samp
 }
 
 fn start(job: &Job, recorder: &mut Recorder) -> Result<Frame> {
-    let settings = job.frame_settings(job.settings.show, Precision::Half)?;
+    let settings = job.frame_settings(job.settings.show, Precision::Half);
     recorder.begin()?;
     let frame = Frame::new(recorder, &job.scene, settings)?;
     recorder.finish()?;

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use glam::UVec2;
 
 use crate::daylight::exposure::{KEY, factor_from_ev100};
-use crate::daylight::irradiance::IrradianceMethod;
 use crate::daylight::sky::{Conditions, Daylight};
 use crate::daylight::spectrum::LUMINOUS_EFFICACY;
 use crate::daylight::sun_position::{SunPosition, lecture};
@@ -14,12 +13,12 @@ use crate::daylight::tone_curve::REINHARD_WHITE;
 use crate::error::Result;
 use crate::frame::FrameSettings;
 use crate::gpu::{Context, ContextOptions};
-use crate::passes::irradiance::{IrradianceSettings, Sampling};
+use crate::passes::irradiance::IrradianceSettings;
 use crate::passes::lighting::{LightingSettings, Precision, Show};
 use crate::passes::ssao::SsaoSettings;
 use crate::passes::tone_map::{Scale, ToneSettings};
 use crate::scene::{self, Camera, LoadOptions, Scene};
-use crate::settings::{AoResolution, Exposure, Options, Preset, Settings, SettingsError, SunInput};
+use crate::settings::{AoResolution, Exposure, Options, Preset, Settings, SunInput};
 
 /// A scene under a daylight, and how it is to be drawn.
 pub struct Job {
@@ -85,21 +84,18 @@ impl Job {
     }
 
     /// The settings of the frame.
-    ///
-    /// # Errors
-    /// An irradiance method that the device has no pass for.
-    pub fn frame_settings(&self, show: Show, precision: Precision) -> Result<FrameSettings> {
+    pub fn frame_settings(&self, show: Show, precision: Precision) -> FrameSettings {
         let s = &self.settings;
         let lecture = s.preset == Some(Preset::Lecture);
         let downscale = match s.ao_resolution {
             AoResolution::Full => 1,
             AoResolution::Half => 2,
         };
-        Ok(FrameSettings {
+        FrameSettings {
             size: UVec2::new(s.size.width, s.size.height),
             samples: s.samples,
             sky_edge: if lecture { 512 } else { 256 },
-            irradiance: self.irradiance_settings()?,
+            irradiance: self.irradiance_settings(),
             shadow_resolution: s.shadow_size,
             ssao: SsaoSettings {
                 radius: s.ao_radius as f32,
@@ -121,30 +117,22 @@ impl Job {
                 gamma: s.gamma,
                 depth_scale: f64::from(self.scene.bounds.diagonal()).max(1e-3),
             },
-        })
+        }
     }
 
-    fn irradiance_settings(&self) -> Result<IrradianceSettings> {
+    fn irradiance_settings(&self) -> IrradianceSettings {
         let s = &self.settings;
-        let sampling = match s.irradiance {
-            IrradianceMethod::MonteCarlo => Sampling::MonteCarlo,
-            IrradianceMethod::Quasi => Sampling::Quasi,
-            IrradianceMethod::Exact | IrradianceMethod::Sh => {
-                let what = "this irradiance method has no pass on the device yet; use quasi or monte-carlo";
-                return Err(SettingsError(what.to_owned()).into());
-            }
-        };
         let default = IrradianceSettings::default();
         // The course framework refines by five samples a frame.
         let lecture = s.preset == Some(Preset::Lecture);
         let samples_per_pass = if lecture { 5 } else { default.samples_per_pass };
-        let samples = s.irradiance_samples;
-        Ok(IrradianceSettings {
-            sampling,
+        let (method, samples) = (s.irradiance, s.irradiance_samples);
+        IrradianceSettings {
+            method,
             samples,
             samples_per_pass,
             ..default
-        })
+        }
     }
 
     fn scale(&self) -> Scale {

@@ -53,7 +53,7 @@ impl<'j> Renderer<'j> {
         } else {
             Precision::Half
         };
-        let settings = job.frame_settings(job.settings.show, precision)?;
+        let settings = job.frame_settings(job.settings.show, precision);
         recorder.begin()?;
         let frame = Frame::new(&mut recorder, &job.scene, settings)?;
         recorder.finish()?;

@@ -1,17 +1,26 @@
-//! The sky's irradiance as a cube map: E(n) in klx, refined over frames.
+//! The sky's irradiance as a cube map: E(n) in klx, by four methods.
 //!
 //! The lecture's layered pass: a geometry shader emits one triangle to the six faces (`gl_Layer`), the fragment shader
 //! integrates the sky cube over a cosine-weighted hemisphere around the texel's direction. Sums are kept in 32-bit
 //! floats and alternate between two cubes: in half floats the mean would stall after a few hundred samples.
+//!
+//! `exact` sums a coarse sky cube with exact texel solid angles instead, `sh` evaluates nine coefficients that the CPU
+//! projected: both are done in one pass.
 
 use std::sync::Arc;
 
+use crate::daylight::cube::{texel_direction, texel_solid_angle, texels};
+use crate::daylight::irradiance::{IrradianceMethod, SphericalHarmonics};
 use crate::daylight::sampling::{cosine_hemisphere, sobol};
+use crate::daylight::sky::Daylight;
 use crate::gpu::{
     Buffer, BufferKind, Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc,
-    Recorder, Result, Sampler, shaders, upload_buffer,
+    Recorder, Result, Sampler, Shader, shaders, upload_buffer,
 };
 use crate::gpu_struct;
+
+use super::kilo;
+use super::sky_cube::{COARSE_EDGE, SkyImages};
 
 gpu_struct! {
     /// Which samples this pass adds.
@@ -21,14 +30,18 @@ gpu_struct! {
     }
 }
 
-/// How directions are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Sampling {
-    /// The lecture's `rnd(t)`, another sequence in each texel.
-    MonteCarlo,
-    /// A low-discrepancy sequence, the same in all texels.
-    #[default]
-    Quasi,
+gpu_struct! {
+    /// How many texels are summed.
+    pub struct ExactPush {
+        count: u32,
+    }
+}
+
+gpu_struct! {
+    /// Nine coefficients of the radiance.
+    pub struct ShPush {
+        coefficients: [[f32; 3]; 9],
+    }
 }
 
 /// What is wanted of the map.
@@ -36,9 +49,9 @@ pub enum Sampling {
 pub struct IrradianceSettings {
     /// Edge of a face, texels.
     pub edge: u32,
-    /// How directions are drawn.
-    pub sampling: Sampling,
-    /// Samples wanted in all.
+    /// How E is found.
+    pub method: IrradianceMethod,
+    /// Samples wanted in all, of the two methods that sample.
     pub samples: u32,
     /// Samples added by one pass.
     pub samples_per_pass: u32,
@@ -48,10 +61,19 @@ impl Default for IrradianceSettings {
     fn default() -> Self {
         Self {
             edge: 32,
-            sampling: Sampling::Quasi,
-            samples: 512,
-            samples_per_pass: 128,
+            method: IrradianceMethod::Quasi,
+            samples: 1024,
+            samples_per_pass: 256,
         }
+    }
+}
+
+impl IrradianceSettings {
+    fn is_sampled(&self) -> bool {
+        matches!(
+            self.method,
+            IrradianceMethod::MonteCarlo | IrradianceMethod::Quasi
+        )
     }
 }
 
@@ -59,46 +81,61 @@ impl Default for IrradianceSettings {
 pub struct Irradiance {
     settings: IrradianceSettings,
     pipeline: Pipeline,
-    samples: Buffer,
+    /// Directions of the low-discrepancy sequence, or the texels of the exact sum.
+    table: Buffer,
     sums: [Image; 2],
     irradiance: Image,
     done: u32,
 }
 
+const COLORS: [Format; 2] = [Format::R32G32B32A32_SFLOAT, Format::R16G16B16A16_SFLOAT];
+
+fn pipeline(context: &Arc<Context>, method: IrradianceMethod) -> Result<Pipeline> {
+    let random = [(
+        "MONTE_CARLO",
+        u32::from(method == IrradianceMethod::MonteCarlo),
+    )];
+    let (fragment, constants): (&'static Shader, &[(&str, u32)]) = match method {
+        IrradianceMethod::MonteCarlo | IrradianceMethod::Quasi => {
+            (&shaders::IRRADIANCE_FRAG, &random)
+        }
+        IrradianceMethod::Exact => (&shaders::IRRADIANCE_EXACT_FRAG, &[]),
+        IrradianceMethod::Sh => (&shaders::IRRADIANCE_SH_FRAG, &[]),
+    };
+    Pipeline::new(
+        context,
+        &PipelineDesc {
+            name: "irradiance",
+            stages: &[
+                &shaders::FULLSCREEN_VERT,
+                &shaders::CUBE_FACES_GEOM,
+                fragment,
+            ],
+            vertex: &[],
+            colors: &COLORS,
+            depth: Depth::Off,
+            constants,
+        },
+    )
+}
+
 impl Irradiance {
-    /// Makes the cubes and uploads the sequence; `recorder` must be recording.
+    /// Makes the cubes and uploads the table; `recorder` must be recording.
     ///
     /// # Errors
     /// When the device refuses.
     pub fn new(recorder: &mut Recorder, settings: IrradianceSettings) -> Result<Self> {
         let context: Arc<Context> = recorder.context().clone();
-        let edge = settings.edge;
-        let sum = |name| ImageDesc::cube(name, Format::R32G32B32A32_SFLOAT, edge);
-        let map = ImageDesc::cube("sky irradiance", Format::R16G16B16A16_SFLOAT, edge);
-        let monte_carlo = settings.sampling == Sampling::MonteCarlo;
-        let pipeline = Pipeline::new(
-            &context,
-            &PipelineDesc {
-                name: "irradiance",
-                stages: &[
-                    &shaders::FULLSCREEN_VERT,
-                    &shaders::CUBE_FACES_GEOM,
-                    &shaders::IRRADIANCE_FRAG,
-                ],
-                vertex: &[],
-                colors: &[Format::R32G32B32A32_SFLOAT, Format::R16G16B16A16_SFLOAT],
-                depth: Depth::Off,
-                constants: &[("MONTE_CARLO", monte_carlo.into())],
-            },
-        )?;
+        let cube =
+            |name, format| Image::new(&context, &ImageDesc::cube(name, format, settings.edge));
         Ok(Self {
-            pipeline,
-            samples: upload_samples(recorder, &settings)?,
+            pipeline: pipeline(&context, settings.method)?,
+            table: upload_table(recorder, &settings)?,
             sums: [
-                Image::new(&context, &sum("irradiance sum 0"))?,
-                Image::new(&context, &sum("irradiance sum 1"))?,
+                cube("irradiance sum 0", COLORS[0])?,
+                cube("irradiance sum 1", COLORS[0])?,
             ],
-            irradiance: Image::new(&context, &map)?,
+            irradiance: cube("sky irradiance", COLORS[1])?,
             settings,
             done: 0,
         })
@@ -108,24 +145,35 @@ impl Irradiance {
     pub fn record(
         &mut self,
         recorder: &mut Recorder,
-        sky_radiance: &Image,
-        new_sky: bool,
+        sky: &SkyImages<'_>,
+        daylight: &Daylight,
     ) -> &Image {
-        if new_sky {
+        if sky.is_new {
             self.done = 0;
         }
         if !self.is_complete() {
-            self.refine(recorder, sky_radiance);
+            match self.settings.method {
+                IrradianceMethod::MonteCarlo | IrradianceMethod::Quasi => {
+                    self.refine(recorder, sky.radiance);
+                }
+                IrradianceMethod::Exact => self.sum_texels(recorder, sky.coarse),
+                IrradianceMethod::Sh => self.evaluate_harmonics(recorder, daylight),
+            }
         }
         &self.irradiance
     }
 
     /// Whether all samples are in.
     pub fn is_complete(&self) -> bool {
-        self.done >= self.settings.samples
+        let wanted = if self.settings.is_sampled() {
+            self.settings.samples
+        } else {
+            1
+        };
+        self.done >= wanted
     }
 
-    /// Samples so far.
+    /// Samples so far; 1 when a method that does not sample is done.
     pub fn samples_done(&self) -> u32 {
         self.done
     }
@@ -135,7 +183,7 @@ impl Irradiance {
         &self.irradiance
     }
 
-    /// The 32-bit sums of π L (klx) with the number of samples in the fourth channel.
+    /// The 32-bit sums (klx) with the number of samples in the fourth channel: E is their quotient.
     pub fn sums(&self) -> &Image {
         &self.sums[0]
     }
@@ -153,36 +201,76 @@ impl Irradiance {
             .pass("irradiance", &self.pipeline)
             .sample("sky_radiance", sky_radiance, Sampler::Linear)
             .sample("previous_sum", old, Sampler::Nearest)
-            .storage("Samples", &self.samples)
+            .storage("Samples", &self.table)
             .push(&push)
             .color(new, Load::Discard)
             .color(&self.irradiance, Load::Discard)
             .draw();
         self.done += push.count;
     }
+
+    fn sum_texels(&mut self, recorder: &mut Recorder, coarse_radiance: &Image) {
+        recorder
+            .pass("irradiance", &self.pipeline)
+            .sample("coarse_radiance", coarse_radiance, Sampler::Nearest)
+            .storage("Texels", &self.table)
+            .push(&ExactPush {
+                count: 6 * COARSE_EDGE * COARSE_EDGE,
+            })
+            .color(&self.sums[0], Load::Discard)
+            .color(&self.irradiance, Load::Discard)
+            .draw();
+        self.done = 1;
+    }
+
+    fn evaluate_harmonics(&mut self, recorder: &mut Recorder, daylight: &Daylight) {
+        let projected = SphericalHarmonics::project(|direction| daylight.radiance(direction));
+        let coefficients = projected.radiance.map(|c| kilo(c).to_array());
+        recorder
+            .pass("irradiance", &self.pipeline)
+            .push(&ShPush { coefficients })
+            .color(&self.sums[0], Load::Discard)
+            .color(&self.irradiance, Load::Discard)
+            .draw();
+        self.done = 1;
+    }
 }
 
-fn upload_samples(recorder: &mut Recorder, settings: &IrradianceSettings) -> Result<Buffer> {
-    let count = match settings.sampling {
-        Sampling::Quasi => settings.samples,
-        // The shader draws its own; the binding must exist all the same.
-        Sampling::MonteCarlo => 1,
+/// What the shader looks up, sample by sample.
+fn upload_table(recorder: &mut Recorder, settings: &IrradianceSettings) -> Result<Buffer> {
+    let edge = COARSE_EDGE as usize;
+    let numbers: Vec<f32> = match settings.method {
+        IrradianceMethod::Quasi => (0..settings.samples)
+            .flat_map(|i| cosine_hemisphere(sobol(i)).as_vec3().to_array())
+            .collect(),
+        IrradianceMethod::Exact => texels(edge)
+            .flat_map(|(face, i, j)| {
+                let direction = texel_direction(face, i, j, edge);
+                direction
+                    .extend(texel_solid_angle(i, j, edge))
+                    .as_vec4()
+                    .to_array()
+            })
+            .collect(),
+        // These two need no table; a declared binding must be there all the same.
+        IrradianceMethod::MonteCarlo | IrradianceMethod::Sh => vec![0.0; 4],
     };
-    let directions: Vec<[f32; 3]> = (0..count)
-        .map(|i| cosine_hemisphere(sobol(i)).as_vec3().to_array())
-        .collect();
-    let bytes = bytemuck::cast_slice(&directions);
-    upload_buffer(recorder, "irradiance samples", BufferKind::Storage, bytes)
+    let bytes = bytemuck::cast_slice(&numbers);
+    upload_buffer(recorder, "irradiance table", BufferKind::Storage, bytes)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::{GpuStruct, check_layout};
+    use crate::gpu::{Field, GpuStruct, check_layout};
 
     #[test]
     fn host_and_shader_agree() {
-        let push = shaders::IRRADIANCE_FRAG.push.expect("push");
-        assert_eq!(check_layout(Push::FIELDS, push), Ok(()));
+        let check = |host: &[Field], stage: &Shader| {
+            assert_eq!(check_layout(host, stage.push.expect("push")), Ok(()));
+        };
+        check(Push::FIELDS, &shaders::IRRADIANCE_FRAG);
+        check(ExactPush::FIELDS, &shaders::IRRADIANCE_EXACT_FRAG);
+        check(ShPush::FIELDS, &shaders::IRRADIANCE_SH_FRAG);
     }
 }

@@ -49,12 +49,27 @@ gpu_struct! {
     }
 }
 
-/// The pass and its cube.
+/// Edge of the coarse cube, texels: what the exact sum of the irradiance runs over.
+pub const COARSE_EDGE: u32 = 32;
+
+/// What the pass leaves behind.
+#[derive(Clone, Copy)]
+pub struct SkyImages<'s> {
+    /// The sky, kcd/m².
+    pub radiance: &'s Image,
+    /// The same at [`COARSE_EDGE`].
+    pub coarse: &'s Image,
+    /// Whether they were drawn in this frame.
+    pub is_new: bool,
+}
+
+/// The pass and its cubes.
 pub struct SkyCube {
     preetham: Pipeline,
     hosek: Pipeline,
     overcast: Pipeline,
     radiance: Image,
+    coarse: Image,
     drawn: Option<Daylight>,
 }
 
@@ -82,24 +97,35 @@ impl SkyCube {
     /// # Errors
     /// When the device refuses.
     pub fn new(context: &Arc<Context>, edge: u32) -> Result<Self> {
-        let desc = ImageDesc::cube("sky radiance", Format::R16G16B16A16_SFLOAT, edge);
+        let cube = |name, edge| {
+            Image::new(
+                context,
+                &ImageDesc::cube(name, Format::R16G16B16A16_SFLOAT, edge),
+            )
+        };
         Ok(Self {
             preetham: pipeline(context, "sky: Preetham", &shaders::SKY_PREETHAM_FRAG)?,
             hosek: pipeline(context, "sky: Hosek", &shaders::SKY_HOSEK_FRAG)?,
             overcast: pipeline(context, "sky: overcast", &shaders::SKY_OVERCAST_FRAG)?,
-            radiance: Image::new(context, &desc)?,
+            radiance: cube("sky radiance", edge)?,
+            coarse: cube("sky radiance, coarse", COARSE_EDGE)?,
             drawn: None,
         })
     }
 
-    /// Draws the sky if it changed. Gives the cube, and whether it is new.
-    pub fn record(&mut self, recorder: &mut Recorder, daylight: &Daylight) -> (&Image, bool) {
-        let changed = self.drawn.as_ref() != Some(daylight);
-        if changed {
-            self.draw(recorder, daylight);
+    /// Draws the sky if it changed.
+    pub fn record(&mut self, recorder: &mut Recorder, daylight: &Daylight) -> SkyImages<'_> {
+        let is_new = self.drawn.as_ref() != Some(daylight);
+        if is_new {
+            self.draw(recorder, daylight, &self.radiance);
+            self.draw(recorder, daylight, &self.coarse);
             self.drawn = Some(daylight.clone());
         }
-        (&self.radiance, changed)
+        SkyImages {
+            radiance: &self.radiance,
+            coarse: &self.coarse,
+            is_new,
+        }
     }
 
     /// Forgets what was drawn, so that the next frame draws it again.
@@ -112,14 +138,13 @@ impl SkyCube {
         &self.radiance
     }
 
-    fn draw(&self, recorder: &mut Recorder, daylight: &Daylight) {
+    fn draw(&self, recorder: &mut Recorder, daylight: &Daylight, target: &Image) {
         let push = Push {
             sun_direction: daylight.guard.sun_direction.as_vec3(),
             scale: daylight.guard.scale as f32,
             night: kilo(daylight.guard.night),
             ground: kilo(daylight.ground_luminance),
         };
-        let target = &self.radiance;
         match &daylight.sky {
             Sky::Preetham(sky) => {
                 let pass = recorder.pass("sky cube", &self.preetham);

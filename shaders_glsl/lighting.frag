@@ -54,7 +54,8 @@ layout(set = 0, binding = 10, scalar) readonly buffer Materials {
 /// V: the share of the sun that the shadow map lets through, over a 3x3 tent: the mean of four bilinear comparisons half
 /// a texel apart. Nine fetches and comparisons give the same and cost a CPU a third of four filtered lookups.
 float visibility(vec3 world, vec3 n, float n_dot_l) {
-    float sine = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0));
+    // A surface that faces the sun has no slope to be biased by: a tenth of the offset stays, for rounding.
+    float sine = max(sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0)), 0.1);
     vec3 p = (sun.shadow_from_world * vec4(world + n * (sun.normal_offset * sine), 1.0)).xyz;
     ivec2 last = textureSize(shadow_map, 0) - 1;
     vec2 at = (p.xy * 0.5 + 0.5) * vec2(last + 1);

@@ -38,8 +38,12 @@ float fast_acos(float x) {
     return x >= 0.0 ? r : PI - r;
 }
 
+// What rises less than this over the tangent plane (a sine) is that plane, not an occluder: samples lie at pixel centres,
+// beside the slice, where a plane seen at a grazing angle would pass for a horizon.
+const float FLAT = 0.02;
+
 /// Cosine of the highest horizon on one side of the slice.
-float horizon(vec2 origin, vec2 stride, vec3 p, vec3 v, float lowest, float jitter) {
+float horizon(vec2 origin, vec2 stride, vec3 p, vec3 v, vec3 n, float lowest, float jitter) {
     float highest = lowest;
     float inverse_r2 = 1.0 / (push.radius * push.radius);
     for (int i = 0; i < STEPS; ++i) {
@@ -52,7 +56,9 @@ float horizon(vec2 origin, vec2 stride, vec3 p, vec3 v, float lowest, float jitt
         if (d <= 0.0) continue;
         vec3 delta = position_at(pixel, d) - p;
         float r2 = dot(delta, delta);
-        float c = dot(delta, v) * inversesqrt(max(r2, 1e-12));
+        float inverse_r = inversesqrt(max(r2, 1e-12));
+        if (dot(delta, n) * inverse_r < FLAT) continue;
+        float c = dot(delta, v) * inverse_r;
         // Beyond the radius nothing occludes; the last fifth fades, so that no ring shows.
         float w = clamp((1.0 - r2 * inverse_r2) * 2.5, 0.0, 1.0);
         highest = max(highest, mix(lowest, c, w));
@@ -75,32 +81,35 @@ void main() {
     ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
     float turn = fract(float(((cell.x + cell.y) & 3) * 4 + cell.x) / 16.0 + push.phase);
     float jitter = fract(float((cell.y - cell.x) & 3) * 0.25 + 0.125 + push.phase * 7.0);
-    vec2 pixels = push.radius / -p.z / abs(view.ray_scale) * 0.5 * vec2(full_size);
+    // Slices turn evenly about v, which leaves the image plane's normal toward the picture's edges.
+    vec3 right = normalize(vec3(v.z, 0.0, -v.x));
+    vec3 up = cross(v, right);
+    vec2 pixels_at_distance = 0.5 * vec2(full_size) * push.radius / (-p.z * view.ray_scale);
     vec2 origin = vec2(pixel) + 0.5;
-    float visible = 0.0;
+    float blocked = 0.0;
     for (int slice = 0; slice < SLICES; ++slice) {
         float phi = (float(slice) + turn) * (PI / float(SLICES));
-        vec2 omega = vec2(cos(phi), sin(phi));
-        // Screen y runs down, view y up.
-        vec3 direction = vec3(omega.x, -omega.y, 0.0);
-        vec3 across = direction - dot(direction, v) * v;
+        vec3 direction = right * cos(phi) + up * sin(phi);
         vec3 axis = normalize(cross(direction, v));
         vec3 projected = n - axis * dot(n, axis);
         float length_n = max(length(projected), 1e-4);
         float cos_n = clamp(dot(projected, v) / length_n, -1.0, 1.0);
-        float angle_n = (dot(across, projected) >= 0.0 ? 1.0 : -1.0) * fast_acos(cos_n);
-        vec2 stride = omega * pixels;
+        float angle_n = (dot(direction, projected) >= 0.0 ? 1.0 : -1.0) * fast_acos(cos_n);
+        // The perspective image of a step of the radius along the direction.
+        vec2 stride = (direction.xy - direction.z * p.xy / p.z) * pixels_at_distance;
         float sin_n = sin(angle_n);
         // The tangent plane bounds both horizons from below.
         float low_minus = cos(angle_n - PI * 0.5);
         float low_plus = cos(angle_n + PI * 0.5);
-        float minus = -fast_acos(horizon(origin, -stride, p, v, low_minus, jitter));
-        float plus = fast_acos(horizon(origin, stride, p, v, low_plus, jitter));
+        float minus = -fast_acos(horizon(origin, -stride, p, v, n, low_minus, jitter));
+        float plus = fast_acos(horizon(origin, stride, p, v, n, low_plus, jitter));
         minus = angle_n + max(minus - angle_n, -PI * 0.5);
         plus = angle_n + min(plus - angle_n, PI * 0.5);
         float arcs = (cos_n + 2.0 * minus * sin_n - cos(2.0 * minus - angle_n))
                    + (cos_n + 2.0 * plus * sin_n - cos(2.0 * plus - angle_n));
-        visible += length_n * 0.25 * arcs;
+        // Less the same slice of an open plane, whose mean over all slices is 1.
+        blocked += length_n * (cos_n + angle_n * sin_n - 0.25 * arcs);
     }
-    occlusion = vec2(clamp(visible / float(SLICES), 0.0, 1.0), -p.z);
+    // Not cut at 0: a single slice may block more than its share, and only the mean over many is A.
+    occlusion = vec2(1.0 - blocked / float(SLICES), -p.z);
 }

@@ -28,5 +28,5 @@ void main() {
         }
     }
     // The pixel itself always counts (w = 1), so the sum of weights is at least one.
-    occlusion = vec2(sum.r / sum.g, centre.g);
+    occlusion = vec2(clamp(sum.r / sum.g, 0.0, 1.0), centre.g);
 }

@@ -4,8 +4,9 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{Arg, Parser, Subcommand};
 
+use crate::faces::SkyWishes;
 use crate::settings::{Options, one_line};
 
 /// What the user wants done.
@@ -33,6 +34,19 @@ pub enum Command {
         #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
         frames: u32,
         /// How.
+        #[command(flatten)]
+        options: Box<Options>,
+    },
+    /// Tell the numbers of a daylight: sun, illuminances, luminances.
+    ///
+    /// The options of a picture (its size, camera, tone ..) are accepted and have no effect, so that one list of options
+    /// serves render, sky and bake.
+    #[command(mut_args = hidden_if_of_pictures)]
+    Sky {
+        /// What to tell.
+        #[command(flatten)]
+        wishes: SkyWishes,
+        /// Of which daylight.
         #[command(flatten)]
         options: Box<Options>,
     },
@@ -106,6 +120,15 @@ fn exit(error: &clap::Error, words: &[OsString]) -> CliExit {
             CliExit::Usage(format!("{} (see {hint})", one_line(error)))
         }
     }
+}
+
+/// Hides an option that decides a picture from the help of a command that makes none.
+fn hidden_if_of_pictures(arg: Arg) -> Arg {
+    const OF_LIGHT: [&str; 4] = ["preset", "irradiance", "irradiance_samples", "quiet"];
+    let heading = arg.get_help_heading();
+    let used = heading.is_none_or(|heading| heading == "Sun and sky");
+    let hidden = !used && !OF_LIGHT.contains(&arg.get_id().as_str());
+    arg.hide(hidden)
 }
 
 fn is_command(word: &str) -> bool {

@@ -39,7 +39,7 @@ impl Error {
     /// 2 for wrong usage, 1 for everything else.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Settings(_) => 2,
+            Self::Settings(_) | Self::Sun(_) => 2,
             _ => 1,
         }
     }

@@ -8,8 +8,12 @@ use chrono::{DateTime, FixedOffset};
 use clap::{Args, Command, FromArgMatches};
 
 pub use crate::daylight::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCurve};
+pub(crate) use resolve::name;
 pub use resolve::{CameraParts, Exposure, Settings, SunInput};
-pub use values::{AoResolution, Direction, ExposureMode, Place, Preset, Show, Size, SolarTime};
+pub(crate) use values::sun as direction;
+pub use values::{
+    AoResolution, Direction, ExposureMode, Place, Preset, Show, Size, SolarTime, Switch,
+};
 
 /// A value or a name that makes no sense: one line that names it and the remedy.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -57,6 +61,12 @@ pub struct Options {
     /// Turbidity: 2 very clear, 3 clear, 6 hazy, 10 murky; clamped to what the model holds for [default: 3].
     #[arg(long, value_name = "T", value_parser = values::turbidity, allow_hyphen_values = true, help_heading = "Sun and sky")]
     pub turbidity: Option<f64>,
+    /// Horizontal illuminance of the sky alone, lux: scales the sky to a measured value [default: the model's own].
+    #[arg(long, value_name = "LUX", value_parser = values::sky_illuminance, allow_hyphen_values = true, help_heading = "Sun and sky")]
+    pub sky_illuminance: Option<f64>,
+    /// Whether the air lifts the sun to its apparent elevation (of --place and --solar; --sun is as seen) [default: on].
+    #[arg(long, value_enum, value_name = "ON|OFF", help_heading = "Sun and sky")]
+    pub refraction: Option<Switch>,
     /// Reflectance of the ground below the horizon, 0 to 1; 0 is black [default: 0.2].
     #[arg(long, value_name = "ALBEDO", value_parser = values::ground_albedo, allow_hyphen_values = true, help_heading = "Sun and sky")]
     pub ground_albedo: Option<f64>,
@@ -170,7 +180,7 @@ impl Options {
             (base.ev100, base.exposure) = (None, None);
         }
         first_of!(self, base;
-            size samples show preset place when sun solar sun_position sky turbidity ground_albedo camera eye target fov
+            size samples show preset place when sun solar sun_position sky turbidity sky_illuminance refraction ground_albedo camera eye target fov
             ev100 exposure tonemap gamma scale irradiance irradiance_samples ao_radius ao_resolution specular shadow_size
             smooth device;
             layers quiet validate)

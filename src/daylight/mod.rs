@@ -23,6 +23,7 @@
 
 pub mod cie;
 pub mod colour;
+pub mod convergence;
 pub mod cube;
 mod data;
 pub mod exposure;

@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
+use super::light::{conditions, sun_position};
 use crate::daylight::exposure::{KEY, factor_from_ev100};
-use crate::daylight::sky::{Conditions, Daylight};
+use crate::daylight::sky::Daylight;
 use crate::daylight::spectrum::LUMINOUS_EFFICACY;
-use crate::daylight::sun_position::{SunPosition, lecture};
+use crate::daylight::sun_position::SunPosition;
 use crate::daylight::tone_curve::REINHARD_WHITE;
 use crate::error::Result;
 use crate::frame::FrameSettings;
@@ -18,7 +19,7 @@ use crate::passes::lighting::{LightingSettings, Precision, Show};
 use crate::passes::ssao::SsaoSettings;
 use crate::passes::tone_map::{Scale, ToneSettings};
 use crate::scene::{self, Camera, LoadOptions, Scene};
-use crate::settings::{AoResolution, Exposure, Options, Preset, Settings, SunInput};
+use crate::settings::{AoResolution, Exposure, Options, Preset, Settings};
 
 /// A scene under a daylight, and how it is to be drawn.
 pub struct Job {
@@ -181,40 +182,5 @@ impl Job {
                 .map(|(key, value)| (key.to_owned(), value)),
         );
         list
-    }
-}
-
-fn sun_position(settings: &Settings) -> Result<SunPosition> {
-    Ok(match settings.sun {
-        SunInput::Place {
-            latitude,
-            longitude,
-            when,
-        } => settings.sun_position.position(when, latitude, longitude)?,
-        SunInput::Solar {
-            day,
-            hours,
-            latitude,
-        } => lecture(day, hours, latitude),
-        // What the user names is what is seen: no refraction on top.
-        SunInput::Direction {
-            azimuth_deg,
-            elevation_deg,
-        } => SunPosition {
-            azimuth_deg,
-            elevation_deg,
-            apparent_elevation_deg: elevation_deg,
-        },
-    })
-}
-
-fn conditions(settings: &Settings, sun: &SunPosition) -> Conditions {
-    Conditions {
-        model: settings.sky,
-        turbidity: settings.turbidity,
-        ground_albedo: settings.ground_albedo,
-        sun_azimuth_deg: sun.azimuth_deg,
-        sun_elevation_deg: sun.apparent_elevation_deg,
-        horizontal_illuminance: None,
     }
 }

@@ -3,7 +3,15 @@
 mod bench;
 mod info;
 mod job;
+mod light;
+mod plot_spectrum;
+mod plot_study;
 mod render;
+mod sky;
+mod sky_report;
+mod sky_table;
+
+pub use sky::SkyWishes;
 
 use crate::cli::Command;
 use crate::error::Result;
@@ -25,6 +33,7 @@ pub fn run(command: Command) -> Result<()> {
             frames,
             options,
         } => bench::run(scene.as_deref(), json.as_deref(), frames, *options),
+        Command::Sky { wishes, options } => sky::run(&wishes, *options),
         Command::Info => info::run(),
     }
 }

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::{
     AoResolution, Direction, IrradianceMethod, Options, Place, Preset, SettingsError, Show, Size,
-    SkyModel, SolarTime, SunPositionMethod, ToneCurve, values,
+    SkyModel, SolarTime, SunPositionMethod, Switch, ToneCurve, values,
 };
 use crate::scene::{Bounds, Camera, Loaded};
 
@@ -19,10 +19,11 @@ const DEFAULT_PLACE: Place = Place {
 const DEFAULT_WHEN: &str = "2026-06-21T15:00:00+02:00";
 
 /// What `--preset lecture` sets, by the course's own defaults.
-const LECTURE: [(&str, &str); 14] = [
+const LECTURE: [(&str, &str); 15] = [
     ("place", "45,0"),
     ("solar", "200,10"),
     ("sun-position", "lecture"),
+    ("refraction", "off"),
     ("sky", "preetham"),
     ("turbidity", "2.4"),
     ("ground-albedo", "0"),
@@ -103,6 +104,10 @@ pub struct Settings {
     pub sky: SkyModel,
     /// As given; the daylight clamps it to what the sky model holds for and says so.
     pub turbidity: f64,
+    /// Horizontal illuminance to which the sky is scaled, lux.
+    pub sky_illuminance: Option<f64>,
+    /// Whether the air lifts the sun.
+    pub refraction: Switch,
     /// 0..1; 0 is black below the horizon.
     pub ground_albedo: f64,
     /// What is known of the camera.
@@ -191,6 +196,8 @@ impl Settings {
             sun_position: o.sun_position.unwrap_or_default(),
             sky,
             turbidity,
+            sky_illuminance: o.sky_illuminance,
+            refraction: o.refraction.unwrap_or_default(),
             ground_albedo: o.ground_albedo.unwrap_or(0.2),
             camera: CameraParts {
                 eye: o.eye,
@@ -242,6 +249,7 @@ impl Settings {
             ("sun-position", name(self.sun_position)),
             ("sky", name(self.sky)),
             ("turbidity", self.turbidity.to_string()),
+            ("refraction", name(self.refraction)),
             ("ground-albedo", self.ground_albedo.to_string()),
             ("irradiance", name(self.irradiance)),
             ("irradiance-samples", self.irradiance_samples.to_string()),
@@ -256,13 +264,15 @@ impl Settings {
             Exposure::Auto => ("exposure", "auto".to_owned()),
             Exposure::Ev100(ev) => ("ev100", ev.to_string()),
         });
+        let illuminance = self.sky_illuminance;
+        list.extend(illuminance.map(|v| ("sky-illuminance", v.to_string())));
         list.extend(self.gamma.map(|v| ("gamma", v.to_string())));
         list.extend(self.scale.map(|v| ("scale", v.to_string())));
         list
     }
 }
 
-fn name(value: impl ValueEnum) -> String {
+pub(crate) fn name(value: impl ValueEnum) -> String {
     value
         .to_possible_value()
         .map_or_else(String::new, |v| v.get_name().to_owned())

@@ -162,7 +162,16 @@ fn bad_values_are_one_line() {
 
 #[test]
 fn parameters_can_be_given_back() {
-    let first = resolve(&[("sun", "90,5"), ("gamma", "2.2")], &[]).expect("good");
+    let first = resolve(
+        &[
+            ("sun", "90,5"),
+            ("gamma", "2.2"),
+            ("sky-illuminance", "9000"),
+            ("refraction", "off"),
+        ],
+        &[],
+    )
+    .expect("good");
     let list: Vec<_> = first
         .parameters()
         .into_iter()

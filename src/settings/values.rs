@@ -57,6 +57,16 @@ pub enum Preset {
     Lecture,
 }
 
+/// On or off, where the default is not plainly off.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Switch {
+    /// On.
+    #[default]
+    On,
+    /// Off.
+    Off,
+}
+
 /// How finely ambient occlusion is computed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum AoResolution {
@@ -107,6 +117,7 @@ macro_rules! ranged {
 
 ranged! {
     turbidity: "turbidity", "", -100.0..=100.0;
+    sky_illuminance: "illuminance of the sky", "lux", 0.0..=1e6;
     ground_albedo: "ground albedo", "", 0.0..=1.0;
     fov: "field of view", "degrees", 1.0..=170.0;
     ev100: "exposure value", "", -20.0..=40.0;
@@ -143,7 +154,7 @@ pub(super) fn place(text: &str) -> Result<Place, String> {
 }
 
 /// `AZIMUTH,ELEVATION`, degrees.
-pub(super) fn sun(text: &str) -> Result<Direction, String> {
+pub(crate) fn sun(text: &str) -> Result<Direction, String> {
     let [azimuth, elevation] = list(text, "AZIMUTH,ELEVATION in degrees, for instance 135,40")?;
     within("azimuth", "degrees", -360.0..=360.0, azimuth)?;
     within("elevation", "degrees", -90.0..=90.0, elevation)?;

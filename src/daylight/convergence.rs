@@ -1,0 +1,132 @@
+//! How fast each way of computing irradiance converges: error against samples over a set of normals.
+
+use glam::{DVec2, DVec3};
+
+use super::cube::CubeMap;
+use super::irradiance::{
+    ExactIrradiance, IrradianceMethod, SphericalHarmonics, monte_carlo, quasi,
+};
+use super::quadrature::SphereQuadrature;
+
+/// Numbers of samples of the two sampling methods.
+pub const SAMPLES: [u32; 9] = [16, 32, 64, 128, 256, 512, 1024, 2048, 4096];
+
+/// Texels along an edge of the cubes that the exact sum is taken over.
+pub const CUBE_SIZES: [usize; 5] = [4, 8, 16, 32, 64];
+
+/// Independent runs of the random method of which the mean square is taken: one run would be its own accident.
+const RUNS: u32 = 16;
+
+/// The error of one method with one number of samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Convergence {
+    /// The method.
+    pub method: IrradianceMethod,
+    /// Radiances evaluated: directions for each normal, or texels or nodes for all normals together.
+    pub samples: u32,
+    /// Root mean square over the normals of the largest channel's error, relative to E(up).
+    pub rms: f64,
+}
+
+/// The 26 directions to the faces, edges and corners of a cube: the normals of the reference data.
+pub fn reference_normals() -> Vec<DVec3> {
+    let steps = [-1.0, 0.0, 1.0];
+    let all = steps.into_iter().flat_map(|x| {
+        let rows = steps.into_iter();
+        rows.flat_map(move |y| steps.map(|z| DVec3::new(x, y, z)))
+    });
+    all.filter(|n| *n != DVec3::ZERO)
+        .map(DVec3::normalize)
+        .collect()
+}
+
+/// E at each of `normals` by 256 × 512 nodes per hemisphere: within 1e-5 of E(up) of 512 × 1024 for the skies of this crate.
+pub fn reference(radiance: impl Fn(DVec3) -> DVec3, normals: &[DVec3]) -> Vec<DVec3> {
+    let nodes: Vec<_> = SphereQuadrature::sphere(256, 512)
+        .nodes
+        .into_iter()
+        .map(|(direction, weight)| (direction, radiance(direction) * weight))
+        .collect();
+    let at = |n: &DVec3| {
+        let terms = nodes.iter().map(|(d, value)| *value * n.dot(*d).max(0.0));
+        terms.sum()
+    };
+    normals.iter().map(at).collect()
+}
+
+/// Every method with every number of samples for one sky.
+pub fn study(radiance: impl Fn(DVec3) -> DVec3) -> Vec<Convergence> {
+    let normals = reference_normals();
+    let expected = reference(&radiance, &normals);
+    let rms = |runs: u32, e: &dyn Fn(usize, u32) -> DVec3| {
+        let up = reference_up(&normals, &expected);
+        let error = |k: usize, run| (e(k, run) - expected[k]).abs().max_element() / up;
+        let all = (0..normals.len()).flat_map(|k| (0..runs).map(move |run| (k, run)));
+        let squares: f64 = all.map(|(k, run)| error(k, run).powi(2)).sum();
+        (squares / f64::from(runs) / normals.len() as f64).sqrt()
+    };
+    let row = |method, samples, rms| Convergence {
+        method,
+        samples,
+        rms,
+    };
+    let mut rows = Vec::new();
+    for n in SAMPLES {
+        let seed = |k: usize, run| 1000 * k as u32 + run;
+        let e = |k, run| monte_carlo(&radiance, normals[k], n, seed(k, run));
+        rows.push(row(IrradianceMethod::MonteCarlo, n, rms(RUNS, &e)));
+    }
+    for n in SAMPLES {
+        let e = |k, _| quasi(&radiance, normals[k], n, DVec2::ZERO);
+        rows.push(row(IrradianceMethod::Quasi, n, rms(1, &e)));
+    }
+    for size in CUBE_SIZES {
+        let exact = ExactIrradiance::new(&CubeMap::from_fn(size, &radiance));
+        let texels = 6 * (size * size) as u32;
+        let e = |k, _| exact.at(normals[k]);
+        rows.push(row(IrradianceMethod::Exact, texels, rms(1, &e)));
+    }
+    let sh = SphericalHarmonics::project(&radiance);
+    let e = |k, _| sh.at(normals[k]);
+    rows.push(row(IrradianceMethod::Sh, 2 * 64 * 128, rms(1, &e)));
+    rows
+}
+
+fn reference_up(normals: &[DVec3], expected: &[DVec3]) -> f64 {
+    let up = normals.iter().position(|n| *n == DVec3::Y);
+    up.map_or(1.0, |k| expected[k].max_element())
+}
+
+/// Exponent p of error ∝ samples^p: the slope of a straight line through the logarithms, by least squares.
+pub fn exponent(rows: &[Convergence], method: IrradianceMethod) -> f64 {
+    let points: Vec<(f64, f64)> = rows
+        .iter()
+        .filter(|row| row.method == method)
+        .map(|row| (f64::from(row.samples).ln(), row.rms.ln()))
+        .collect();
+    let n = points.len() as f64;
+    let mean_x = points.iter().map(|p| p.0).sum::<f64>() / n;
+    let mean_y = points.iter().map(|p| p.1).sum::<f64>() / n;
+    let xy: f64 = points.iter().map(|p| (p.0 - mean_x) * (p.1 - mean_y)).sum();
+    let xx: f64 = points.iter().map(|p| (p.0 - mean_x).powi(2)).sum();
+    xy / xx
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::daylight::{Conditions, Daylight};
+
+    #[test]
+    fn random_samples_converge_as_the_square_root() {
+        let daylight = Daylight::new(&Conditions::default());
+        let rows = study(|d| daylight.radiance(d));
+        for row in &rows {
+            println!("{row:?}");
+        }
+        let slope = exponent(&rows, IrradianceMethod::MonteCarlo);
+        let quasi = exponent(&rows, IrradianceMethod::Quasi);
+        println!("exponents: monte-carlo {slope:.3}, quasi {quasi:.3}");
+        assert!((slope + 0.5).abs() <= 0.05, "{slope}");
+    }
+}

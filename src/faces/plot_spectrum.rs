@@ -1,0 +1,87 @@
+//! The lecture's figure "Solar radiation": a black body of 5800 K against the sun's spectrum, above and below the air.
+
+use std::error::Error;
+
+use plotters::prelude::*;
+
+use super::light::Light;
+use crate::daylight::spectrum::planck;
+use crate::daylight::sunlight::{
+    SUN_RANGE_NM, SUN_SOLID_ANGLE, air_mass, extraterrestrial_radiance, transmittance,
+};
+
+/// Temperature of the lecture's black body, K.
+const KELVIN: f64 = 5800.0;
+/// Wavelengths drawn, nm; the table covers a part.
+const DRAWN_NM: std::ops::Range<f64> = 250.0..1200.0;
+/// Irradiances drawn, W m⁻² nm⁻¹.
+const DRAWN: std::ops::Range<f64> = 0.0..2.4;
+
+/// The figure as SVG.
+pub fn draw(light: &Light) -> String {
+    let mut svg = String::new();
+    // Nothing is written but the string, so that only a mistake in `figure` could fail.
+    figure(&mut svg, light).expect("drawing to memory");
+    svg
+}
+
+fn figure(svg: &mut String, light: &Light) -> Result<(), Box<dyn Error>> {
+    let root = SVGBackend::with_string(svg, (900, 540)).into_drawing_area();
+    root.fill(&WHITE)?;
+    let mut chart = ChartBuilder::on(&root)
+        .caption(
+            "Irradiance of the sun at normal incidence",
+            ("sans-serif", 22),
+        )
+        .margin(12)
+        .x_label_area_size(44)
+        .y_label_area_size(56)
+        .build_cartesian_2d(DRAWN_NM, DRAWN)?;
+    let mesh = &mut chart.configure_mesh();
+    mesh.x_desc("wavelength, nm").y_desc("W m⁻² nm⁻¹").draw()?;
+    let table = || SUN_RANGE_NM.map(f64::from);
+    let elevation = light.conditions.sun_elevation_deg;
+    let (low, high) = light.conditions.model.turbidity_range();
+    let turbidity = light.conditions.turbidity.clamp(low, high);
+    let mass = air_mass(elevation);
+    let outside = |nm: f64| extraterrestrial_radiance(nm) * SUN_SOLID_ANGLE;
+    let body: Vec<_> = (250..=1200)
+        .map(f64::from)
+        .map(|nm| (nm, planck(KELVIN, nm) * SUN_SOLID_ANGLE))
+        .collect();
+    let above: Vec<_> = table().map(|nm| (nm, outside(nm))).collect();
+    // A sun below the horizon has no light to attenuate.
+    let shines = if elevation >= 0.0 { 1.0 } else { 0.0 };
+    let below: Vec<_> = table()
+        .map(|nm| {
+            (
+                nm,
+                shines * outside(nm) * transmittance(nm, mass, turbidity),
+            )
+        })
+        .collect();
+    let ground = format!("on the ground: turbidity {turbidity}, elevation {elevation:.1}°");
+    let curves = [
+        (body, format!("black body, {KELVIN} K"), BLACK),
+        (
+            above,
+            "outside the atmosphere (Preetham's table)".to_owned(),
+            RGBColor(200, 120, 0),
+        ),
+        (below, ground, RGBColor(0, 90, 200)),
+    ];
+    for (points, label, colour) in curves {
+        let series = LineSeries::new(points, colour.stroke_width(2));
+        let legend = move |(x, y)| PathElement::new([(x, y), (x + 24, y)], colour.stroke_width(2));
+        chart.draw_series(series)?.label(label).legend(legend);
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .background_style(WHITE)
+        .border_style(BLACK)
+        .label_font(("sans-serif", 14))
+        .draw()?;
+    root.present()?;
+    Ok(())
+}

@@ -1,0 +1,248 @@
+//! The numbers of a daylight: as JSON by their field names (which are fixed), as a table by [`Display`](std::fmt::Display).
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use serde::Serialize;
+
+use super::light::Light;
+use crate::daylight::colour::{
+    chromaticity, correlated_colour_temperature, luminance, xyz_from_rgb,
+};
+use crate::daylight::irradiance::IrradianceEstimator;
+use crate::daylight::sun_position::{self, SunEvents, sun_events};
+use crate::daylight::sunlight::{Sunlight, air_mass};
+use crate::error::Result;
+use crate::settings::{Direction, SunInput};
+
+/// The axes with their names and what lies there.
+pub const AXES: [(&str, &str, DVec3); 6] = [
+    ("+x", "east", DVec3::X),
+    ("-x", "west", DVec3::NEG_X),
+    ("+y", "up", DVec3::Y),
+    ("-y", "down", DVec3::NEG_Y),
+    ("+z", "south", DVec3::Z),
+    ("-z", "north", DVec3::NEG_Z),
+];
+
+/// Correlated colour temperatures beyond this (K) are those of no black body: the search ends there.
+const HOTTEST: f64 = 9e5;
+
+/// Everything that `skylight sky` knows. RGB is linear BT.709; cd/m² of luminances, lux of illuminances.
+#[derive(Debug, Serialize)]
+pub struct SkyReport {
+    /// The options that give this daylight again.
+    pub inputs: BTreeMap<&'static str, String>,
+    pub sun: SunReport,
+    pub sky: SkyPart,
+    /// Radiance of everything below the horizon.
+    pub ground: GroundPart,
+    /// Sun and sky on a horizontal plane.
+    pub global_horizontal_lux: f64,
+    pub warnings: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+pub struct SunReport {
+    pub azimuth_deg: f64,
+    /// True, without refraction.
+    pub elevation_deg: f64,
+    /// As seen; everything else is computed with it.
+    pub apparent_elevation_deg: f64,
+    pub direction: [f64; 3],
+    /// Of the apparent elevation; below the horizon that at the horizon.
+    pub air_mass: f64,
+    /// At normal incidence.
+    pub illuminance_lux: f64,
+    pub illuminance_rgb: [f64; 3],
+    /// Of the disc.
+    pub luminance: f64,
+    pub luminance_rgb: [f64; 3],
+    /// On a horizontal plane.
+    pub direct_horizontal_lux: f64,
+    /// `None` when it has set.
+    pub cct_k: Option<f64>,
+    /// `None` in polar day and night, and without a place and a moment; RFC 3339 in the offset of --when.
+    pub sunrise: Option<String>,
+    pub solar_noon: Option<String>,
+    pub sunset: Option<String>,
+    /// "day" or "night" where the sun neither rises nor sets on this date.
+    pub polar: Option<&'static str>,
+}
+
+#[derive(Debug, Serialize)]
+pub struct SkyPart {
+    pub model: String,
+    /// As used, within the model's range.
+    pub turbidity: f64,
+    pub ground_albedo: f64,
+    pub zenith_luminance: f64,
+    pub zenith_rgb: [f64; 3],
+    pub zenith_chromaticity: [f64; 2],
+    /// `None` where no black body is as blue.
+    pub zenith_cct_k: Option<f64>,
+    /// Of the light on a horizontal plane.
+    pub cct_k: Option<f64>,
+    pub diffuse_horizontal_lux: f64,
+    pub diffuse_horizontal_rgb: [f64; 3],
+    /// E of sky and ground, without the sun, on planes that face the axes.
+    pub irradiance: BTreeMap<&'static str, [f64; 3]>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub samples: Vec<Sample>,
+}
+
+#[derive(Debug, Serialize)]
+pub struct GroundPart {
+    pub luminance: f64,
+    pub rgb: [f64; 3],
+}
+
+/// Radiance in one direction: sky above the horizon, ground below; without the sun's disc.
+#[derive(Debug, Serialize)]
+pub struct Sample {
+    pub azimuth_deg: f64,
+    pub elevation_deg: f64,
+    pub rgb: [f64; 3],
+    pub luminance: f64,
+}
+
+impl SkyReport {
+    /// The numbers of `light`, and its radiance in `directions`.
+    ///
+    /// # Errors
+    /// A date that the ephemeris does not cover.
+    pub fn new(light: &Light, directions: &[Direction]) -> Result<Self> {
+        let daylight = &light.daylight;
+        let sun = SunReport::new(light)?;
+        let sky = SkyPart::new(light, directions);
+        Ok(Self {
+            inputs: light.inputs().collect(),
+            ground: GroundPart {
+                luminance: luminance(daylight.ground_luminance),
+                rgb: daylight.ground_luminance.to_array(),
+            },
+            global_horizontal_lux: sun.direct_horizontal_lux + sky.diffuse_horizontal_lux,
+            sun,
+            sky,
+            warnings: daylight.warnings.clone(),
+        })
+    }
+}
+
+impl SunReport {
+    fn new(light: &Light) -> Result<Self> {
+        let daylight = &light.daylight;
+        let events = events(light)?;
+        let moment = |t: Option<chrono::DateTime<chrono::FixedOffset>>| {
+            t.map(|t| t.format("%Y-%m-%dT%H:%M:%S%:z").to_string())
+        };
+        let illuminance = luminance(daylight.sun_illuminance);
+        let apparent = light.sun.apparent_elevation_deg;
+        Ok(Self {
+            azimuth_deg: light.sun.azimuth_deg,
+            elevation_deg: light.sun.elevation_deg,
+            apparent_elevation_deg: apparent,
+            direction: daylight.sun_direction.to_array(),
+            air_mass: air_mass(apparent),
+            illuminance_lux: illuminance,
+            illuminance_rgb: daylight.sun_illuminance.to_array(),
+            luminance: luminance(daylight.sun_luminance),
+            luminance_rgb: daylight.sun_luminance.to_array(),
+            direct_horizontal_lux: illuminance * daylight.sun_direction.y.max(0.0),
+            cct_k: (illuminance > 0.0)
+                .then(|| sun_temperature(light))
+                .flatten(),
+            sunrise: moment(events.and_then(|e| e.sunrise)),
+            solar_noon: moment(events.and_then(|e| e.noon)),
+            sunset: moment(events.and_then(|e| e.sunset)),
+            polar: events.and_then(|e| polar(light, &e)),
+        })
+    }
+}
+
+/// From the spectrum, before it is brought into the gamut of BT.709.
+fn sun_temperature(light: &Light) -> Option<f64> {
+    let elevation = light.conditions.sun_elevation_deg.max(0.0);
+    let xyz = Sunlight::new(turbidity(light), elevation).luminance_xyz;
+    temperature(xyz)
+}
+
+fn temperature(xyz: DVec3) -> Option<f64> {
+    correlated_colour_temperature(xyz).filter(|kelvin| *kelvin < HOTTEST)
+}
+
+/// As the daylight uses it; it says so in a warning when that is not what was asked for.
+fn turbidity(light: &Light) -> f64 {
+    let (low, high) = light.conditions.model.turbidity_range();
+    light.conditions.turbidity.clamp(low, high)
+}
+
+fn events(light: &Light) -> Result<Option<SunEvents>> {
+    let SunInput::Place {
+        latitude,
+        longitude,
+        when,
+    } = light.settings.sun
+    else {
+        return Ok(None);
+    };
+    let day = when.date_naive();
+    Ok(Some(sun_events(day, *when.offset(), latitude, longitude)?))
+}
+
+/// Whether the sun that neither rises nor sets is up: looked at where it is highest.
+fn polar(light: &Light, events: &SunEvents) -> Option<&'static str> {
+    let SunInput::Place {
+        latitude,
+        longitude,
+        ..
+    } = light.settings.sun
+    else {
+        return None;
+    };
+    if events.sunrise.is_some() || events.sunset.is_some() {
+        return None;
+    }
+    let noon = sun_position::spa(events.noon?, latitude, longitude).ok()?;
+    Some(if noon.apparent_elevation_deg > 0.0 {
+        "day"
+    } else {
+        "night"
+    })
+}
+
+impl SkyPart {
+    fn new(light: &Light, directions: &[Direction]) -> Self {
+        let (daylight, settings) = (&light.daylight, &light.settings);
+        let zenith = daylight.radiance(DVec3::Y);
+        let up = daylight.sky_irradiance_up;
+        let radiance = |direction| daylight.radiance(direction);
+        let e =
+            IrradianceEstimator::new(settings.irradiance, radiance, settings.irradiance_samples);
+        Self {
+            model: crate::settings::name(settings.sky),
+            turbidity: turbidity(light),
+            ground_albedo: settings.ground_albedo,
+            zenith_luminance: luminance(zenith),
+            zenith_rgb: zenith.to_array(),
+            zenith_chromaticity: chromaticity(xyz_from_rgb(zenith)),
+            zenith_cct_k: temperature(xyz_from_rgb(zenith)),
+            cct_k: temperature(xyz_from_rgb(up)),
+            diffuse_horizontal_lux: luminance(up),
+            diffuse_horizontal_rgb: up.to_array(),
+            irradiance: AXES.map(|(name, _, n)| (name, e.at(n).to_array())).into(),
+            samples: directions.iter().map(|d| sample(light, *d)).collect(),
+        }
+    }
+}
+
+fn sample(light: &Light, at: Direction) -> Sample {
+    let direction = sun_position::direction(at.azimuth_deg, at.elevation_deg);
+    let rgb = light.daylight.radiance(direction);
+    Sample {
+        azimuth_deg: at.azimuth_deg,
+        elevation_deg: at.elevation_deg,
+        rgb: rgb.to_array(),
+        luminance: luminance(rgb),
+    }
+}

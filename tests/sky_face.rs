@@ -1,0 +1,293 @@
+//! `skylight sky`, the real program: its JSON, known suns, and what it says to nonsense.
+
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn skylight(line: &str) -> Output {
+    let program = env!("CARGO_BIN_EXE_skylight");
+    let words = line.split_whitespace();
+    Command::new(program)
+        .args(words)
+        .output()
+        .expect("it starts")
+}
+
+fn json(options: &str) -> Value {
+    let output = skylight(&format!("sky --json {options}"));
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{options}: {errors}");
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+fn at(value: &Value, path: &str) -> f64 {
+    let found = value.pointer(&format!("/{}", path.replace('.', "/")));
+    let found = found.unwrap_or_else(|| panic!("{path} is missing"));
+    found.as_f64().unwrap_or_else(|| panic!("{path}: {found}"))
+}
+
+fn numbers(value: &Value, path: &str, count: usize) -> Vec<f64> {
+    let found = value.pointer(&format!("/{}", path.replace('.', "/")));
+    let list = found.and_then(Value::as_array);
+    let list = list.unwrap_or_else(|| panic!("{path} is no list"));
+    assert_eq!(list.len(), count, "{path}");
+    list.iter()
+        .map(|v| v.as_f64().unwrap_or_else(|| panic!("{path}: {v}")))
+        .collect()
+}
+
+#[test]
+fn every_fixed_key_has_its_shape() {
+    let found = json("--sun 180,45 --turbidity 1.65 --direction 0,90 --direction -90,-5");
+    for path in [
+        "sun.azimuth_deg",
+        "sun.elevation_deg",
+        "sun.apparent_elevation_deg",
+        "sun.air_mass",
+        "sun.illuminance_lux",
+        "sky.turbidity",
+        "sky.zenith_luminance",
+        "sky.diffuse_horizontal_lux",
+    ] {
+        assert!(at(&found, path) > 0.0, "{path}");
+    }
+    for path in ["sun.illuminance_rgb", "sun.luminance_rgb", "sky.zenith_rgb"] {
+        assert!(numbers(&found, path, 3).iter().all(|v| *v > 0.0), "{path}");
+    }
+    for axis in ["+x", "-x", "+y", "-y", "+z", "-z"] {
+        numbers(&found, &format!("sky.irradiance.{axis}"), 3);
+    }
+    let [x, y, z] = numbers(&found, "sun.direction", 3)[..] else {
+        unreachable!("three")
+    };
+    let expected = std::f64::consts::FRAC_1_SQRT_2;
+    assert!(x.abs() < 1e-12 && (y - expected).abs() < 1e-12 && (z - expected).abs() < 1e-12);
+    assert_eq!(found["sky"]["model"], "preetham");
+    // Preetham's model begins at 2; the warning names what was asked for.
+    assert_eq!(at(&found, "sky.turbidity"), 2.0);
+    let warning = found["warnings"][0].as_str().expect("a warning");
+    assert!(warning.contains("turbidity 1.65"), "{warning}");
+}
+
+#[test]
+fn samples_are_the_radiance_in_the_directions_asked_for() {
+    let found = json("--sun 180,45 --direction 0,90 --direction -90,-5");
+    let samples = found["sky"]["samples"].as_array().expect("a list");
+    assert_eq!(samples.len(), 2);
+    let zenith = at(&found, "sky.zenith_luminance");
+    assert!((at(&samples[0], "luminance") / zenith - 1.0).abs() < 1e-12);
+    assert_eq!(
+        numbers(&samples[0], "rgb", 3),
+        numbers(&found, "sky.zenith_rgb", 3)
+    );
+    assert_eq!(at(&samples[1], "azimuth_deg"), 270.0);
+    assert_eq!(at(&samples[1], "luminance"), at(&found, "ground.luminance"));
+    assert!(json("--sun 180,45")["sky"].get("samples").is_none());
+}
+
+#[test]
+fn illuminances_add_up() {
+    let found = json("--sun 100,30 --ground-albedo 0");
+    let up = numbers(&found, "sky.irradiance.+y", 3);
+    let diffuse = numbers(&found, "sky.diffuse_horizontal_rgb", 3);
+    for (a, b) in up.iter().zip(&diffuse) {
+        assert!((a / b - 1.0).abs() < 5e-4, "{a} {b}");
+    }
+    assert!(
+        numbers(&found, "sky.irradiance.-y", 3)
+            .iter()
+            .all(|e| e.abs() < 1e-9)
+    );
+    let half = at(&found, "sun.illuminance_lux") / 2.0;
+    assert!((at(&found, "sun.direct_horizontal_lux") / half - 1.0).abs() < 1e-9);
+    let total = half + at(&found, "sky.diffuse_horizontal_lux");
+    assert!((at(&found, "global_horizontal_lux") / total - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_measured_illuminance_scales_the_sky() {
+    let found = json("--sun 100,30 --sky overcast --sky-illuminance 9000");
+    assert!((at(&found, "sky.diffuse_horizontal_lux") / 9000.0 - 1.0).abs() < 1e-6);
+    // CIE overcast: zenith = 9/(7π) of the horizontal illuminance.
+    let zenith = 9000.0 * 9.0 / (7.0 * std::f64::consts::PI);
+    let found = at(&found, "sky.zenith_luminance");
+    assert!((found / zenith - 1.0).abs() < 1e-3, "{found} {zenith}");
+}
+
+#[test]
+fn refraction_can_be_switched_off() {
+    let place = "--place 55.68,12.57 --when 2026-06-21T04:40+02:00";
+    let on = json(place);
+    let off = json(&format!("{place} --refraction off"));
+    let lift = at(&on, "sun.apparent_elevation_deg") - at(&on, "sun.elevation_deg");
+    assert!((0.2..0.5).contains(&lift), "{lift}");
+    assert_eq!(
+        at(&off, "sun.apparent_elevation_deg"),
+        at(&off, "sun.elevation_deg")
+    );
+    assert!(numbers(&off, "sun.direction", 3)[1] < numbers(&on, "sun.direction", 3)[1]);
+}
+
+/// Place, moment, true elevation and azimuth (degrees) within 0.2, sunrise and sunset (local hours and minutes) within 3.
+///
+/// Elevations at noon and midnight follow from latitude and declination (23.44° at a solstice): 90 - |φ - δ|, φ + δ - 90.
+type Known = (&'static str, f64, f64, Option<[&'static str; 2]>);
+const KNOWN: [Known; 6] = [
+    // Copenhagen, summer and winter, at solar noon.
+    (
+        "--place 55.676,12.568 --when 2026-06-21T13:11:40+02:00",
+        57.76,
+        180.0,
+        Some(["04:25", "21:57"]),
+    ),
+    (
+        "--place 55.676,12.568 --when 2026-12-21T12:07:50+01:00",
+        10.89,
+        180.0,
+        Some(["08:37", "15:38"]),
+    ),
+    // Quito at the equinox: the sun passes the zenith within a degree.
+    (
+        "--place -0.18,-78.47 --when 2026-03-20T09:21-05:00",
+        45.0,
+        90.0,
+        Some(["06:17", "18:24"]),
+    ),
+    // Tromsø: midnight sun in the north (solar midnight is 00:46), polar night at noon in the south.
+    (
+        "--place 69.65,18.96 --when 2026-06-22T00:46+02:00",
+        3.09,
+        0.0,
+        None,
+    ),
+    (
+        "--place 69.65,18.96 --when 2026-12-21T11:42+01:00",
+        -3.09,
+        180.0,
+        None,
+    ),
+    // Sydney, midsummer noon: the sun stands in the north.
+    (
+        "--place -33.87,151.21 --when 2026-12-21T12:53:10+11:00",
+        79.57,
+        0.0,
+        Some(["05:41", "20:05"]),
+    ),
+];
+
+fn minutes(moment: &str) -> i32 {
+    let clock = moment.split('T').next_back().expect("a clock");
+    let part = |i: usize| clock[i..i + 2].parse::<i32>().expect("two digits");
+    part(0) * 60 + part(3)
+}
+
+#[test]
+fn known_places_have_their_suns() {
+    for (options, elevation, azimuth, events) in KNOWN {
+        let found = json(options);
+        let seen = at(&found, "sun.elevation_deg");
+        assert!(
+            (seen - elevation).abs() < 0.2,
+            "{options}: elevation {seen}"
+        );
+        let turn = at(&found, "sun.azimuth_deg") - azimuth;
+        let turn = ((turn + 180.0).rem_euclid(360.0) - 180.0) * elevation.to_radians().cos();
+        assert!(turn.abs() < 0.2, "{options}: azimuth off by {turn}");
+        for (key, i) in [("sunrise", 0), ("sunset", 1)] {
+            match (found["sun"][key].as_str(), events) {
+                (Some(found), Some(events)) => {
+                    let late = minutes(found) - minutes(events[i]);
+                    assert!(late.abs() <= 3, "{options}: {key} {found}");
+                }
+                (None, None) => {}
+                (found, _) => panic!("{options}: {key} {found:?}"),
+            }
+        }
+        assert!(found["sun"]["solar_noon"].is_string(), "{options}");
+    }
+}
+
+#[test]
+fn quito_has_the_sun_in_the_zenith_at_the_equinox() {
+    let found = json("--place -0.18,-78.47 --when 2026-03-20T12:21:20-05:00");
+    let elevation = at(&found, "sun.elevation_deg");
+    assert!(elevation > 89.5, "{elevation}");
+}
+
+#[test]
+fn polar_day_and_night_are_told_as_such() {
+    let words = |options: &str| {
+        let output = skylight(&format!("sky {options}"));
+        String::from_utf8(output.stdout).expect("text")
+    };
+    let summer = words(KNOWN[3].0);
+    assert_eq!(summer.matches("none: polar day").count(), 2, "{summer}");
+    let winter = words(KNOWN[4].0);
+    assert_eq!(winter.matches("none: polar night").count(), 2, "{winter}");
+    assert!(
+        winter.contains("warning: the sun is below the horizon"),
+        "{winter}"
+    );
+    assert_eq!(json(KNOWN[3].0)["sun"]["polar"], "day");
+    assert_eq!(json(KNOWN[4].0)["sun"]["polar"], "night");
+    assert!(at(&json(KNOWN[3].0), "sun.illuminance_lux") > 1000.0);
+    assert_eq!(at(&json(KNOWN[4].0), "sun.illuminance_lux"), 0.0);
+}
+
+#[test]
+fn nonsense_is_one_line_and_exit_code_2() {
+    for (line, part) in [
+        ("sky --place 91,0", "latitude must be -90 to 90"),
+        ("sky --when 2026-02-30T12:00Z", "a date that does not exist"),
+        (
+            "sky --when 9999-01-01T00:00Z",
+            "no sun position for this moment",
+        ),
+        ("sky --sun 1,2 --solar 3,4", "cannot be used with"),
+        ("sky --direction 1", "AZIMUTH,ELEVATION"),
+        ("sky --sky-illuminance -1", "0 to 1000000 lux"),
+        ("sky --plot spectrum.png", ".svg"),
+        ("sky scene.toml", "scene.toml"),
+        ("sky --refraction maybe", "--refraction"),
+    ] {
+        let output = skylight(line);
+        let text = String::from_utf8(output.stderr).expect("text");
+        assert_eq!(output.status.code(), Some(2), "{line}: {text}");
+        assert_eq!(text.lines().count(), 1, "{line}: {text}");
+        assert!(text.contains(part), "{line}: {text}");
+        assert!(output.stdout.is_empty(), "{line}");
+    }
+}
+
+#[test]
+fn plots_are_whole_svg_files_with_their_curves() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (options, parts) in [
+        (
+            "",
+            [
+                "black body, 5800 K",
+                "outside the atmosphere",
+                "on the ground",
+            ],
+        ),
+        ("--irradiance-study", ["monte-carlo", "quasi", "exact"]),
+    ] {
+        let path = folder.path().join("plot.svg");
+        let output = skylight(&format!("sky {options} --plot {}", path.display()));
+        assert!(output.status.success());
+        let svg = std::fs::read_to_string(&path).expect("written");
+        assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+        assert!(parts.iter().all(|part| svg.contains(part)), "{options}");
+        assert!(svg.matches("<polyline").count() >= 3, "{options}");
+    }
+    let output = skylight("sky --plot /no/such/folder/a.svg");
+    assert_eq!(output.status.code(), Some(1));
+}
+
+#[test]
+fn options_of_pictures_have_no_effect() {
+    let plain = json("--sun 180,45");
+    let with = json("--sun 180,45 --size 64x64 --tonemap agx --eye 1,2,3 --quiet");
+    assert_eq!(plain, with);
+}

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::error::ErrorKind;
 use clap::{Arg, Parser, Subcommand};
 
-use crate::faces::SkyWishes;
+use crate::faces::{BakeWishes, SkyWishes};
 use crate::settings::{Options, one_line};
 
 /// What the user wants done.
@@ -46,6 +46,18 @@ pub enum Command {
         /// What to tell.
         #[command(flatten)]
         wishes: SkyWishes,
+        /// Of which daylight.
+        #[command(flatten)]
+        options: Box<Options>,
+    },
+    /// Write the sky or its irradiance as an environment map, with a JSON file of its units beside it.
+    ///
+    /// The options of a picture (its size, camera, tone ..) are accepted and have no effect.
+    #[command(mut_args = of_maps)]
+    Bake {
+        /// What to write.
+        #[command(flatten)]
+        wishes: BakeWishes,
         /// Of which daylight.
         #[command(flatten)]
         options: Box<Options>,
@@ -129,6 +141,14 @@ fn hidden_if_of_pictures(arg: Arg) -> Arg {
     let used = heading.is_none_or(|heading| heading == "Sun and sky");
     let hidden = !used && !OF_LIGHT.contains(&arg.get_id().as_str());
     arg.hide(hidden)
+}
+
+/// As [`hidden_if_of_pictures`]; a map has a `--size` of its own, so that of pictures makes way.
+fn of_maps(arg: Arg) -> Arg {
+    if arg.get_id() == "size" {
+        return arg.long("picture-size").hide(true);
+    }
+    hidden_if_of_pictures(arg)
 }
 
 fn is_command(word: &str) -> bool {

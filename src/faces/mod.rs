@@ -1,9 +1,11 @@
 //! The faces of the program: drivers of the same [`Frame`](crate::frame::Frame).
 
+mod bake;
 mod bench;
 mod info;
 mod job;
 mod light;
+mod panorama;
 mod plot_spectrum;
 mod plot_study;
 mod render;
@@ -11,7 +13,10 @@ mod sky;
 mod sky_report;
 mod sky_table;
 
+pub use bake::{BakeWishes, Layout, Map};
 pub use sky::SkyWishes;
+
+use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::Command;
 use crate::error::Result;
@@ -34,6 +39,20 @@ pub fn run(command: Command) -> Result<()> {
             options,
         } => bench::run(scene.as_deref(), json.as_deref(), frames, *options),
         Command::Sky { wishes, options } => sky::run(&wishes, *options),
+        Command::Bake { wishes, options } => bake::run(&wishes, *options),
         Command::Info => info::run(),
     }
+}
+
+/// A bar on a terminal, nothing in a pipe or when there is but one step.
+fn progress(steps: u64, unit: &'static str, quiet: bool) -> ProgressBar {
+    if quiet || steps < 2 {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(steps);
+    // The template is constant; were it wrong, the default style would do.
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} {msg}, {eta} left") {
+        bar.set_style(style);
+    }
+    bar.with_message(unit)
 }

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
 use super::job::Job;
+use super::progress;
 use crate::daylight::exposure::automatic;
 use crate::error::Result;
 use crate::frame::Frame;
@@ -67,7 +68,7 @@ impl<'j> Renderer<'j> {
             job,
             recorder,
             frame,
-            progress: progress(steps, job.settings.quiet),
+            progress: progress(steps, "samples", job.settings.quiet),
         })
     }
 
@@ -177,17 +178,4 @@ fn channels(show: Show, name: &str) -> Channels {
         Show::Normal => Channels::Xyz,
         _ => Channels::Rgb,
     }
-}
-
-/// A bar on a terminal, nothing in a pipe or when there is but one step.
-fn progress(steps: u64, quiet: bool) -> ProgressBar {
-    if quiet || steps < 2 {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(steps);
-    // The template is constant; were it wrong, the default style would do.
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} samples, {eta} left") {
-        bar.set_style(style);
-    }
-    bar
 }

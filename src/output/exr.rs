@@ -53,8 +53,20 @@ pub struct Layer {
 /// # Errors
 /// When the file cannot be written; an older one is left alone then.
 pub fn write_exr(path: &Path, size: [u32; 2], layers: &[Layer], metadata: &Metadata) -> Result<()> {
-    let bytes = encode(size, layers, metadata).map_err(|e| write_error(path, e))?;
-    write_whole(path, &bytes)
+    write_whole(path, &encode_exr(path, size, layers, metadata)?)
+}
+
+/// The bytes of [`write_exr`]; `path` is for the message.
+///
+/// # Errors
+/// When the picture is not one, for instance empty.
+pub fn encode_exr(
+    path: &Path,
+    size: [u32; 2],
+    layers: &[Layer],
+    metadata: &Metadata,
+) -> Result<Vec<u8>> {
+    encode(size, layers, metadata).map_err(|e| write_error(path, e))
 }
 
 /// The form that every reader knows: ZIP, rows from the top.

@@ -1,12 +1,14 @@
 //! Pictures to files: whole or not at all.
 
 mod exr;
+mod hdr;
 mod png;
 
 use std::io::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-pub use self::exr::{Channels, Layer, write_exr};
+pub use self::exr::{Channels, Layer, encode_exr, write_exr};
+pub use self::hdr::encode_hdr;
 pub use self::png::{Encoding, write_png};
 
 use crate::error::{Error, Result};
@@ -73,14 +75,26 @@ fn reason(error: &std::io::Error) -> String {
 
 /// Writes beside the target and renames when whole.
 fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let mut file = temporary(path)?;
-    file.write_all(bytes)
-        .map_err(|e| write_error(path, reason(&e)))?;
-    file.as_file()
-        .sync_all()
-        .map_err(|e| write_error(path, reason(&e)))?;
-    file.persist(path)
-        .map_err(|e| write_error(path, reason(&e.error)))?;
+    write_set(&[(path.to_owned(), bytes.to_vec())])
+}
+
+/// Writes files that belong together: none is renamed to its target before all are whole.
+///
+/// # Errors
+/// When one cannot be written; older ones are left alone then.
+pub fn write_set(files: &[(PathBuf, Vec<u8>)]) -> Result<()> {
+    let whole = files.iter().map(|(path, bytes)| {
+        let mut file = temporary(path)?;
+        let written = file
+            .write_all(bytes)
+            .and_then(|()| file.as_file().sync_all());
+        written.map_err(|e| write_error(path, reason(&e)))?;
+        Ok((path, file))
+    });
+    for (path, file) in whole.collect::<Result<Vec<_>>>()? {
+        file.persist(path)
+            .map_err(|e| write_error(path, reason(&e.error)))?;
+    }
     Ok(())
 }
 
@@ -110,6 +124,17 @@ mod tests {
             0,
             "nothing is left behind"
         );
+    }
+
+    #[test]
+    fn of_a_set_all_or_none_is_written() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let (good, bad) = (dir.path().join("a"), dir.path().join("no/such/b"));
+        let set = |second| [(good.clone(), vec![1]), (second, vec![2])];
+        assert!(write_set(&set(bad)).is_err());
+        assert_eq!(dir.path().read_dir().expect("folder").count(), 0);
+        write_set(&set(dir.path().join("b"))).expect("written");
+        assert_eq!(dir.path().read_dir().expect("folder").count(), 2);
     }
 
     #[test]

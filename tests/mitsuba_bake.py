@@ -1,0 +1,65 @@
+"""Reads a baked equirect sky with Mitsuba 3 as an environment light, without any rotation, and prints what it finds.
+
+usage: mitsuba_bake.py SKY.exr ELEVATION-OF-THE-SUN    exit code 3: Mitsuba is not installed
+
+Mitsuba's envmap has +Y up, its first column at -Z and grows toward +X: with +Y up and -Z north that is azimuth clockwise
+from north, so `to_world` stays the identity.
+"""
+
+import json
+import sys
+
+try:
+    import mitsuba as mi
+except ImportError as error:
+    print(error)
+    sys.exit(3)
+
+mi.set_variant("scalar_rgb")
+
+
+def irradiance(path, normal):
+    """Irradiance (linear RGB) of a plane that faces `normal`, by an irradiance meter on a small rectangle."""
+    up = [0, 0, 1] if abs(normal[2]) < 0.9 else [1, 0, 0]
+    scene = mi.load_dict({
+        "type": "scene",
+        "integrator": {"type": "direct"},
+        "sky": {"type": "envmap", "filename": path},
+        "plane": {
+            "type": "rectangle",
+            "to_world": mi.ScalarTransform4f().look_at([0, 0, 0], normal, up),
+            "bsdf": {"type": "diffuse", "reflectance": 0.0},
+            "meter": {
+                "type": "irradiancemeter",
+                "sampler": {"type": "independent", "sample_count": 1 << 19},
+                "film": {"type": "hdrfilm", "width": 1, "height": 1, "pixel_format": "rgb",
+                         "rfilter": {"type": "box"}, "component_format": "float32"},
+            },
+        },
+    })
+    pixel = mi.render(scene)
+    return [float(pixel.array[c]) for c in range(3)]
+
+
+def brightest_azimuth(path, elevation):
+    """Azimuth, degrees clockwise from north, of the most radiant direction at `elevation`, asked of the emitter."""
+    import math
+    emitter = mi.load_dict({"type": "scene", "sky": {"type": "envmap", "filename": path}}).environment()
+    best = (-1.0, 0.0)
+    for step in range(36000):
+        azimuth = math.radians(step / 100)
+        e = math.radians(elevation)
+        d = [math.sin(azimuth) * math.cos(e), math.sin(e), -math.cos(azimuth) * math.cos(e)]
+        si = mi.SurfaceInteraction3f()
+        si.wi = mi.Vector3f([-c for c in d])  # the interaction looks back along the ray
+        best = max(best, (float(emitter.eval(si)[1]), step / 100))
+    return best[1]
+
+
+path, elevation = sys.argv[1], float(sys.argv[2])
+normals = {"+y": [0, 1, 0], "+x": [1, 0, 0], "-x": [-1, 0, 0], "+z": [0, 0, 1], "-z": [0, 0, -1]}
+print(json.dumps({
+    "mitsuba": mi.__version__,
+    "irradiance": {name: irradiance(path, n) for name, n in normals.items()},
+    "azimuth": brightest_azimuth(path, elevation),
+}))

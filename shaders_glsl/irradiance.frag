@@ -18,7 +18,7 @@ layout(constant_id = 0) const bool MONTE_CARLO = false;
 layout(set = 0, binding = 0) uniform samplerCube sky_radiance; // kcd/m^2
 layout(set = 0, binding = 1) uniform samplerCube previous_sum;
 layout(set = 0, binding = 2, scalar) readonly buffer Samples {
-    vec3 samples[]; // cosine-weighted directions around +z, low-discrepancy
+    vec4 samples[]; // xyz: cosine-weighted directions around +z, low-discrepancy; w: mip level of the lookup
 };
 
 layout(push_constant, scalar) uniform Push {
@@ -42,8 +42,10 @@ void main() {
     uint t = tea(texel, uint(face) + 6u * push.first);
     vec3 total = vec3(0.0);
     for (uint i = 0u; i < push.count; ++i) {
-        vec3 local = MONTE_CARLO ? random_direction(t) : samples[push.first + i];
-        total += textureLod(sky_radiance, frame * local, 0.0).rgb;
+        // Filtered importance sampling (Krivanek and Colbert 2008): a sample stands for its share of the hemisphere. The
+        // lecture's random samples look at points.
+        vec4 local = MONTE_CARLO ? vec4(random_direction(t), 0.0) : samples[push.first + i];
+        total += textureLod(sky_radiance, frame * local.xyz, local.w).rgb;
     }
     sum = vec4(PI * total, float(push.count));
     if (push.first > 0u) sum += textureLod(previous_sum, n, 0.0);

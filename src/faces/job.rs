@@ -87,7 +87,6 @@ impl Job {
     /// The settings of the frame.
     pub fn frame_settings(&self, show: Show, precision: Precision) -> FrameSettings {
         let s = &self.settings;
-        let lecture = s.preset == Some(Preset::Lecture);
         let downscale = match s.ao_resolution {
             AoResolution::Full => 1,
             AoResolution::Half => 2,
@@ -95,7 +94,7 @@ impl Job {
         FrameSettings {
             size: UVec2::new(s.size.width, s.size.height),
             samples: s.samples,
-            sky_edge: if lecture { 512 } else { 256 },
+            sky_edge: self.sky_edge(),
             irradiance: self.irradiance_settings(),
             shadow_resolution: s.shadow_size,
             ssao: SsaoSettings {
@@ -121,6 +120,14 @@ impl Job {
         }
     }
 
+    fn sky_edge(&self) -> u32 {
+        if self.settings.preset == Some(Preset::Lecture) {
+            512
+        } else {
+            256
+        }
+    }
+
     fn irradiance_settings(&self) -> IrradianceSettings {
         let s = &self.settings;
         let default = IrradianceSettings::default();
@@ -129,6 +136,7 @@ impl Job {
         let samples_per_pass = if lecture { 5 } else { default.samples_per_pass };
         let (method, samples) = (s.irradiance, s.irradiance_samples);
         IrradianceSettings {
+            sky_edge: self.sky_edge(),
             method,
             samples,
             samples_per_pass,

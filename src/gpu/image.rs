@@ -58,6 +58,15 @@ impl<'a> ImageDesc<'a> {
         }
     }
 
+    /// The same with all mip levels down to one texel.
+    pub fn mipmapped(self) -> Self {
+        let edge = self.size[0].max(self.size[1]).max(1);
+        Self {
+            levels: edge.ilog2() + 1,
+            ..self
+        }
+    }
+
     const fn layers(&self) -> u32 {
         match self.kind {
             ImageKind::Flat => 1,
@@ -262,7 +271,36 @@ impl Image {
 
     /// Remembers the next use and gives the barrier that it needs.
     pub(super) fn next(&self, next: Use) -> Option<vk::ImageMemoryBarrier2<'static>> {
-        let barrier = access::barrier(self.last_use.replace(next), next)?;
+        self.barrier(self.last_use.replace(next), next, self.whole())
+    }
+
+    /// The barrier of one mip level. The caller leaves all levels in one use at the end, and says which.
+    pub(super) fn level_barrier(
+        &self,
+        level: u32,
+        from: Use,
+        to: Use,
+    ) -> Option<vk::ImageMemoryBarrier2<'static>> {
+        let range = vk::ImageSubresourceRange {
+            base_mip_level: level,
+            level_count: 1,
+            ..self.whole()
+        };
+        self.barrier(from, to, range)
+    }
+
+    /// Notes the use that a sequence of level barriers ended in.
+    pub(super) fn set_last_use(&self, last: Use) {
+        self.last_use.set(last);
+    }
+
+    fn barrier(
+        &self,
+        from: Use,
+        to: Use,
+        range: vk::ImageSubresourceRange,
+    ) -> Option<vk::ImageMemoryBarrier2<'static>> {
+        let barrier = access::barrier(from, to)?;
         Some(
             vk::ImageMemoryBarrier2::default()
                 .src_stage_mask(barrier.src_stage)
@@ -274,7 +312,7 @@ impl Image {
                 .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
                 .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
                 .image(self.raw)
-                .subresource_range(self.whole()),
+                .subresource_range(range),
         )
     }
 

@@ -18,6 +18,7 @@ mod context;
 mod error;
 mod image;
 mod layout;
+mod mips;
 mod pass;
 mod pipeline;
 mod read_back;

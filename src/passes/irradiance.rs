@@ -7,11 +7,12 @@
 //! `exact` sums a coarse sky cube with exact texel solid angles instead, `sh` evaluates nine coefficients that the CPU
 //! projected: both are done in one pass.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use crate::daylight::cube::{texel_direction, texel_solid_angle, texels};
 use crate::daylight::irradiance::{IrradianceMethod, SphericalHarmonics};
-use crate::daylight::sampling::{cosine_hemisphere, sobol};
+use crate::daylight::sampling::{cosine_hemisphere, hammersley};
 use crate::daylight::sky::Daylight;
 use crate::gpu::{
     Buffer, BufferKind, Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc,
@@ -49,6 +50,8 @@ gpu_struct! {
 pub struct IrradianceSettings {
     /// Edge of a face, texels.
     pub edge: u32,
+    /// Edge of a face of the sky cube that is sampled, texels.
+    pub sky_edge: u32,
     /// How E is found.
     pub method: IrradianceMethod,
     /// Samples wanted in all, of the two methods that sample.
@@ -61,6 +64,7 @@ impl Default for IrradianceSettings {
     fn default() -> Self {
         Self {
             edge: 32,
+            sky_edge: 256,
             method: IrradianceMethod::Quasi,
             samples: 1024,
             samples_per_pass: 256,
@@ -87,6 +91,9 @@ pub struct Irradiance {
     irradiance: Image,
     done: u32,
 }
+
+/// Coarser levels of the sky cube smear light across the horizon without lowering the error further.
+const MAX_LEVEL: f64 = 5.0;
 
 const COLORS: [Format; 2] = [Format::R32G32B32A32_SFLOAT, Format::R16G16B16A16_SFLOAT];
 
@@ -240,9 +247,7 @@ impl Irradiance {
 fn upload_table(recorder: &mut Recorder, settings: &IrradianceSettings) -> Result<Buffer> {
     let edge = COARSE_EDGE as usize;
     let numbers: Vec<f32> = match settings.method {
-        IrradianceMethod::Quasi => (0..settings.samples)
-            .flat_map(|i| cosine_hemisphere(sobol(i)).as_vec3().to_array())
-            .collect(),
+        IrradianceMethod::Quasi => filtered_samples(settings.samples, settings.sky_edge),
         IrradianceMethod::Exact => texels(edge)
             .flat_map(|(face, i, j)| {
                 let direction = texel_direction(face, i, j, edge);
@@ -257,6 +262,25 @@ fn upload_table(recorder: &mut Recorder, settings: &IrradianceSettings) -> Resul
     };
     let bytes = bytemuck::cast_slice(&numbers);
     upload_buffer(recorder, "irradiance table", BufferKind::Storage, bytes)
+}
+
+/// Hammersley's points as cosine-weighted directions, each with the mip level whose texels are as large as its share of
+/// the hemisphere (Krivanek & Colbert 2008): 1/(N pdf) = π/(N cos θ) sr.
+///
+/// Their order is that of the radical inverse, so that the first few already cover the hemisphere.
+fn filtered_samples(count: u32, sky_edge: u32) -> Vec<f32> {
+    let texel = 4.0 * PI / f64::from(6 * sky_edge * sky_edge);
+    let mut order: Vec<u32> = (0..count).collect();
+    order.sort_by_key(|i| i.reverse_bits());
+    order
+        .into_iter()
+        .flat_map(|i| {
+            let direction = cosine_hemisphere(hammersley(i, count));
+            let share = PI / (f64::from(count) * direction.z.max(1e-3));
+            let level = (0.5 * (share / texel).log2()).clamp(0.0, MAX_LEVEL);
+            direction.extend(level).as_vec4().to_array()
+        })
+        .collect()
 }
 
 #[cfg(test)]

@@ -55,7 +55,7 @@ pub const COARSE_EDGE: u32 = 32;
 /// What the pass leaves behind.
 #[derive(Clone, Copy)]
 pub struct SkyImages<'s> {
-    /// The sky, kcd/m².
+    /// The sky with mip levels, kcd/m².
     pub radiance: &'s Image,
     /// The same at [`COARSE_EDGE`].
     pub coarse: &'s Image,
@@ -97,18 +97,13 @@ impl SkyCube {
     /// # Errors
     /// When the device refuses.
     pub fn new(context: &Arc<Context>, edge: u32) -> Result<Self> {
-        let cube = |name, edge| {
-            Image::new(
-                context,
-                &ImageDesc::cube(name, Format::R16G16B16A16_SFLOAT, edge),
-            )
-        };
+        let cube = |name, edge| ImageDesc::cube(name, Format::R16G16B16A16_SFLOAT, edge);
         Ok(Self {
             preetham: pipeline(context, "sky: Preetham", &shaders::SKY_PREETHAM_FRAG)?,
             hosek: pipeline(context, "sky: Hosek", &shaders::SKY_HOSEK_FRAG)?,
             overcast: pipeline(context, "sky: overcast", &shaders::SKY_OVERCAST_FRAG)?,
-            radiance: cube("sky radiance", edge)?,
-            coarse: cube("sky radiance, coarse", COARSE_EDGE)?,
+            radiance: Image::new(context, &cube("sky radiance", edge).mipmapped())?,
+            coarse: Image::new(context, &cube("sky radiance, coarse", COARSE_EDGE))?,
             drawn: None,
         })
     }
@@ -118,6 +113,7 @@ impl SkyCube {
         let is_new = self.drawn.as_ref() != Some(daylight);
         if is_new {
             self.draw(recorder, daylight, &self.radiance);
+            recorder.mipmap("sky mips", &self.radiance);
             self.draw(recorder, daylight, &self.coarse);
             self.drawn = Some(daylight.clone());
         }

@@ -1,0 +1,71 @@
+//! Mip levels by repeated halving.
+
+use ash::vk;
+
+use super::access::Use;
+use super::image::Image;
+use super::recorder::Recorder;
+
+impl Recorder {
+    /// Fills the mip levels of an image from its first: each texel is the mean of four.
+    pub fn mipmap(&mut self, name: &'static str, image: &Image) {
+        self.label(name);
+        let mark = self.begin_timing(name);
+        self.transition([(image, Use::CopyTarget)].into_iter());
+        for level in 1..image.levels() {
+            self.level_transition(image, level - 1, Use::CopyTarget, Use::CopySource);
+            self.blit(image, level);
+        }
+        self.level_transition(image, image.levels() - 1, Use::CopyTarget, Use::CopySource);
+        image.set_last_use(Use::CopySource);
+        self.end_timing(&mark);
+        self.unlabel();
+        self.isolate(&mark);
+    }
+
+    fn level_transition(&self, image: &Image, level: u32, from: Use, to: Use) {
+        let Some(barrier) = image.level_barrier(level, from, to) else {
+            return;
+        };
+        let barriers = [barrier];
+        let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
+        // SAFETY: the command buffer is recording outside of a rendering; the image is alive.
+        unsafe {
+            self.context
+                .raw()
+                .cmd_pipeline_barrier2(self.command, &info)
+        };
+    }
+
+    /// Halves level `level - 1` (a copy source) into `level` (a copy target).
+    fn blit(&self, image: &Image, level: u32) {
+        let layers = |mip_level| vk::ImageSubresourceLayers {
+            aspect_mask: image.aspect(),
+            mip_level,
+            base_array_layer: 0,
+            layer_count: image.layers(),
+        };
+        let corner = |level: u32| {
+            let edge = |size: u32| (size >> level).max(1).cast_signed();
+            let [x, y] = image.size().map(edge);
+            [vk::Offset3D::default(), vk::Offset3D { x, y, z: 1 }]
+        };
+        let region = [vk::ImageBlit::default()
+            .src_subresource(layers(level - 1))
+            .src_offsets(corner(level - 1))
+            .dst_subresource(layers(level))
+            .dst_offsets(corner(level))];
+        // SAFETY: both levels were brought to these layouts.
+        unsafe {
+            self.context.raw().cmd_blit_image(
+                self.command,
+                image.raw(),
+                vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+                image.raw(),
+                vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+                &region,
+                vk::Filter::LINEAR,
+            );
+        }
+    }
+}

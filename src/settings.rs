@@ -103,9 +103,12 @@ pub struct Options {
     /// How the light of the sky is integrated [default: quasi].
     #[arg(long, value_enum, value_name = "METHOD", help_heading = "Light")]
     pub irradiance: Option<IrradianceMethod>,
-    /// Samples of the irradiance cube, 1 to 65536 [default: 1024].
+    /// Most samples of the irradiance cube, 1 to 65536 [default: 1024].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536), help_heading = "Light")]
     pub irradiance_samples: Option<u32>,
+    /// Error at which sampling stops, percent of the irradiance from above, 0 to 100 [default: 0.1].
+    #[arg(long, value_name = "PERCENT", value_parser = values::irradiance_error, allow_hyphen_values = true, help_heading = "Light")]
+    pub irradiance_error: Option<f64>,
     /// Radius of ambient occlusion, metres; 0 turns it off [default: 1].
     #[arg(long, value_name = "METRES", value_parser = values::ao_radius, allow_hyphen_values = true, help_heading = "Light")]
     pub ao_radius: Option<f64>,
@@ -181,7 +184,7 @@ impl Options {
         }
         first_of!(self, base;
             size samples show preset place when sun solar sun_position sky turbidity sky_illuminance refraction ground_albedo camera eye target fov
-            ev100 exposure tonemap gamma scale irradiance irradiance_samples ao_radius ao_resolution specular shadow_size
+            ev100 exposure tonemap gamma scale irradiance irradiance_samples irradiance_error ao_radius ao_resolution specular shadow_size
             smooth device;
             layers quiet validate)
     }

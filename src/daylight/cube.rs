@@ -105,6 +105,42 @@ impl CubeMap {
         texels(self.size).zip(self.texels.iter().copied())
     }
 
+    /// The map at half its size: each texel the mean of four, weighted by their solid angles.
+    pub fn halved(&self) -> Self {
+        let size = self.size / 2;
+        let mean = |(face, i, j): (usize, usize, usize)| {
+            let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(a, b)| (2 * i + a, 2 * j + b));
+            let weight = |(i, j)| texel_solid_angle(i, j, self.size);
+            let sum: DVec3 = four
+                .iter()
+                .map(|&(i, j)| self.texel(face, i, j) * weight((i, j)))
+                .sum();
+            sum / four.iter().map(|&c| weight(c)).sum::<f64>()
+        };
+        Self {
+            size,
+            texels: texels(size).map(mean).collect(),
+        }
+    }
+
+    /// Bilinear lookup in a direction, as a sampler with seamless faces does it (three-texel corners aside).
+    pub fn bilinear(&self, direction: DVec3) -> DVec3 {
+        let (face, s, t) = face_of(direction);
+        let size = self.size as f64;
+        let (x, y) = (s * size - 0.5, t * size - 0.5);
+        let (u, v) = (x - x.floor(), y - y.floor());
+        let at = |a: f64, b: f64| self.across(face, x.floor() + a, y.floor() + b);
+        at(0.0, 0.0)
+            .lerp(at(1.0, 0.0), u)
+            .lerp(at(0.0, 1.0).lerp(at(1.0, 1.0), u), v)
+    }
+
+    /// The texel in column `i`, row `j`, which may lie one beyond the face: then it is the neighbouring face's.
+    fn across(&self, face: usize, i: f64, j: f64) -> DVec3 {
+        let size = self.size as f64;
+        self.nearest(face_vector(face, (i + 0.5) / size, (j + 0.5) / size))
+    }
+
     /// Nearest texel in a direction (any length but zero).
     pub fn nearest(&self, direction: DVec3) -> DVec3 {
         let (face, s, t) = face_of(direction);
@@ -123,6 +159,32 @@ pub fn texels(size: usize) -> impl Iterator<Item = (usize, usize, usize)> {
 mod tests {
     use super::*;
     use std::f64::consts::PI;
+
+    #[test]
+    fn bilinear_lookups_are_seamless_and_exact_at_centres() {
+        let map = CubeMap::from_fn(16, |d| d + DVec3::ONE);
+        for (face, i, j) in texels(16) {
+            let centre = texel_direction(face, i, j, 16);
+            assert!((map.bilinear(centre) - map.texel(face, i, j)).length() < 1e-12);
+        }
+        for k in 0..100 {
+            // Along the edge between +X and +Z.
+            let edge = DVec3::new(1.0, f64::from(k) / 60.0 - 0.8, 1.0).normalize();
+            let error = (map.bilinear(edge) - (edge + DVec3::ONE)).length();
+            assert!(error < 0.02, "{edge}: {error}");
+        }
+    }
+
+    #[test]
+    fn halving_keeps_the_integral() {
+        let map = CubeMap::from_fn(32, |d| DVec3::new(1.0, d.y.max(0.0), d.x * d.x));
+        let integral = |map: &CubeMap| -> DVec3 {
+            map.iter()
+                .map(|((_, i, j), c)| c * texel_solid_angle(i, j, map.size()))
+                .sum()
+        };
+        assert!((integral(&map) - integral(&map.halved())).length() < 1e-12);
+    }
 
     #[test]
     fn face_centres_are_the_axes() {

@@ -32,6 +32,7 @@ pub mod hosek;
 pub mod irradiance;
 pub mod preetham;
 pub mod quadrature;
+pub mod refinement;
 pub mod sampling;
 pub mod sky;
 pub mod spectrum;

@@ -7,6 +7,7 @@ use glam::UVec2;
 
 use super::light::{conditions, sun_position};
 use crate::daylight::exposure::{KEY, factor_from_ev100};
+use crate::daylight::refinement::Refinement;
 use crate::daylight::sky::Daylight;
 use crate::daylight::spectrum::LUMINOUS_EFFICACY;
 use crate::daylight::sun_position::SunPosition;
@@ -134,7 +135,10 @@ impl Job {
         // The course framework refines by five samples a frame.
         let lecture = s.preset == Some(Preset::Lecture);
         let samples_per_pass = if lecture { 5 } else { default.samples_per_pass };
-        let (method, samples) = (s.irradiance, s.irradiance_samples);
+        let method = s.irradiance;
+        let refinement = Refinement::new(|direction| self.daylight.radiance(direction));
+        let error = s.irradiance_error / 100.0;
+        let samples = refinement.samples(method, error, s.irradiance_samples);
         IrradianceSettings {
             sky_edge: self.sky_edge(),
             method,

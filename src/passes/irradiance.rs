@@ -7,12 +7,11 @@
 //! `exact` sums a coarse sky cube with exact texel solid angles instead, `sh` evaluates nine coefficients that the CPU
 //! projected: both are done in one pass.
 
-use std::f64::consts::PI;
 use std::sync::Arc;
 
 use crate::daylight::cube::{texel_direction, texel_solid_angle, texels};
 use crate::daylight::irradiance::{IrradianceMethod, SphericalHarmonics};
-use crate::daylight::sampling::{cosine_hemisphere, hammersley};
+use crate::daylight::refinement::shares;
 use crate::daylight::sky::Daylight;
 use crate::gpu::{
     Buffer, BufferKind, Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc,
@@ -91,9 +90,6 @@ pub struct Irradiance {
     irradiance: Image,
     done: u32,
 }
-
-/// Coarser levels of the sky cube smear light across the horizon without lowering the error further.
-const MAX_LEVEL: f64 = 5.0;
 
 const COLORS: [Format; 2] = [Format::R32G32B32A32_SFLOAT, Format::R16G16B16A16_SFLOAT];
 
@@ -264,22 +260,11 @@ fn upload_table(recorder: &mut Recorder, settings: &IrradianceSettings) -> Resul
     upload_buffer(recorder, "irradiance table", BufferKind::Storage, bytes)
 }
 
-/// Hammersley's points as cosine-weighted directions, each with the mip level whose texels are as large as its share of
-/// the hemisphere (Krivanek & Colbert 2008): 1/(N pdf) = π/(N cos θ) sr.
-///
-/// Their order is that of the radical inverse, so that the first few already cover the hemisphere.
+/// The low-discrepancy directions, each with the mip level of its share.
 fn filtered_samples(count: u32, sky_edge: u32) -> Vec<f32> {
-    let texel = 4.0 * PI / f64::from(6 * sky_edge * sky_edge);
-    let mut order: Vec<u32> = (0..count).collect();
-    order.sort_by_key(|i| i.reverse_bits());
-    order
+    shares(count)
         .into_iter()
-        .flat_map(|i| {
-            let direction = cosine_hemisphere(hammersley(i, count));
-            let share = PI / (f64::from(count) * direction.z.max(1e-3));
-            let level = (0.5 * (share / texel).log2()).clamp(0.0, MAX_LEVEL);
-            direction.extend(level).as_vec4().to_array()
-        })
+        .flat_map(|s| s.direction.extend(s.level(sky_edge)).as_vec4().to_array())
         .collect()
 }
 

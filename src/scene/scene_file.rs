@@ -24,6 +24,7 @@ const TABLES: [(&str, &[&str]); 4] = [
             "ground-albedo",
             "irradiance",
             "irradiance-samples",
+            "irradiance-error",
         ],
     ),
     (

@@ -19,7 +19,7 @@ const DEFAULT_PLACE: Place = Place {
 const DEFAULT_WHEN: &str = "2026-06-21T15:00:00+02:00";
 
 /// What `--preset lecture` sets, by the course's own defaults.
-const LECTURE: [(&str, &str); 15] = [
+const LECTURE: [(&str, &str); 16] = [
     ("place", "45,0"),
     ("solar", "200,10"),
     ("sun-position", "lecture"),
@@ -33,6 +33,7 @@ const LECTURE: [(&str, &str); 15] = [
     ("gamma", "1"),
     ("irradiance", "monte-carlo"),
     ("irradiance-samples", "2000"),
+    ("irradiance-error", "0"),
     ("ao-resolution", "half"),
     ("shadow-size", "4096"),
 ];
@@ -124,8 +125,10 @@ pub struct Settings {
     pub show: Show,
     /// How the light of the sky is integrated.
     pub irradiance: IrradianceMethod,
-    /// Samples of the irradiance cube.
+    /// Most samples of the irradiance cube.
     pub irradiance_samples: u32,
+    /// Error at which sampling stops, percent of the irradiance from above.
+    pub irradiance_error: f64,
     /// Metres; 0 is off.
     pub ao_radius: f64,
     /// Of the occlusion image.
@@ -212,6 +215,7 @@ impl Settings {
             show: o.show.unwrap_or_default(),
             irradiance: o.irradiance.unwrap_or_default(),
             irradiance_samples: o.irradiance_samples.unwrap_or(1024),
+            irradiance_error: o.irradiance_error.unwrap_or(0.1),
             ao_radius: o.ao_radius.unwrap_or(1.0),
             ao_resolution: o.ao_resolution.unwrap_or_default(),
             specular: o.specular.unwrap_or(1.0),
@@ -253,6 +257,7 @@ impl Settings {
             ("ground-albedo", self.ground_albedo.to_string()),
             ("irradiance", name(self.irradiance)),
             ("irradiance-samples", self.irradiance_samples.to_string()),
+            ("irradiance-error", self.irradiance_error.to_string()),
             ("ao-radius", self.ao_radius.to_string()),
             ("ao-resolution", name(self.ao_resolution)),
             ("specular", self.specular.to_string()),

@@ -123,6 +123,7 @@ ranged! {
     ev100: "exposure value", "", -20.0..=40.0;
     gamma: "gamma", "", 0.1..=10.0;
     scale: "scale", "", 0.0..=1e6;
+    irradiance_error: "error", "percent", 0.0..=100.0;
     ao_radius: "radius", "metres", 0.0..=1000.0;
     specular: "specular scale", "", 0.0..=100.0;
     crease: "crease angle", "degrees", 0.0..=180.0;

@@ -1,0 +1,227 @@
+//! How many samples a sampled irradiance needs: filtered samples, and the error that they leave.
+//!
+//! The directions are the device's own table, and the lookups are those of its sampler, so the estimate is that of the
+//! map which the device computes; it is made on a coarser cube, which takes milliseconds.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::colour::luminance;
+use super::cube::CubeMap;
+use super::frame;
+use super::irradiance::IrradianceMethod;
+use super::quadrature::SphereQuadrature;
+use super::sampling::{cosine_hemisphere, hammersley};
+
+/// Coarser levels of a sky cube smear light across the horizon without lowering the error further: eight texels along an
+/// edge are the fewest that are looked up.
+const COARSEST_EDGE: f64 = 8.0;
+/// Edge of the cube on which errors are estimated, texels.
+const ESTIMATE_EDGE: usize = 64;
+/// Fewer samples are not worth a pass.
+const FEWEST: u32 = 32;
+
+/// A direction around +Z with the solid angle of the hemisphere that it stands for, sr.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Share {
+    /// Unit direction, cosine-weighted.
+    pub direction: DVec3,
+    /// 1/(N pdf) = π/(N cos θ), sr.
+    pub solid_angle: f64,
+}
+
+impl Share {
+    /// Křivánek & Colbert 2008, *Real-time Shading with Filtered Importance Sampling*, eq. 12: the mip level of a cube of
+    /// `edge` texels whose texels are as large as the share.
+    pub fn level(&self, edge: u32) -> f64 {
+        let texel = 4.0 * PI / (6.0 * f64::from(edge) * f64::from(edge));
+        let coarsest = (f64::from(edge) / COARSEST_EDGE).log2().max(0.0);
+        (0.5 * (self.solid_angle / texel).log2()).clamp(0.0, coarsest)
+    }
+}
+
+/// Hammersley's `count` points as cosine-weighted directions, in steps of the golden section, so that the first few
+/// already cover the hemisphere.
+pub fn shares(count: u32) -> Vec<Share> {
+    let stride = golden_stride(count);
+    let share = |k: u32| {
+        let index = (u64::from(k) * u64::from(stride) % u64::from(count)) as u32;
+        let direction = cosine_hemisphere(hammersley(index, count));
+        let solid_angle = PI / (f64::from(count) * direction.z.max(1e-3));
+        Share {
+            direction,
+            solid_angle,
+        }
+    };
+    (0..count).map(share).collect()
+}
+
+/// The number next below 0.618 `count` that has no divisor in common with it: its multiples visit every index.
+fn golden_stride(count: u32) -> u32 {
+    let divisor = |mut a: u32, mut b: u32| {
+        while b != 0 {
+            (a, b) = (b, a % b);
+        }
+        a
+    };
+    let golden = (0.5 * (5f64.sqrt() - 1.0) * f64::from(count)) as u32;
+    (1..=golden)
+        .rev()
+        .find(|stride| divisor(*stride, count) == 1)
+        .unwrap_or(1)
+}
+
+/// The 26 directions of a cube's faces, edges and corners.
+pub fn normals() -> impl Iterator<Item = DVec3> {
+    let steps = || [-1.0, 0.0, 1.0].into_iter();
+    steps()
+        .flat_map(move |x| steps().flat_map(move |y| steps().map(move |z| DVec3::new(x, y, z))))
+        .filter_map(DVec3::try_normalize)
+}
+
+/// A sky as the estimate sees it: a cube with its mip levels, and its irradiances.
+pub struct Refinement {
+    levels: Vec<CubeMap>,
+    /// Normals with E, lux.
+    exact: Vec<(DVec3, f64)>,
+    /// Mean over the normals of the variance of π L, lux².
+    variance: f64,
+    up: f64,
+}
+
+impl Refinement {
+    /// Prepares a radiance, cd/m² in a unit direction.
+    pub fn new(radiance: impl Fn(DVec3) -> DVec3) -> Self {
+        let mut levels = vec![CubeMap::from_fn(ESTIMATE_EDGE, &radiance)];
+        while let Some(last) = levels.last().filter(|map| map.size() > 4) {
+            levels.push(last.halved());
+        }
+        let nodes: Vec<(DVec3, f64, f64)> = SphereQuadrature::sphere(64, 128)
+            .nodes
+            .into_iter()
+            .map(|(direction, weight)| (direction, luminance(radiance(direction)), weight))
+            .collect();
+        // E = ∫ L cos, and the second moment of the estimator π L under the density cos/π: π ∫ L² cos.
+        let moments = |n: DVec3| {
+            nodes
+                .iter()
+                .fold((0.0, 0.0), |(e, second), &(direction, l, weight)| {
+                    let cosine = n.dot(direction).max(0.0) * weight;
+                    (e + l * cosine, second + PI * l * l * cosine)
+                })
+        };
+        let all: Vec<(DVec3, (f64, f64))> = normals().map(|n| (n, moments(n))).collect();
+        let variance = all
+            .iter()
+            .map(|(_, (e, second))| (second - e * e).max(0.0))
+            .sum::<f64>();
+        Self {
+            levels,
+            variance: variance / all.len() as f64,
+            exact: all.iter().map(|&(n, (e, _))| (n, e)).collect(),
+            up: moments(DVec3::Y).0,
+        }
+    }
+
+    /// rms error over the normals of `count` filtered samples, relative to E of the up normal.
+    pub fn quasi_error(&self, count: u32) -> f64 {
+        let shares = shares(count);
+        let square = |&(normal, exact): &(DVec3, f64)| {
+            let sum: f64 = shares.iter().map(|s| self.look_up(s, normal)).sum();
+            (sum * PI / f64::from(count) - exact).powi(2)
+        };
+        let mean = self.exact.iter().map(square).sum::<f64>() / self.exact.len() as f64;
+        mean.sqrt() / self.up
+    }
+
+    /// Expected rms error over the normals of `count` random samples, relative to E of the up normal: σ/√N.
+    pub fn monte_carlo_error(&self, count: u32) -> f64 {
+        (self.variance / f64::from(count)).sqrt() / self.up
+    }
+
+    /// The fewest samples, in powers of two and at most `most`, that leave no larger error. Methods that do not sample
+    /// need one.
+    pub fn samples(&self, method: IrradianceMethod, error: f64, most: u32) -> u32 {
+        let enough = |count: u32| match method {
+            IrradianceMethod::MonteCarlo => self.monte_carlo_error(count) <= error,
+            IrradianceMethod::Quasi => self.quasi_error(count) <= error,
+            IrradianceMethod::Exact | IrradianceMethod::Sh => true,
+        };
+        if matches!(method, IrradianceMethod::Exact | IrradianceMethod::Sh) || self.up <= 0.0 {
+            return 1;
+        }
+        let mut counts =
+            std::iter::successors(Some(FEWEST), |n| n.checked_mul(2)).take_while(|n| *n < most);
+        counts.find(|n| enough(*n)).unwrap_or(most)
+    }
+
+    /// Luminance of a share around `normal`, cd/m², trilinear.
+    fn look_up(&self, share: &Share, normal: DVec3) -> f64 {
+        let direction = frame::to_world(share.direction, normal);
+        let level = share.level(ESTIMATE_EDGE as u32);
+        let (lower, blend) = (level.floor() as usize, level.fract());
+        let at = |level: usize| self.levels[level.min(self.levels.len() - 1)].bilinear(direction);
+        luminance(at(lower).lerp(at(lower + 1), blend))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::daylight::sky::{Conditions, Daylight};
+
+    fn sky(elevation: f64) -> Refinement {
+        let conditions = Conditions {
+            sun_elevation_deg: elevation,
+            ground_albedo: 0.0,
+            ..Conditions::default()
+        };
+        let daylight = Daylight::new(&conditions);
+        Refinement::new(|direction| daylight.radiance(direction))
+    }
+
+    #[test]
+    fn shares_fill_the_projected_hemisphere() {
+        for count in [64, 100, 1024] {
+            let shares = shares(count);
+            assert_eq!(shares.len(), count as usize);
+            // Each share times its cosine is π/N: together the projected hemisphere.
+            let sum: f64 = shares.iter().map(|s| s.solid_angle * s.direction.z).sum();
+            assert!((sum - PI).abs() < 1e-9, "{sum}");
+            // The first quarter, too, is centred.
+            let quarter = &shares[..shares.len() / 4];
+            let mean = quarter.iter().map(|s| s.direction).sum::<DVec3>() / quarter.len() as f64;
+            assert!(mean.truncate().length() < 0.1, "{mean}");
+        }
+    }
+
+    #[test]
+    fn a_constant_sky_needs_no_samples() {
+        let constant = Refinement::new(|_| DVec3::ONE);
+        assert!(constant.quasi_error(FEWEST) < 1e-4);
+        assert!(constant.monte_carlo_error(FEWEST) < 1e-2);
+        assert_eq!(
+            constant.samples(IrradianceMethod::Quasi, 1e-3, 4096),
+            FEWEST
+        );
+    }
+
+    #[test]
+    fn errors_fall_and_counts_follow() {
+        let sky = sky(40.0);
+        let errors: Vec<f64> = [64, 256, 1024]
+            .iter()
+            .map(|n| sky.quasi_error(*n))
+            .collect();
+        println!("filtered quasi, 64, 256, 1024 samples: {errors:?}");
+        assert!(errors[0] > errors[1] && errors[1] > errors[2], "{errors:?}");
+        assert!(errors[2] < 1.5e-3, "{errors:?}");
+        let method = IrradianceMethod::Quasi;
+        assert!(sky.samples(method, 1e-2, 4096) < sky.samples(method, 2e-3, 4096));
+        assert_eq!(sky.samples(method, 0.0, 512), 512);
+        let (few, many) = (sky.monte_carlo_error(100), sky.monte_carlo_error(400));
+        assert!((few / many - 2.0).abs() < 1e-9);
+        assert_eq!(sky.samples(IrradianceMethod::Exact, 0.0, 512), 1);
+    }
+}

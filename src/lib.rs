@@ -46,6 +46,7 @@ pub mod error;
 pub mod faces;
 pub mod frame;
 pub mod gpu;
+pub mod lecture;
 pub mod output;
 pub mod passes;
 pub mod scene;

@@ -31,7 +31,7 @@ def irradiance(path, normal):
             "bsdf": {"type": "diffuse", "reflectance": 0.0},
             "meter": {
                 "type": "irradiancemeter",
-                "sampler": {"type": "independent", "sample_count": 1 << 19},
+                "sampler": {"type": "multijitter", "sample_count": 1 << 18},
                 "film": {"type": "hdrfilm", "width": 1, "height": 1, "pixel_format": "rgb",
                          "rfilter": {"type": "box"}, "component_format": "float32"},
             },

@@ -291,3 +291,15 @@ fn options_of_pictures_have_no_effect() {
     let with = json("--sun 180,45 --size 64x64 --tonemap agx --eye 1,2,3 --quiet");
     assert_eq!(plain, with);
 }
+
+#[test]
+fn the_study_in_the_documentation_is_what_the_program_prints() {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/src/daylight/irradiance.rs");
+    let page = std::fs::read_to_string(page).expect("the page");
+    let output = skylight("sky --irradiance-study --sun 180,45 --ground-albedo 0");
+    let table = String::from_utf8(output.stdout).expect("text");
+    assert!(table.lines().count() > 20, "{table}");
+    for line in table.lines().filter(|line| !line.is_empty()) {
+        assert!(page.contains(&format!("//! {line}\n")), "{line}");
+    }
+}

@@ -8,6 +8,44 @@
 //! - [`ExactIrradiance`]: a sum over the texels of a cube map. The radiance is taken as constant within a texel; the
 //!   cosine is then integrated *exactly* over each texel, clipped at the horizon of n, by Lambert's formula.
 //! - [`SphericalHarmonics`]: order 2, nine coefficients; fast, smooth, and off by percents of E(up).
+//!
+//! # How fast they converge
+//!
+//! `skylight sky --irradiance-study --sun 180,45 --ground-albedo 0` (Preetham, turbidity 3): rms over the 26 normals to the faces, edges and
+//! corners of a cube, largest channel, relative to E(up). Samples are directions for each normal; for `exact` the texels of a
+//! cube (of 4, 8, 16, 32 and 64 along an edge), for `sh` the nodes of its projection, both for all normals together.
+//! A low sun in clear air is worse for both sampling methods: at turbidity 2 and 10° `quasi` has 0.7 % with 1024 directions.
+//! `quasi` here is R2. Sobol' points, which the shader takes, had 0.11 % with 1024 under the program's default sky, but 1.7 % in that one.
+//!
+//! | method | samples | rms error of E(up) |
+//! |---|---|---|
+//! | monte-carlo | 16 | 10.8083 % |
+//! | monte-carlo | 32 | 7.7366 % |
+//! | monte-carlo | 64 | 5.5436 % |
+//! | monte-carlo | 128 | 3.7287 % |
+//! | monte-carlo | 256 | 2.6472 % |
+//! | monte-carlo | 512 | 2.0534 % |
+//! | monte-carlo | 1024 | 1.3864 % |
+//! | monte-carlo | 2048 | 0.9670 % |
+//! | monte-carlo | 4096 | 0.6728 % |
+//! | quasi | 16 | 8.2971 % |
+//! | quasi | 32 | 4.9319 % |
+//! | quasi | 64 | 2.3094 % |
+//! | quasi | 128 | 1.2017 % |
+//! | quasi | 256 | 0.4673 % |
+//! | quasi | 512 | 0.2805 % |
+//! | quasi | 1024 | 0.1748 % |
+//! | quasi | 2048 | 0.0873 % |
+//! | quasi | 4096 | 0.0566 % |
+//! | exact | 96 | 1.0449 % |
+//! | exact | 384 | 0.1041 % |
+//! | exact | 1536 | 0.0346 % |
+//! | exact | 6144 | 0.0050 % |
+//! | exact | 24576 | 0.0011 % |
+//! | sh | 16384 | 0.3889 % |
+//!
+//! monte-carlo: error falls as samples^-0.50
+//! quasi: error falls as samples^-0.93
 
 use std::f64::consts::PI;
 

@@ -25,6 +25,9 @@ pub struct Picture {
 /// A value for each unit direction; threads share it.
 type Value<'v> = &'v (dyn Fn(DVec3) -> DVec3 + Sync);
 
+/// Number and texels of a row.
+type Row<'t> = (usize, &'t mut [[f32; 4]]);
+
 /// Rows that [`draw`] will tell the progress of, `size` texels along a cube face.
 pub fn rows(layout: Layout, size: u32) -> u64 {
     match layout {
@@ -80,7 +83,7 @@ fn picture(
     let width = size[0] as usize;
     let mut texels = vec![[0.0, 0.0, 0.0, 1.0]; width * size[1] as usize];
     let threads = thread::available_parallelism().map_or(1, usize::from);
-    let mut hands: Vec<Vec<(usize, &mut [[f32; 4]])>> = (0..threads).map(|_| Vec::new()).collect();
+    let mut hands: Vec<Vec<Row<'_>>> = (0..threads).map(|_| Vec::new()).collect();
     for (j, row) in texels.chunks_mut(width).enumerate() {
         hands[j % threads].push((j, row));
     }

@@ -33,6 +33,9 @@ pub enum Error {
         /// Why, and what to do.
         reason: String,
     },
+    /// Results that nobody can read.
+    #[error("cannot write to standard output: {0}")]
+    Stdout(String),
 }
 
 impl Error {

@@ -3,20 +3,26 @@
 use std::process::ExitCode;
 
 use skylight::cli::{self, CliExit};
+use skylight::error::Result;
 use skylight::faces;
+use skylight::output::print;
 
 fn main() -> ExitCode {
     let command = match cli::parse(std::env::args_os()) {
         Ok(command) => command,
         Err(exit) => {
             match &exit {
-                CliExit::Help(text) => print!("{text}"),
+                CliExit::Help(text) => return ended(print(text)),
                 CliExit::Usage(line) => eprintln!("error: {line}"),
             }
             return exit.code().into();
         }
     };
-    match faces::run(command) {
+    ended(faces::run(command))
+}
+
+fn ended(result: Result<()>) -> ExitCode {
+    match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");

@@ -11,7 +11,7 @@ use super::job::Job;
 use crate::error::Result;
 use crate::frame::Frame;
 use crate::gpu::{Recorder, Stopwatch, Timing};
-use crate::output::write_text;
+use crate::output::{check_writable, print, write_text};
 use crate::passes::lighting::Precision;
 use crate::settings::Options;
 
@@ -28,34 +28,28 @@ pub fn run(
     frames: u32,
     mut options: Options,
 ) -> Result<()> {
+    if let Some(path) = json {
+        check_writable(path)?;
+    }
     options.samples = Some(1);
     let job = Job::new(scene, options)?;
     let context = job.context()?;
     let passes = measure_passes(&job, Recorder::new(&context, Timing::Isolated)?, frames)?;
     let whole = measure_frames(&job, Recorder::new(&context, Timing::Off)?, frames)?;
     context.check_validation()?;
-    let device = context.summary();
-    let size = job.settings.size;
-    println!(
-        "{} ({}), {}x{}, {} triangles, {frames} frames",
+    if let Some(path) = json {
+        write_json(path, &job, &passes, &whole)?;
+    }
+    let (device, size) = (context.summary(), job.settings.size);
+    print(&format!(
+        "{} ({}), {}x{}, {} triangles, {frames} frames\n{}",
         device.name,
         device.driver.trim(),
         size.width,
         size.height,
-        job.scene.triangles()
-    );
-    println!(
-        "{:30} {:>9} {:>9} {:>9} {:>9}",
-        "milliseconds", "median", "p5", "p95", "CPU"
-    );
-    for (name, times) in &passes {
-        println!("{}", row(name, times));
-    }
-    println!("{}", row("whole frame, light unchanged", &whole));
-    if let Some(path) = json {
-        write_json(path, &job, &passes, &whole)?;
-    }
-    Ok(())
+        job.scene.triangles(),
+        table(&passes, &whole)
+    ))
 }
 
 /// Times of one name, milliseconds.
@@ -141,10 +135,19 @@ fn quantile(samples: &[f64], q: f64) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
+fn table(passes: &[(&'static str, Samples)], whole: &Samples) -> String {
+    let head = format!(
+        "{:30} {:>9} {:>9} {:>9} {:>9}\n",
+        "milliseconds", "median", "p5", "p95", "CPU"
+    );
+    let rows = passes.iter().map(|(name, times)| row(name, times));
+    head + &rows.collect::<String>() + &row("whole frame, light unchanged", whole)
+}
+
 fn row(name: &str, times: &Samples) -> String {
     let [median, low, high] = [0.5, 0.05, 0.95].map(|q| quantile(&times.wall, q));
     let cpu = quantile(&times.cpu, 0.5);
-    format!("{name:30} {median:9.2} {low:9.2} {high:9.2} {cpu:9.2}")
+    format!("{name:30} {median:9.2} {low:9.2} {high:9.2} {cpu:9.2}\n")
 }
 
 fn write_json(

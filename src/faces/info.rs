@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::gpu::{DeviceSummary, GpuError, devices};
+use crate::output::print;
 
 /// Prints one block a device.
 ///
@@ -12,10 +13,7 @@ pub fn run() -> Result<()> {
     if devices.is_empty() {
         return Err(GpuError::NoDevice.into());
     }
-    for device in &devices {
-        println!("{}", describe(device));
-    }
-    Ok(())
+    print(&devices.iter().map(describe).collect::<String>())
 }
 
 fn describe(device: &DeviceSummary) -> String {
@@ -31,7 +29,7 @@ fn describe(device: &DeviceSummary) -> String {
         .collect();
     format!(
         "{} \"{}\"\n    kind     {}\n    Vulkan   {}\n    driver   {}\n    lacks    {lacks}\n    \
-         optional {}\n    largest  {} pixels",
+         optional {}\n    largest  {} pixels\n",
         device.index,
         device.name,
         device.kind,

@@ -10,7 +10,7 @@ use crate::daylight::exposure::automatic;
 use crate::error::Result;
 use crate::frame::Frame;
 use crate::gpu::{Recorder, Timing, read_back};
-use crate::output::{Channels, Encoding, Layer, check_writable, write_exr, write_png};
+use crate::output::{Channels, Encoding, Layer, check_writable, print, write_exr, write_png};
 use crate::passes::lighting::{Precision, Show};
 use crate::settings::{Exposure, Options, SettingsError};
 
@@ -36,8 +36,7 @@ pub fn run(scene: Option<&Path>, output: &Path, options: Options) -> Result<()> 
         renderer.save_png(output)
     }?;
     context.check_validation()?;
-    println!("{}: {summary}", output.display());
-    Ok(())
+    print(&format!("{}: {summary}\n", output.display()))
 }
 
 struct Renderer<'j> {

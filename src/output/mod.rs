@@ -65,11 +65,16 @@ fn temporary(path: &Path) -> Result<tempfile::NamedTempFile> {
 
 fn reason(error: &std::io::Error) -> String {
     match error.kind() {
-        std::io::ErrorKind::PermissionDenied => {
-            "no permission in its folder; choose another with -o".to_owned()
+        // The folder is there, as was looked up before: some file systems (/proc) make no files.
+        std::io::ErrorKind::PermissionDenied | std::io::ErrorKind::NotFound => {
+            "no file can be made in its folder; choose another".to_owned()
         }
-        std::io::ErrorKind::StorageFull => "the disk is full".to_owned(),
-        _ => error.to_string(),
+        std::io::ErrorKind::StorageFull => "there is no space left; free some".to_owned(),
+        // Without the system's number, and the temporary file's name that may follow it.
+        _ => {
+            let text = error.to_string();
+            text.split(" (os error").next().unwrap_or(&text).to_owned()
+        }
     }
 }
 
@@ -96,6 +101,18 @@ pub fn write_set(files: &[(PathBuf, Vec<u8>)]) -> Result<()> {
             .map_err(|e| write_error(path, reason(&e.error)))?;
     }
     Ok(())
+}
+
+/// Prints a result. That nobody reads on (`| head`) is no error.
+///
+/// # Errors
+/// When standard output takes no more.
+pub fn print(text: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::Stdout(reason(&e))),
+        _ => Ok(()),
+    }
 }
 
 /// Writes text.

@@ -18,7 +18,7 @@ mod soup;
 mod texture;
 mod triangulate;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::Affine3A;
 
@@ -121,6 +121,8 @@ impl Default for LoadOptions {
 /// A scene and what its file asks for besides.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loaded {
+    /// Where from, for messages.
+    pub path: PathBuf,
     /// What is seen.
     pub scene: Scene,
     /// Options of the scene file as the command line would have them, without dashes: `("turbidity", "3")`. The
@@ -162,6 +164,7 @@ fn load_from(files: Files, path: &Path, options: &LoadOptions) -> Result<Loaded,
         }
     };
     Ok(Loaded {
+        path: path.to_owned(),
         scene: builder.scene,
         options,
         cameras,

@@ -8,7 +8,8 @@ use super::{
     AoResolution, Direction, IrradianceMethod, Options, Place, Preset, SettingsError, Show, Size,
     SkyModel, SolarTime, SunPositionMethod, Switch, ToneCurve, values,
 };
-use crate::scene::{Bounds, Camera, Loaded};
+use crate::error::Error;
+use crate::scene::{Bounds, Camera, Loaded, SceneError};
 
 /// The default place: the lecture's university, degrees.
 const DEFAULT_PLACE: Place = Place {
@@ -156,8 +157,11 @@ impl Settings {
     ///
     /// # Errors
     /// A bad value in the scene file, an unknown camera, an eye that looks at itself.
-    pub fn resolve(user: Options, loaded: &Loaded) -> Result<Self, SettingsError> {
-        let scene_file = |e: SettingsError| SettingsError(format!("scene file: {e}"));
+    pub fn resolve(user: Options, loaded: &Loaded) -> Result<Self, Error> {
+        let scene_file = |e: SettingsError| SceneError::SceneFile {
+            path: loaded.path.clone(),
+            what: e.0,
+        };
         let mut file = Options::from_pairs(&loaded.options).map_err(scene_file)?;
         if let Some(name) = &user.camera {
             let named = Options::from_pairs(camera_named(loaded, name)?).map_err(scene_file)?;
@@ -176,10 +180,10 @@ impl Settings {
             }
             None => Options::default(),
         };
-        Self::with_defaults(Options {
+        Ok(Self::with_defaults(Options {
             camera,
             ..given.over(base)
-        })
+        })?)
     }
 
     fn with_defaults(o: Options) -> Result<Self, SettingsError> {

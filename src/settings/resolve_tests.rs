@@ -13,6 +13,7 @@ fn resolve(user: &[(&str, &str)], file: &[(&str, &str)]) -> Result<Settings, Str
         options: pairs(&[("eye", "1,1,1")]),
     };
     let loaded = Loaded {
+        path: "s.toml".into(),
         scene: Scene::default(),
         options: pairs(file),
         cameras: vec![porch],
@@ -137,7 +138,7 @@ fn bad_values_are_one_line() {
         (
             ("fov", "30"),
             ("turbidity", "abc"),
-            "scene file: invalid value 'abc' for '--turbidity",
+            "s.toml: invalid value 'abc' for '--turbidity",
         ),
         (
             ("sky", "preetham"),
@@ -178,6 +179,7 @@ fn parameters_can_be_given_back() {
         .map(|(k, v)| (k.to_owned(), v))
         .collect();
     let loaded = Loaded {
+        path: "s.toml".into(),
         scene: Scene::default(),
         options: Vec::new(),
         cameras: Vec::new(),

@@ -1,0 +1,152 @@
+//! Models that nobody here made, drawn by the whole frame under the validation layer.
+
+mod common;
+
+use std::collections::HashSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::UVec2;
+use skylight::daylight::{Conditions, Daylight, ToneCurve};
+use skylight::frame::{Frame, FrameSettings};
+use skylight::gpu::{Context, ContextOptions, Recorder, Timing, read_back};
+use skylight::passes::irradiance::IrradianceSettings;
+use skylight::passes::lighting::{LightingSettings, Precision, Show};
+use skylight::passes::ssao::SsaoSettings;
+use skylight::passes::tone_map::{Scale, ToneSettings};
+use skylight::scene::{Camera, LoadOptions, Scene, load};
+
+const SIZE: UVec2 = UVec2::new(160, 90);
+
+/// Models by name, and Kenney's whole folder.
+const MODELS: [&str; 5] = [
+    "house/house.obj",
+    "colonnade/colonnade.obj",
+    "medieval_building/Medieval_building.obj",
+    "stanford_bunny/stanford-bunny.obj",
+    "spot/spot_triangulated.obj",
+];
+const KENNEY: &str = "kenney_suburb/OBJ format";
+const KENNEY_COUNT: usize = 49;
+
+fn settings() -> FrameSettings {
+    let show = Show::Beauty;
+    FrameSettings {
+        size: SIZE,
+        samples: 1,
+        sky_edge: 64,
+        irradiance: IrradianceSettings {
+            samples: 64,
+            samples_per_pass: 64,
+            ..IrradianceSettings::default()
+        },
+        shadow_resolution: 1024,
+        ssao: SsaoSettings::default(),
+        lighting: LightingSettings {
+            show,
+            precision: Precision::Float,
+            specular_scale: 1.0,
+            limb_darkening: 0.0,
+            occlusion_downscale: SsaoSettings::default().downscale,
+        },
+        tone: ToneSettings {
+            show,
+            curve: ToneCurve::default(),
+            scale: Scale::Average(0.18),
+            white: 1.0,
+            gamma: None,
+            depth_scale: 1.0,
+        },
+    }
+}
+
+/// The picture, kcd/m², the albedo and the depth of a scene as its default camera sees it.
+fn pictures(context: &Arc<Context>, scene: &Scene) -> [Vec<[f32; 4]>; 3] {
+    let aspect = SIZE.x as f32 / SIZE.y as f32;
+    let camera = Camera::from_parts(None, None, None, &scene.bounds, aspect);
+    let daylight = Daylight::new(&Conditions::default());
+    let mut recorder = Recorder::new(context, Timing::Off).expect("a recorder");
+    recorder.begin().expect("recording");
+    let mut frame = Frame::new(&mut recorder, scene, settings()).expect("a frame");
+    recorder.finish().expect("uploaded");
+    [Show::Beauty, Show::Albedo, Show::Depth].map(|show| {
+        frame.show(show).expect("shown");
+        recorder.begin().expect("recording");
+        frame.record(&mut recorder, &daylight, &camera, 0);
+        recorder.finish().expect("drawn");
+        let pixels = read_back(&mut recorder, frame.radiance()).expect("read");
+        pixels.rgba()
+    })
+}
+
+fn kenney(scenes: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(scenes.join(KENNEY)).expect("Kenney's folder");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let mut models: Vec<PathBuf> = paths
+        .filter(|path| path.extension().is_some_and(|e| e == "obj"))
+        .collect();
+    models.sort();
+    assert!(
+        models.len() >= KENNEY_COUNT,
+        "only {} models are here",
+        models.len()
+    );
+    models
+}
+
+/// What is wrong with the pictures of a model, if anything.
+fn wrong(scene: &Scene, [beauty, albedo, depth]: &[Vec<[f32; 4]>; 3]) -> Option<String> {
+    let seen: Vec<usize> = (0..depth.len()).filter(|i| depth[*i][0] > 0.0).collect();
+    let share = seen.len() as f64 / depth.len() as f64;
+    // Framed whole: a good part of the picture, but for paths and lamps; never all of it.
+    if !(0.01..0.999).contains(&share) {
+        return Some(format!("covers {share:.3} of the picture"));
+    }
+    if beauty.iter().flatten().any(|v| !v.is_finite() || *v < 0.0) {
+        return Some("has pixels that are no light".to_owned());
+    }
+    let dark = seen.iter().filter(|i| beauty[**i][..3] == [0.0; 3]).count();
+    if dark * 20 > seen.len() {
+        return Some(format!("{dark} of {} pixels are black", seen.len()));
+    }
+    let quantised = |i: &usize| albedo[*i].map(|v| (v * 64.0) as u32);
+    let colours: HashSet<[u32; 4]> = seen.iter().map(quantised).collect();
+    // A model may take a single colour out of a palette.
+    let spread = scene.texcoords.iter().any(|t| *t != scene.texcoords[0]);
+    let textured = spread && scene.materials.iter().any(|m| m.diffuse_texture.is_some());
+    println!("{:5.1} % | {} albedos", 100.0 * share, colours.len());
+    (textured && colours.len() < 3).then(|| format!("has {} albedos", colours.len()))
+}
+
+#[test]
+fn every_real_model_is_drawn() {
+    let Some(shared) = common::shared() else {
+        return;
+    };
+    let scenes = shared.join("scenes");
+    let context = Context::new(&ContextOptions {
+        device: std::env::var("SKYLIGHT_TEST_DEVICE").ok(),
+        validate: true,
+        ..ContextOptions::default()
+    })
+    .expect("a device and the validation layer");
+    let named = MODELS.iter().map(|name| scenes.join(name));
+    let mut failures = Vec::new();
+    for path in named.chain(kenney(&scenes)) {
+        let name = path.strip_prefix(&scenes).expect("below").display();
+        let scene = load(&path, &LoadOptions::default()).expect("a model").scene;
+        print!("{name} | {} triangles | ", scene.triangles());
+        let harmless = |w: &String| w.contains("triangles without area");
+        assert!(scene.warnings.iter().all(harmless), "{:?}", scene.warnings);
+        if let Some(what) = wrong(&scene, &pictures(&context, &scene)) {
+            failures.push(format!("{name} {what}"));
+        }
+        assert_eq!(
+            context.validation_messages(),
+            Vec::<String>::new(),
+            "{name}"
+        );
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}

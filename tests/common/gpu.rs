@@ -1,0 +1,414 @@
+//! What the GPU tests share: a device under validation, frames, pictures, and small scenes.
+#![allow(dead_code)]
+
+use std::sync::Arc;
+
+use glam::{DVec3, UVec2, Vec3};
+use skylight::daylight::cube;
+use skylight::daylight::sky::{Conditions, Daylight, SkyModel};
+use skylight::daylight::tone_curve::{REINHARD_WHITE, ToneCurve};
+use skylight::frame::{Frame, FrameSettings};
+use skylight::gpu::{Context, ContextOptions, Image, Recorder, Timing, read_back};
+use skylight::passes::irradiance::IrradianceSettings;
+use skylight::passes::lighting::{LightingSettings, Precision, Show};
+use skylight::passes::ssao::SsaoSettings;
+use skylight::passes::tone_map::{Scale, ToneSettings};
+use skylight::scene::{Bounds, Camera, Material, Part, Scene};
+
+/// Relative step of 16-bit floats. Vulkan lets a device store either neighbour of a number (lavapipe truncates), so this, and
+/// not half of it, is the error of a stored value.
+pub const HALF_ROUNDOFF: f64 = 1.0 / 1024.0;
+
+/// A device under the validation layer with synchronization validation.
+///
+/// No device, no layer, and any message of the layer are failures: dropping it panics on messages.
+pub struct Device {
+    pub context: Arc<Context>,
+    pub recorder: Recorder,
+}
+
+impl Device {
+    /// The best device, or the one that SKYLIGHT_TEST_DEVICE names.
+    pub fn new() -> Self {
+        Self::with(&ContextOptions::default())
+    }
+
+    /// With these options, always validated.
+    pub fn with(options: &ContextOptions) -> Self {
+        let context = Context::new(&ContextOptions {
+            device: std::env::var("SKYLIGHT_TEST_DEVICE").ok(),
+            validate: true,
+            ..options.clone()
+        })
+        .unwrap_or_else(|e| panic!("{e}"));
+        let recorder = Recorder::new(&context, Timing::Off).expect("a recorder");
+        Self { context, recorder }
+    }
+
+    /// Records, submits and waits.
+    pub fn run<T>(&mut self, record: impl FnOnce(&mut Recorder) -> T) -> T {
+        self.recorder.begin().expect("begun");
+        let result = record(&mut self.recorder);
+        self.recorder.finish().expect("finished");
+        result
+    }
+
+    /// All texels of an image, layer after layer.
+    pub fn read(&mut self, image: &Image) -> Vec<[f32; 4]> {
+        read_back(&mut self.recorder, image)
+            .expect("read back")
+            .rgba()
+    }
+
+    /// The six faces of a cube map, RGB.
+    pub fn read_cube(&mut self, image: &Image) -> Cube {
+        let texels = self.read(image).into_iter();
+        Cube {
+            edge: image.size()[0] as usize,
+            texels: texels.map(|t| DVec3::from_array(rgb(t))).collect(),
+        }
+    }
+
+    /// Draws a scene until its light is refined and all samples are in. `show` replaces what the settings show.
+    pub fn frame(
+        &mut self,
+        scene: &Scene,
+        settings: FrameSettings,
+        daylight: &Daylight,
+        camera: &Camera,
+    ) -> Frame {
+        let mut frame = self.run(|rec| Frame::new(rec, scene, settings).expect("a frame"));
+        self.draw(&mut frame, daylight, camera);
+        frame
+    }
+
+    /// Draws a picture with a frame that exists.
+    pub fn draw(&mut self, frame: &mut Frame, daylight: &Daylight, camera: &Camera) {
+        let refined = (0..1000).any(|_| {
+            self.run(|rec| frame.record_light(rec, daylight));
+            frame.is_refined()
+        });
+        assert!(refined, "the light is not refined after 1000 passes");
+        for index in 0..frame.settings().samples {
+            self.run(|rec| frame.record(rec, daylight, camera, index));
+        }
+    }
+
+    /// Draws a scene and gives what the settings show, in the device's units.
+    pub fn picture(
+        &mut self,
+        scene: &Scene,
+        settings: FrameSettings,
+        daylight: &Daylight,
+        camera: &Camera,
+    ) -> Picture {
+        let frame = self.frame(scene, settings, daylight, camera);
+        self.picture_of(&frame)
+    }
+
+    /// What a drawn frame shows.
+    pub fn picture_of(&mut self, frame: &Frame) -> Picture {
+        let size = frame.settings().size.to_array().map(|edge| edge as usize);
+        let texels = self.read(frame.radiance());
+        Picture { size, texels }
+    }
+}
+
+impl Drop for Device {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            return;
+        }
+        self.context
+            .check_validation()
+            .unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+/// The first three channels, in f64.
+pub fn rgb(texel: [f32; 4]) -> [f64; 3] {
+    [0, 1, 2].map(|i| f64::from(texel[i]))
+}
+
+/// Texels of a flat image, rows from the top.
+pub struct Picture {
+    pub size: [usize; 2],
+    pub texels: Vec<[f32; 4]>,
+}
+
+impl Picture {
+    /// RGB of a pixel.
+    pub fn at(&self, x: usize, y: usize) -> DVec3 {
+        DVec3::from_array(rgb(self.texels[y * self.size[0] + x]))
+    }
+
+    /// Column and row of every pixel with its RGB.
+    pub fn pixels(&self) -> impl Iterator<Item = ([usize; 2], DVec3)> + '_ {
+        let width = self.size[0];
+        self.texels
+            .iter()
+            .enumerate()
+            .map(move |(i, t)| ([i % width, i / width], DVec3::from_array(rgb(*t))))
+    }
+}
+
+/// A cube map read back.
+pub struct Cube {
+    pub edge: usize,
+    pub texels: Vec<DVec3>,
+}
+
+impl Cube {
+    /// Texel with its unit direction and a name for messages.
+    pub fn iter(&self) -> impl Iterator<Item = (DVec3, DVec3, String)> + '_ {
+        cube::texels(self.edge)
+            .zip(&self.texels)
+            .map(|((face, i, j), value)| {
+                let direction = cube::texel_direction(face, i, j, self.edge);
+                (direction, *value, format!("face {face} texel {i} {j}"))
+            })
+    }
+
+    fn nearest(&self, direction: DVec3) -> DVec3 {
+        let (face, s, t) = cube::face_of(direction);
+        let index = |x: f64| ((x * self.edge as f64) as usize).min(self.edge - 1);
+        self.texels[(face * self.edge + index(t)) * self.edge + index(s)]
+    }
+
+    /// Bilinear and seamless: a texel beyond the edge of a face is the nearest one of its neighbour, and where three
+    /// faces meet the missing fourth is left out.
+    pub fn sample(&self, direction: DVec3) -> DVec3 {
+        let n = self.edge as f64;
+        let (face, s, t) = cube::face_of(direction);
+        let (x, y) = (s * n - 0.5, t * n - 0.5);
+        let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
+        for (dx, dy) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+            let (i, j) = (x.floor() + dx, y.floor() + dy);
+            let outside = |k: f64| k < 0.0 || k >= n;
+            if outside(i) && outside(j) {
+                continue;
+            }
+            let weight = (1.0 - (x - i).abs()) * (1.0 - (y - j).abs());
+            let at = cube::face_vector(face, (i + 0.5) / n, (j + 0.5) / n);
+            sum += self.nearest(at) * weight;
+            weights += weight;
+        }
+        sum / weights
+    }
+}
+
+/// Settings of a small exact picture: 32-bit floats, one sample, no ambient occlusion, the picture itself.
+pub fn settings(width: u32, height: u32) -> FrameSettings {
+    FrameSettings {
+        size: UVec2::new(width, height),
+        samples: 1,
+        sky_edge: 256,
+        irradiance: IrradianceSettings::default(),
+        shadow_resolution: 1024,
+        ssao: SsaoSettings {
+            radius: 0.0,
+            downscale: 1,
+            ..SsaoSettings::default()
+        },
+        lighting: LightingSettings {
+            show: Show::Beauty,
+            precision: Precision::Float,
+            specular_scale: 1.0,
+            limb_darkening: 0.0,
+            occlusion_downscale: 1,
+        },
+        tone: ToneSettings {
+            show: Show::Beauty,
+            curve: ToneCurve::Linear,
+            scale: Scale::Fixed(1e-4),
+            white: REINHARD_WHITE,
+            gamma: None,
+            depth_scale: 10.0,
+        },
+    }
+}
+
+/// The same settings that show something else.
+pub fn showing(show: Show, mut settings: FrameSettings) -> FrameSettings {
+    settings.lighting.show = show;
+    settings.tone.show = show;
+    settings
+}
+
+/// A camera with a 45 degree view.
+pub fn camera(eye: [f32; 3], target: [f32; 3]) -> Camera {
+    Camera {
+        eye: eye.into(),
+        target: target.into(),
+        fov_deg: 45.0,
+        near: 0.05,
+    }
+}
+
+/// Unit ray through the centre of a pixel, in world space.
+pub fn pixel_ray(camera: &Camera, size: [usize; 2], pixel: [usize; 2]) -> DVec3 {
+    let (width, height) = (size[0] as f64, size[1] as f64);
+    let tan = (0.5 * f64::from(camera.fov_deg)).to_radians().tan();
+    let forward = (camera.target.as_dvec3() - camera.eye.as_dvec3()).normalize();
+    let right = forward.cross(DVec3::Y).normalize();
+    let up = right.cross(forward);
+    let x = (2.0 * (pixel[0] as f64 + 0.5) / width - 1.0) * tan * width / height;
+    let y = (1.0 - 2.0 * (pixel[1] as f64 + 0.5) / height) * tan;
+    (forward + right * x + up * y).normalize()
+}
+
+/// Where the ray of a pixel meets the plane y = 0, if it does in front of the eye.
+pub fn on_ground(camera: &Camera, size: [usize; 2], pixel: [usize; 2]) -> Option<DVec3> {
+    let (eye, ray) = (camera.eye.as_dvec3(), pixel_ray(camera, size, pixel));
+    (ray.y < 0.0).then(|| eye + ray * (-eye.y / ray.y))
+}
+
+/// Preetham's clear day with the sun at an azimuth and an elevation, degrees.
+pub fn clear_day(azimuth: f64, elevation: f64) -> Daylight {
+    Daylight::new(&Conditions {
+        model: SkyModel::Preetham,
+        sun_azimuth_deg: azimuth,
+        sun_elevation_deg: elevation,
+        ..Conditions::default()
+    })
+}
+
+/// Sky and ground of one luminance, cd/m², and no sun: what is all around is the same.
+pub fn constant_sky(luminance: f64) -> Daylight {
+    let mut day = clear_day(180.0, 45.0);
+    day.guard.scale = 0.0;
+    day.guard.night = DVec3::splat(luminance);
+    day.ground_luminance = DVec3::splat(luminance);
+    day.sky_irradiance_up = DVec3::splat(luminance * std::f64::consts::PI);
+    day.sun_illuminance = DVec3::ZERO;
+    day.sun_luminance = DVec3::ZERO;
+    day
+}
+
+/// A Lambert material.
+pub fn matt(diffuse: f32) -> Material {
+    Material {
+        diffuse: [diffuse; 3],
+        ..Material::default()
+    }
+}
+
+/// Puts a scene together, one material for each part.
+#[derive(Default)]
+pub struct Model(Scene);
+
+impl Model {
+    fn part(&mut self, material: &Material, mesh: impl FnOnce(&mut Scene)) {
+        let (vertex, index) = (self.0.positions.len(), self.0.indices.len());
+        mesh(&mut self.0);
+        let points = self.0.positions[vertex..].iter().map(|p| Vec3::from(*p));
+        let bounds = Bounds::of(points);
+        self.0.parts.push(Part {
+            first_index: index as u32,
+            index_count: (self.0.indices.len() - index) as u32,
+            material: self.0.materials.len() as u32,
+            bounds,
+        });
+        self.0.materials.push(material.clone());
+        self.0.bounds = self.0.bounds.union(bounds);
+    }
+
+    /// A parallelogram: a corner and the two edges at it, counter-clockwise seen from the front.
+    pub fn quad(mut self, corner: [f32; 3], a: [f32; 3], b: [f32; 3], material: &Material) -> Self {
+        let (corner, a, b) = (Vec3::from(corner), Vec3::from(a), Vec3::from(b));
+        self.part(material, |scene| quad(scene, corner, a, b));
+        self
+    }
+
+    /// A horizontal square around the origin, looking up, at y = 0.
+    pub fn ground(self, half: f32, material: &Material) -> Self {
+        self.square([0.0; 3], half, material)
+    }
+
+    /// A horizontal square, looking up.
+    pub fn square(self, [x, y, z]: [f32; 3], half: f32, material: &Material) -> Self {
+        let edge = 2.0 * half;
+        self.quad(
+            [x - half, y, z + half],
+            [edge, 0.0, 0.0],
+            [0.0, 0.0, -edge],
+            material,
+        )
+    }
+
+    /// A cube.
+    pub fn cube(mut self, centre: [f32; 3], half: f32, material: &Material) -> Self {
+        let centre = Vec3::from(centre);
+        self.part(material, |scene| {
+            for n in [Vec3::X, Vec3::Y, Vec3::Z]
+                .into_iter()
+                .flat_map(|n| [n, -n])
+            {
+                let a = n.any_orthonormal_vector() * half;
+                let b = n.cross(a);
+                quad(scene, centre + n * half - a - b, 2.0 * a, 2.0 * b);
+            }
+        });
+        self
+    }
+
+    /// A smooth sphere of `2 rings x rings` quads.
+    pub fn sphere(
+        mut self,
+        centre: [f32; 3],
+        radius: f32,
+        rings: u32,
+        material: &Material,
+    ) -> Self {
+        self.part(material, |scene| {
+            sphere(scene, centre.into(), radius, rings);
+        });
+        self
+    }
+
+    /// The scene.
+    pub fn build(self) -> Scene {
+        self.0
+    }
+}
+
+fn quad(scene: &mut Scene, corner: Vec3, a: Vec3, b: Vec3) {
+    let first = scene.positions.len() as u32;
+    let normal = a.cross(b).normalize();
+    for (s, t) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
+        scene.positions.push((corner + a * s + b * t).into());
+        scene.normals.push(normal.into());
+        scene.texcoords.push([s, t]);
+    }
+    scene
+        .indices
+        .extend([0, 1, 2, 0, 2, 3].map(|i: u32| first + i));
+}
+
+fn sphere(scene: &mut Scene, centre: Vec3, radius: f32, rings: u32) {
+    let first = scene.positions.len() as u32;
+    let columns = 2 * rings + 1;
+    for ring in 0..=rings {
+        for column in 0..columns {
+            let (s, t) = (
+                column as f32 / (columns - 1) as f32,
+                ring as f32 / rings as f32,
+            );
+            let (sin_phi, cos_phi) = (s * std::f32::consts::TAU).sin_cos();
+            let (sin_theta, cos_theta) = (t * std::f32::consts::PI).sin_cos();
+            let n = Vec3::new(sin_theta * cos_phi, cos_theta, -sin_theta * sin_phi);
+            scene.positions.push((centre + n * radius).into());
+            scene.normals.push(n.into());
+            scene.texcoords.push([s, t]);
+        }
+    }
+    for ring in 0..rings {
+        for column in 0..columns - 1 {
+            let i = first + ring * columns + column;
+            let below = i + columns;
+            scene
+                .indices
+                .extend([i, below, below + 1, i, below + 1, i + 1]);
+        }
+    }
+}

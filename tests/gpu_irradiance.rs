@@ -34,6 +34,7 @@ impl Light {
     ) -> Self {
         let settings = IrradianceSettings {
             edge: 32,
+            sky_edge: 256,
             method,
             samples,
             samples_per_pass,

@@ -34,10 +34,10 @@ impl Light {
     ) -> Self {
         let settings = IrradianceSettings {
             edge: 32,
-            sky_edge: 256,
             method,
             samples,
             samples_per_pass,
+            ..IrradianceSettings::default()
         };
         Self {
             sky: SkyCube::new(&device.context, 256).expect("a sky cube"),

@@ -12,7 +12,9 @@ use super::sky::exact_by_default;
 use super::sky_report::SkyReport;
 use crate::daylight::irradiance::IrradianceEstimator;
 use crate::error::Result;
-use crate::output::{Channels, Layer, Metadata, check_writable, encode_exr, encode_hdr, write_set};
+use crate::output::{
+    Channels, Layer, Metadata, check_writable, encode_exr, encode_hdr, print, write_set,
+};
 use crate::settings::{Options, name};
 
 /// What a map holds.
@@ -104,16 +106,13 @@ pub fn run(wishes: &BakeWishes, mut options: Options) -> Result<()> {
     let text = format!("{:#}\n", description(wishes, &light, &names, &pictures)?);
     files.push((sidecar.clone(), text.into_bytes()));
     write_set(&files)?;
-    for (path, picture) in names.iter().zip(&pictures) {
+    let line = |(path, picture): (&PathBuf, &Picture)| {
         let [width, height] = picture.size;
-        println!(
-            "{}: {width}x{height}, {}",
-            path.display(),
-            wishes.map.unit()
-        );
-    }
-    println!("{}", sidecar.display());
-    Ok(())
+        let unit = wishes.map.unit();
+        format!("{}: {width}x{height}, {unit}\n", path.display())
+    };
+    let lines: String = names.iter().zip(&pictures).map(line).collect();
+    print(&format!("{lines}{}\n", sidecar.display()))
 }
 
 fn names(wishes: &BakeWishes) -> Vec<PathBuf> {

@@ -11,7 +11,7 @@ use super::{plot_spectrum, plot_study};
 use crate::daylight::IrradianceMethod;
 use crate::daylight::convergence::{Convergence, exponent, study};
 use crate::error::Result;
-use crate::output::{check_writable, write_text};
+use crate::output::{check_writable, print, write_text};
 use crate::settings::{Direction, Options, Preset, name};
 
 /// What to tell of a daylight.
@@ -64,8 +64,7 @@ pub fn run(wishes: &SkyWishes, mut options: Options) -> Result<()> {
     if let (Some(path), Some(drawing)) = (&wishes.plot, drawing) {
         write_text(path, &drawing)?;
     }
-    println!("{}", text.trim_end());
-    Ok(())
+    print(&format!("{}\n", text.trim_end()))
 }
 
 fn told_numbers(wishes: &SkyWishes, light: &Light) -> Result<(String, Option<String>)> {

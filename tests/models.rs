@@ -35,7 +35,7 @@ fn settings() -> FrameSettings {
     FrameSettings {
         size: SIZE,
         samples: 1,
-        sky_edge: 64,
+        sky_edge: 256,
         irradiance: IrradianceSettings {
             samples: 64,
             samples_per_pass: 64,

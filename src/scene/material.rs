@@ -179,10 +179,14 @@ impl Libraries {
                 .diffuse
                 .unwrap_or([bare_diffuse; 3])
                 .map(|v| v.clamp(0.0, 1.0)),
-            specular: source
-                .specular
-                .unwrap_or([bare_specular; 3])
-                .map(|v| v.clamp(0.0, 1.0)),
+            specular: if has_highlights(source) {
+                source
+                    .specular
+                    .unwrap_or([bare_specular; 3])
+                    .map(|v| v.clamp(0.0, 1.0))
+            } else {
+                [0.0; 3]
+            },
             shininess: source.shininess.unwrap_or(1.0).clamp(1.0, 1e5),
             dissolve: dissolve(source),
             diffuse_texture,
@@ -194,6 +198,12 @@ impl Libraries {
         let path = self.maps.get(map?.parse::<usize>().ok()?)?;
         builder.texture(obj, path)
     }
+}
+
+/// Whether the material reflects specularly at all. The illumination models 0 and 1 of MTL (`illum`) have no highlights;
+/// many exporters write a stray `Ks` beside them.
+fn has_highlights(source: &tobj::Material) -> bool {
+    !matches!(source.illumination_model, Some(0 | 1))
 }
 
 /// `d`, else 1 − `Tr`. `Tr 1` alone is read as opaque: some exporters mean that, and nobody exports the invisible.
@@ -384,5 +394,22 @@ mod tests {
             read("newmtl a\nKd 0.2 0.3 0.4\nmap_Kd none.png\n")[0].diffuse,
             [0.2, 0.3, 0.4]
         );
+    }
+
+    #[test]
+    fn illumination_models_without_highlights_have_no_gloss() {
+        let source = |illumination_model| tobj::Material {
+            specular: Some([0.45; 3]),
+            illumination_model,
+            ..tobj::Material::default()
+        };
+        for (model, glossy) in [
+            (None, true),
+            (Some(0), false),
+            (Some(1), false),
+            (Some(2), true),
+        ] {
+            assert_eq!(has_highlights(&source(model)), glossy, "{model:?}");
+        }
     }
 }

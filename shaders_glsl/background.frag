@@ -9,6 +9,8 @@
 layout(location = 0) out vec4 radiance; // kcd/m^2, or a constant
 
 layout(constant_id = 0) const bool SKY = true;
+// The sun's disc is in view.
+layout(constant_id = 2) const bool DISC = true;
 // Without the sky: what quantities have where no surface is.
 layout(constant_id = 1) const float EMPTY = 0.0;
 
@@ -39,7 +41,8 @@ void main() {
         return;
     }
     vec3 ray = view_ray(gl_FragCoord.xy / push.size, view.ray_scale, view.ray_offset);
-    vec3 direction = normalize(view.world_from_view * ray);
-    vec3 sky = textureLod(sky_radiance, direction, 0.0).rgb + disc(direction);
+    vec3 direction = view.world_from_view * ray;
+    vec3 sky = textureLod(sky_radiance, direction, 0.0).rgb;
+    if (DISC) sky += disc(normalize(direction));
     radiance = vec4(min(sky, push.max_radiance), 1.0);
 }

@@ -18,13 +18,12 @@ layout(constant_id = 1) const bool SPECULAR_MAP = true;
 layout(set = 0, binding = 0) uniform sampler2D diffuse_map;
 layout(set = 0, binding = 1) uniform sampler2D specular_map;
 
-/// The normal on the viewer's side. Winding and stored normals of real models disagree too often to trust either alone:
+/// The normal on the viewer's side, of any length: the octahedral map does not care. Winding and stored normals of real models disagree too often to trust either alone:
 /// the true face, from derivatives, decides the side; surfaces are two-sided.
 vec3 facing_normal() {
     vec3 face = cross(dFdx(from_eye), dFdy(from_eye));
     face *= dot(face, from_eye) > 0.0 ? -1.0 : 1.0;
-    vec3 n = normalize(shading_normal);
-    return dot(n, face) < 0.0 ? -n : n;
+    return dot(shading_normal, face) < 0.0 ? -shading_normal : shading_normal;
 }
 
 void main() {

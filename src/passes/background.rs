@@ -29,7 +29,9 @@ gpu_struct! {
 /// The pass; it completes the picture of [`super::lighting::Lighting`].
 pub struct Background {
     settings: LightingSettings,
-    pipeline: Pipeline,
+    /// For the many views that do not see the sun.
+    without_disc: Pipeline,
+    with_disc: Pipeline,
 }
 
 /// Whether the sky is drawn, and otherwise what stands for "nothing".
@@ -47,18 +49,28 @@ impl Background {
     /// When the device refuses.
     pub fn new(context: &Arc<Context>, settings: LightingSettings) -> Result<Self> {
         let (sky, empty) = content(settings.show);
-        let pipeline = Pipeline::new(
-            context,
-            &PipelineDesc {
-                name: "background",
-                stages: &[&shaders::FULLSCREEN_VERT, &shaders::BACKGROUND_FRAG],
-                vertex: &[],
-                colors: &[settings.precision.format()],
-                depth: Depth::Background(Format::D32_SFLOAT),
-                constants: &[("SKY", sky.into()), ("EMPTY", empty.to_bits())],
-            },
-        )?;
-        Ok(Self { settings, pipeline })
+        let pipeline = |disc: bool| {
+            Pipeline::new(
+                context,
+                &PipelineDesc {
+                    name: "background",
+                    stages: &[&shaders::FULLSCREEN_VERT, &shaders::BACKGROUND_FRAG],
+                    vertex: &[],
+                    colors: &[settings.precision.format()],
+                    depth: Depth::Background(Format::D32_SFLOAT),
+                    constants: &[
+                        ("SKY", sky.into()),
+                        ("EMPTY", empty.to_bits()),
+                        ("DISC", disc.into()),
+                    ],
+                },
+            )
+        };
+        Ok(Self {
+            settings,
+            without_disc: pipeline(false)?,
+            with_disc: pipeline(true)?,
+        })
     }
 
     /// Fills what no surface covers.
@@ -80,8 +92,13 @@ impl Background {
             limb,
             max_radiance: self.settings.precision.max_radiance(),
         };
+        let pipeline = if sees(view, push.direction) {
+            &self.with_disc
+        } else {
+            &self.without_disc
+        };
         recorder
-            .pass("background", &self.pipeline)
+            .pass("background", pipeline)
             .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
             .uniform("view", &view.block())
             .push(&push)
@@ -91,9 +108,41 @@ impl Background {
     }
 }
 
+/// Whether the sun's disc may be in the picture: within the cone around the line of sight that holds its corners.
+fn sees(view: &View, direction: Vec3) -> bool {
+    let block = view.block();
+    let corner = block.ray_scale.abs() + block.ray_offset.abs();
+    let widest = corner.length().atan() + 2.0 * SUN_ANGULAR_RADIUS as f32;
+    view.camera.forward().angle_between(direction) <= widest
+}
+
 #[cfg(test)]
 mod tests {
+    use glam::UVec2;
+
     use super::*;
+    use crate::scene::Camera;
+
+    #[test]
+    fn the_disc_is_drawn_where_the_eye_may_see_it() {
+        let camera = Camera {
+            eye: Vec3::ZERO,
+            target: Vec3::NEG_Z,
+            fov_deg: 40.0,
+            near: 0.1,
+        };
+        let view = View {
+            camera,
+            size: UVec2::new(640, 360),
+            jitter: Vec2::ZERO,
+        };
+        // The corner of the picture lies 36.6 degrees off its centre.
+        let off =
+            |degrees: f32| Vec3::new(degrees.to_radians().sin(), 0.0, -degrees.to_radians().cos());
+        assert!(sees(&view, off(0.0)) && sees(&view, off(36.0)) && sees(&view, off(37.0)));
+        assert!(!sees(&view, off(38.0)) && !sees(&view, off(180.0)));
+    }
+
     use crate::gpu::{GpuStruct, check_layout};
 
     #[test]

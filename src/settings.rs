@@ -109,7 +109,7 @@ pub struct Options {
     /// Error at which sampling stops, percent of the irradiance from above, 0 to 100 [default: 0.1].
     #[arg(long, value_name = "PERCENT", value_parser = values::irradiance_error, allow_hyphen_values = true, help_heading = "Light")]
     pub irradiance_error: Option<f64>,
-    /// Radius of ambient occlusion, metres; 0 turns it off [default: 1].
+    /// Radius of ambient occlusion, metres; 0 turns it off [default: 5].
     #[arg(long, value_name = "METRES", value_parser = values::ao_radius, allow_hyphen_values = true, help_heading = "Light")]
     pub ao_radius: Option<f64>,
     /// Resolution of ambient occlusion [default: half].

@@ -28,11 +28,11 @@ struct View {
 }
 
 const VIEWS: [View; 5] = [
-    view("colonnade", [0.98, 1.15], 0.234, 2.92),
-    view("house", [0.98, 1.12], 0.205, 1.33),
-    view("house_low", [0.98, 1.27], 0.453, 1.37),
-    view("medieval", [0.98, 1.09], 0.128, 0.98),
-    view("teapot", [0.96, 1.06], 0.075, 0.33),
+    view("colonnade", [0.96, 1.02], 0.168, 1.25),
+    view("house", [0.97, 1.02], 0.173, 0.82),
+    view("house_low", [0.98, 1.04], 0.346, 0.75),
+    view("medieval", [0.97, 1.02], 0.127, 0.94),
+    view("teapot", [0.96, 1.02], 0.074, 0.27),
 ];
 
 const fn view(name: &'static str, ratio: [f64; 2], rmse: f64, p95: f64) -> View {

@@ -35,7 +35,7 @@ pub struct SsaoSettings {
 impl Default for SsaoSettings {
     fn default() -> Self {
         Self {
-            radius: 1.0,
+            radius: 5.0,
             downscale: 2,
             slices: 2,
             steps: 6,

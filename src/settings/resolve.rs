@@ -220,7 +220,7 @@ impl Settings {
             irradiance: o.irradiance.unwrap_or_default(),
             irradiance_samples: o.irradiance_samples.unwrap_or(1024),
             irradiance_error: o.irradiance_error.unwrap_or(0.1),
-            ao_radius: o.ao_radius.unwrap_or(1.0),
+            ao_radius: o.ao_radius.unwrap_or(5.0),
             ao_resolution: o.ao_resolution.unwrap_or_default(),
             specular: o.specular.unwrap_or(1.0),
             preset: o.preset,

@@ -118,6 +118,9 @@ pub struct Options {
     /// Multiplies every specular reflectance; 0 turns mirrors off [default: 1].
     #[arg(long, value_name = "SCALE", value_parser = values::specular, allow_hyphen_values = true, help_heading = "Light")]
     pub specular: Option<f64>,
+    /// Draw the sun's disc darker toward its limb, as it is (same illuminance).
+    #[arg(long, help_heading = "Light")]
+    pub limb_darkening: bool,
     /// Edge of the shadow map, texels, 64 to 16384 [default: 2048].
     #[arg(long, value_name = "TEXELS", value_parser = clap::value_parser!(u32).range(64..=16_384), help_heading = "Light")]
     pub shadow_size: Option<u32>,
@@ -186,7 +189,7 @@ impl Options {
             size samples show preset place when sun solar sun_position sky turbidity sky_illuminance refraction ground_albedo camera eye target fov
             ev100 exposure tonemap gamma scale irradiance irradiance_samples irradiance_error ao_radius ao_resolution specular shadow_size
             smooth device;
-            layers quiet validate)
+            layers limb_darkening quiet validate)
     }
 }
 

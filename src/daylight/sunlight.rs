@@ -162,10 +162,13 @@ pub fn visible_fraction(elevation_deg: f64) -> f64 {
     (0.5 + (h * (1.0 - h * h).sqrt() + h.asin()) / PI).clamp(0.0, 1.0)
 }
 
-/// Linear limb darkening (Allen, Astrophysical Quantities: u = 0.6 at 550 nm): luminance at the distance `r` from the
+/// Coefficient u of linear limb darkening, I = I₀ (1 − u (1 − cos θ)) (Allen, Astrophysical Quantities: 0.6 at 550 nm).
+pub const LIMB_DARKENING: f64 = 0.6;
+
+/// Linear limb darkening, see [`LIMB_DARKENING`]: luminance at the distance `r` from the
 /// disc's centre (0 centre, 1 limb) over the disc's mean luminance; from 1.25 down to 0.5.
 pub fn limb_darkening(r: f64) -> f64 {
-    const U: f64 = 0.6;
+    const U: f64 = LIMB_DARKENING;
     let mu = (1.0 - r * r).max(0.0).sqrt();
     (1.0 - U * (1.0 - mu)) / (1.0 - U / 3.0)
 }

@@ -11,6 +11,7 @@ use crate::daylight::refinement::Refinement;
 use crate::daylight::sky::Daylight;
 use crate::daylight::spectrum::LUMINOUS_EFFICACY;
 use crate::daylight::sun_position::SunPosition;
+use crate::daylight::sunlight::LIMB_DARKENING;
 use crate::daylight::tone_curve::REINHARD_WHITE;
 use crate::error::Result;
 use crate::frame::FrameSettings;
@@ -107,7 +108,11 @@ impl Job {
                 show,
                 precision,
                 specular_scale: s.specular as f32,
-                limb_darkening: 0.0,
+                limb_darkening: if s.limb_darkening {
+                    LIMB_DARKENING as f32
+                } else {
+                    0.0
+                },
                 occlusion_downscale: downscale,
             },
             tone: ToneSettings {

@@ -22,6 +22,8 @@ const TABLES: [(&str, &[&str]); 4] = [
             "sky",
             "turbidity",
             "ground-albedo",
+            "sky-illuminance",
+            "refraction",
             "irradiance",
             "irradiance-samples",
             "irradiance-error",

@@ -138,6 +138,8 @@ pub struct Settings {
     pub specular: f64,
     /// Where the defaults came from.
     pub preset: Option<Preset>,
+    /// Whether the sun's disc is darker toward its limb.
+    pub limb_darkening: bool,
     /// Whether all addends are written (EXR).
     pub layers: bool,
     /// Crease angle for models without normals, degrees.
@@ -224,6 +226,7 @@ impl Settings {
             ao_resolution: o.ao_resolution.unwrap_or_default(),
             specular: o.specular.unwrap_or(1.0),
             preset: o.preset,
+            limb_darkening: o.limb_darkening,
             layers: o.layers,
             smooth: o.smooth,
             shadow_size: o.shadow_size.unwrap_or(2048),

@@ -50,9 +50,8 @@ fn cases() -> [Case; 6] {
 fn mapped(device: &mut Device, inputs: &[[f32; 4]], case: &Case) -> Vec<[f32; 4]> {
     let format = Format::R32G32B32A32_SFLOAT;
     let desc = ImageDesc::flat("colours", format, [inputs.len() as u32, 1]);
-    let source = device.run(|rec| {
-        upload_texture(rec, &desc, &[bytemuck::cast_slice(inputs)]).expect("uploaded")
-    });
+    let source = device
+        .run(|rec| upload_texture(rec, &desc, &[bytemuck::cast_slice(inputs)]).expect("uploaded"));
     let mut constants = vec![("GAMMA", u32::from(case.gamma.is_some()))];
     constants.extend(case.constant.map(|name| (name, 1)));
     let pipeline = Pipeline::new(

@@ -317,12 +317,12 @@ fn four_passes_make_the_same_map_as_one() {
 fn a_changed_sky_starts_anew() {
     let mut device = Device::new();
     let (first, second) = (clear_day(90.0, 20.0), clear_day(270.0, 60.0));
-    let mut changed = Light::new(&mut device, IrradianceMethod::Quasi, 256, 64);
+    let mut changed = Light::new(&mut device, IrradianceMethod::Quasi, 1024, 64);
     changed.refine(&mut device, &first);
     changed.pass(&mut device, &second);
     assert_eq!(changed.irradiance.samples_done(), 64);
     changed.refine(&mut device, &second);
-    let mut fresh = Light::new(&mut device, IrradianceMethod::Quasi, 256, 64);
+    let mut fresh = Light::new(&mut device, IrradianceMethod::Quasi, 1024, 64);
     fresh.refine(&mut device, &second);
     let (a, b) = (changed.exact(&mut device), fresh.exact(&mut device));
     let different = a.texels.iter().zip(&b.texels).filter(|(a, b)| a != b);

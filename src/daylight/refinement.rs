@@ -19,9 +19,12 @@ use super::sampling::{cosine_hemisphere, hammersley};
 const COARSEST_EDGE: f64 = 8.0;
 /// Edge of the cube on which errors are estimated, texels.
 const ESTIMATE_EDGE: usize = 64;
-/// Shares grow toward the horizon of the normal; from 60° on they are taken as no wider. Wider lookups around an
+/// Lookups are this much finer than the shares, levels: bilinear filtering widens them again. Chosen, as the next
+/// constant, by the error on the reference normals and skies: 0.10 % with 1024 samples, 0.12 % without either.
+const LEVEL_BIAS: f64 = 0.125;
+/// Shares grow toward the horizon of the normal; from 45° on they are taken as no wider. Wider lookups around an
 /// upward normal would mix the ground into the brightest part of a low sun's sky.
-const WIDEST_COSINE: f64 = 0.5;
+const WIDEST_COSINE: f64 = 0.7;
 /// Fewer samples are not worth a pass.
 const FEWEST: u32 = 32;
 
@@ -30,7 +33,7 @@ const FEWEST: u32 = 32;
 pub struct Share {
     /// Unit direction, cosine-weighted.
     pub direction: DVec3,
-    /// 1/(N pdf) = π/(N cos θ), sr, but no more than at 60°.
+    /// 1/(N pdf) = π/(N cos θ), sr, but no more than at 45°.
     pub solid_angle: f64,
 }
 
@@ -40,7 +43,7 @@ impl Share {
     pub fn level(&self, edge: u32) -> f64 {
         let texel = 4.0 * PI / (6.0 * f64::from(edge) * f64::from(edge));
         let coarsest = (f64::from(edge) / COARSEST_EDGE).log2().max(0.0);
-        (0.5 * (self.solid_angle / texel).log2()).clamp(0.0, coarsest)
+        (0.5 * (self.solid_angle / texel).log2() - LEVEL_BIAS).clamp(0.0, coarsest)
     }
 }
 
@@ -191,7 +194,7 @@ mod tests {
             assert_eq!(shares.len(), count as usize);
             // Away from the horizon a share times its cosine is π/N.
             let expected = PI / f64::from(count);
-            for share in shares.iter().filter(|s| s.direction.z > 0.5) {
+            for share in shares.iter().filter(|s| s.direction.z > WIDEST_COSINE) {
                 assert!((share.solid_angle * share.direction.z - expected).abs() < 1e-12);
             }
             // The first quarter, too, is centred.

@@ -145,7 +145,6 @@ impl Job {
         let error = s.irradiance_error / 100.0;
         let samples = refinement.samples(method, error, s.irradiance_samples);
         IrradianceSettings {
-            sky_edge: self.sky_edge(),
             method,
             samples,
             samples_per_pass,

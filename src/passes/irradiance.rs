@@ -20,7 +20,7 @@ use crate::gpu::{
 use crate::gpu_struct;
 
 use super::kilo;
-use super::sky_cube::{COARSE_EDGE, SkyImages};
+use super::sky_cube::{COARSE_EDGE, SMOOTH_EDGE, SkyImages};
 
 gpu_struct! {
     /// Which samples this pass adds.
@@ -49,8 +49,6 @@ gpu_struct! {
 pub struct IrradianceSettings {
     /// Edge of a face, texels.
     pub edge: u32,
-    /// Edge of a face of the sky cube that is sampled, texels.
-    pub sky_edge: u32,
     /// How E is found.
     pub method: IrradianceMethod,
     /// Samples wanted in all, of the two methods that sample.
@@ -63,7 +61,6 @@ impl Default for IrradianceSettings {
     fn default() -> Self {
         Self {
             edge: 32,
-            sky_edge: 256,
             method: IrradianceMethod::Quasi,
             samples: 1024,
             samples_per_pass: 256,
@@ -156,9 +153,8 @@ impl Irradiance {
         }
         if !self.is_complete() {
             match self.settings.method {
-                IrradianceMethod::MonteCarlo | IrradianceMethod::Quasi => {
-                    self.refine(recorder, sky.radiance);
-                }
+                IrradianceMethod::MonteCarlo => self.refine(recorder, sky.radiance),
+                IrradianceMethod::Quasi => self.refine(recorder, sky.smooth),
                 IrradianceMethod::Exact => self.sum_texels(recorder, sky.coarse),
                 IrradianceMethod::Sh => self.evaluate_harmonics(recorder, daylight),
             }
@@ -243,7 +239,7 @@ impl Irradiance {
 fn upload_table(recorder: &mut Recorder, settings: &IrradianceSettings) -> Result<Buffer> {
     let edge = COARSE_EDGE as usize;
     let numbers: Vec<f32> = match settings.method {
-        IrradianceMethod::Quasi => filtered_samples(settings.samples, settings.sky_edge),
+        IrradianceMethod::Quasi => filtered_samples(settings.samples),
         IrradianceMethod::Exact => texels(edge)
             .flat_map(|(face, i, j)| {
                 let direction = texel_direction(face, i, j, edge);
@@ -261,10 +257,15 @@ fn upload_table(recorder: &mut Recorder, settings: &IrradianceSettings) -> Resul
 }
 
 /// The low-discrepancy directions, each with the mip level of its share.
-fn filtered_samples(count: u32, sky_edge: u32) -> Vec<f32> {
+fn filtered_samples(count: u32) -> Vec<f32> {
     shares(count)
         .into_iter()
-        .flat_map(|s| s.direction.extend(s.level(sky_edge)).as_vec4().to_array())
+        .flat_map(|s| {
+            s.direction
+                .extend(s.level(SMOOTH_EDGE))
+                .as_vec4()
+                .to_array()
+        })
         .collect()
 }
 

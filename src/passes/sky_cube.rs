@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use crate::daylight::hosek::Hosek;
 use crate::daylight::preetham::PerezSky;
 use crate::daylight::sky::{Daylight, Sky};
 use crate::gpu::{
@@ -52,58 +53,109 @@ gpu_struct! {
 /// Edge of the coarse cube, texels: what the exact sum of the irradiance runs over.
 pub const COARSE_EDGE: u32 = 32;
 
+/// Edge of the smooth cube, texels: its mip levels are what filtered samples of the irradiance look up.
+pub const SMOOTH_EDGE: u32 = 128;
+
 /// What the pass leaves behind.
 #[derive(Clone, Copy)]
 pub struct SkyImages<'s> {
-    /// The sky with mip levels, kcd/m².
+    /// The sky that is seen and mirrored, kcd/m², half floats.
     pub radiance: &'s Image,
-    /// The same at [`COARSE_EDGE`].
+    /// The same at [`SMOOTH_EDGE`] with mip levels, 32-bit floats: a device may cut numbers short when it stores half
+    /// floats, and five levels of that would darken the sky by a fifth of a percent.
+    pub smooth: &'s Image,
+    /// The same at [`COARSE_EDGE`], 32-bit floats.
     pub coarse: &'s Image,
     /// Whether they were drawn in this frame.
     pub is_new: bool,
 }
 
-/// The pass and its cubes.
-pub struct SkyCube {
+/// The pipelines of the models, for targets of one format.
+struct Painter {
     preetham: Pipeline,
     hosek: Pipeline,
     overcast: Pipeline,
+}
+
+impl Painter {
+    fn new(context: &Arc<Context>, format: Format) -> Result<Self> {
+        let pipeline = |name, fragment: &'static Shader| {
+            Pipeline::new(
+                context,
+                &PipelineDesc {
+                    name,
+                    stages: &[
+                        &shaders::FULLSCREEN_VERT,
+                        &shaders::CUBE_FACES_GEOM,
+                        fragment,
+                    ],
+                    vertex: &[],
+                    colors: &[format],
+                    depth: Depth::Off,
+                    constants: &[],
+                },
+            )
+        };
+        Ok(Self {
+            preetham: pipeline("sky: Preetham", &shaders::SKY_PREETHAM_FRAG)?,
+            hosek: pipeline("sky: Hosek", &shaders::SKY_HOSEK_FRAG)?,
+            overcast: pipeline("sky: overcast", &shaders::SKY_OVERCAST_FRAG)?,
+        })
+    }
+
+    fn paint(&self, recorder: &mut Recorder, daylight: &Daylight, target: &Image) {
+        let push = Push {
+            sun_direction: daylight.guard.sun_direction.as_vec3(),
+            scale: daylight.guard.scale as f32,
+            night: kilo(daylight.guard.night),
+            ground: kilo(daylight.ground_luminance),
+        };
+        let pass = match &daylight.sky {
+            Sky::Preetham(sky) => recorder
+                .pass("sky cube", &self.preetham)
+                .uniform("model", &preetham_model(&sky.perez())),
+            Sky::CieClear(sky) => recorder
+                .pass("sky cube", &self.preetham)
+                .uniform("model", &preetham_model(&sky.perez())),
+            Sky::Hosek(sky) => recorder
+                .pass("sky cube", &self.hosek)
+                .uniform("model", &hosek_model(sky)),
+            Sky::Overcast(sky) => {
+                let zenith_luminance = (sky.zenith_luminance * 1e-3) as f32;
+                recorder
+                    .pass("sky cube", &self.overcast)
+                    .uniform("model", &OvercastModel { zenith_luminance })
+            }
+        };
+        pass.push(&push).color(target, Load::Discard).draw();
+    }
+}
+
+/// The pass and its cubes.
+pub struct SkyCube {
+    half: Painter,
+    float: Painter,
     radiance: Image,
+    smooth: Image,
     coarse: Image,
     drawn: Option<Daylight>,
 }
 
-fn pipeline(context: &Arc<Context>, name: &str, fragment: &'static Shader) -> Result<Pipeline> {
-    Pipeline::new(
-        context,
-        &PipelineDesc {
-            name,
-            stages: &[
-                &shaders::FULLSCREEN_VERT,
-                &shaders::CUBE_FACES_GEOM,
-                fragment,
-            ],
-            vertex: &[],
-            colors: &[Format::R16G16B16A16_SFLOAT],
-            depth: Depth::Off,
-            constants: &[],
-        },
-    )
-}
-
 impl SkyCube {
-    /// A cube with faces of `edge` texels.
+    /// A cube with faces of `edge` texels, and what the irradiance needs besides.
     ///
     /// # Errors
     /// When the device refuses.
     pub fn new(context: &Arc<Context>, edge: u32) -> Result<Self> {
-        let cube = |name, edge| ImageDesc::cube(name, Format::R16G16B16A16_SFLOAT, edge);
+        let (half, float) = (Format::R16G16B16A16_SFLOAT, Format::R32G32B32A32_SFLOAT);
+        let smooth = ImageDesc::cube("sky radiance, smooth", float, SMOOTH_EDGE).mipmapped();
+        let coarse = ImageDesc::cube("sky radiance, coarse", float, COARSE_EDGE);
         Ok(Self {
-            preetham: pipeline(context, "sky: Preetham", &shaders::SKY_PREETHAM_FRAG)?,
-            hosek: pipeline(context, "sky: Hosek", &shaders::SKY_HOSEK_FRAG)?,
-            overcast: pipeline(context, "sky: overcast", &shaders::SKY_OVERCAST_FRAG)?,
-            radiance: Image::new(context, &cube("sky radiance", edge).mipmapped())?,
-            coarse: Image::new(context, &cube("sky radiance, coarse", COARSE_EDGE))?,
+            half: Painter::new(context, half)?,
+            float: Painter::new(context, float)?,
+            radiance: Image::new(context, &ImageDesc::cube("sky radiance", half, edge))?,
+            smooth: Image::new(context, &smooth)?,
+            coarse: Image::new(context, &coarse)?,
             drawn: None,
         })
     }
@@ -112,13 +164,15 @@ impl SkyCube {
     pub fn record(&mut self, recorder: &mut Recorder, daylight: &Daylight) -> SkyImages<'_> {
         let is_new = self.drawn.as_ref() != Some(daylight);
         if is_new {
-            self.draw(recorder, daylight, &self.radiance);
-            recorder.mipmap("sky mips", &self.radiance);
-            self.draw(recorder, daylight, &self.coarse);
+            self.half.paint(recorder, daylight, &self.radiance);
+            self.float.paint(recorder, daylight, &self.smooth);
+            recorder.mipmap("sky mips", &self.smooth);
+            self.float.paint(recorder, daylight, &self.coarse);
             self.drawn = Some(daylight.clone());
         }
         SkyImages {
             radiance: &self.radiance,
+            smooth: &self.smooth,
             coarse: &self.coarse,
             is_new,
         }
@@ -133,50 +187,12 @@ impl SkyCube {
     pub fn image(&self) -> &Image {
         &self.radiance
     }
+}
 
-    fn draw(&self, recorder: &mut Recorder, daylight: &Daylight, target: &Image) {
-        let push = Push {
-            sun_direction: daylight.guard.sun_direction.as_vec3(),
-            scale: daylight.guard.scale as f32,
-            night: kilo(daylight.guard.night),
-            ground: kilo(daylight.ground_luminance),
-        };
-        match &daylight.sky {
-            Sky::Preetham(sky) => {
-                let pass = recorder.pass("sky cube", &self.preetham);
-                pass.uniform("model", &preetham_model(&sky.perez()))
-                    .push(&push)
-                    .color(target, Load::Discard)
-                    .draw();
-            }
-            Sky::CieClear(sky) => {
-                let pass = recorder.pass("sky cube", &self.preetham);
-                pass.uniform("model", &preetham_model(&sky.perez()))
-                    .push(&push)
-                    .color(target, Load::Discard)
-                    .draw();
-            }
-            Sky::Hosek(sky) => {
-                let coefficients = std::array::from_fn(|i| sky.coefficients[i / 9][i % 9] as f32);
-                let model = HosekModel {
-                    coefficients,
-                    mean_radiance: kilo(sky.mean_radiance),
-                };
-                let pass = recorder.pass("sky cube", &self.hosek);
-                pass.uniform("model", &model)
-                    .push(&push)
-                    .color(target, Load::Discard)
-                    .draw();
-            }
-            Sky::Overcast(sky) => {
-                let zenith_luminance = (sky.zenith_luminance * 1e-3) as f32;
-                let pass = recorder.pass("sky cube", &self.overcast);
-                pass.uniform("model", &OvercastModel { zenith_luminance })
-                    .push(&push)
-                    .color(target, Load::Discard)
-                    .draw();
-            }
-        }
+fn hosek_model(sky: &Hosek) -> HosekModel {
+    HosekModel {
+        coefficients: std::array::from_fn(|i| sky.coefficients[i / 9][i % 9] as f32),
+        mean_radiance: kilo(sky.mean_radiance),
     }
 }
 

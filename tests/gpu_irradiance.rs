@@ -37,7 +37,6 @@ impl Light {
             method,
             samples,
             samples_per_pass,
-            ..IrradianceSettings::default()
         };
         Self {
             sky: SkyCube::new(&device.context, 256).expect("a sky cube"),

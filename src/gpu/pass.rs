@@ -7,6 +7,7 @@ use ash::vk;
 use super::access::{self, Use};
 use super::buffer::Buffer;
 use super::context::Sampler;
+use super::draws::Draws;
 use super::image::{Image, is_depth};
 use super::layout::{GpuStruct, check_layout};
 use super::pipeline::{Pipeline, block_size};
@@ -55,11 +56,11 @@ fn sampled_use(image: &Image) -> Use {
 /// Every word panics when it contradicts the pipeline's declarations: a fault of this program, seen by the first
 /// test that runs the pass.
 pub struct Pass<'r> {
-    recorder: &'r mut Recorder,
-    pipeline: &'r Pipeline,
-    name: &'static str,
+    pub(super) recorder: &'r mut Recorder,
+    pub(super) pipeline: &'r Pipeline,
+    pub(super) name: &'static str,
     bound: ArrayVec<Bound, MAX_BINDINGS>,
-    changed: bool,
+    pub(super) changed: bool,
     reads: ArrayVec<&'r Image, MAX_BINDINGS>,
     colors: ArrayVec<(&'r Image, Load), MAX_COLORS>,
     depth: Option<(&'r Image, Load)>,
@@ -202,7 +203,7 @@ impl<'r> Pass<'r> {
         self.changed = true;
     }
 
-    fn bind_image(&mut self, name: &str, image: &Image, sampler: Sampler) {
+    pub(super) fn bind_image(&mut self, name: &str, image: &Image, sampler: Sampler) {
         let binding = self.declared(name, BindingKind::SampledImage);
         let info = vk::DescriptorImageInfo {
             sampler: self.recorder.context.sampler(sampler),
@@ -223,7 +224,7 @@ impl<'r> Pass<'r> {
         }
     }
 
-    fn set_push<T: GpuStruct>(&mut self, value: &T) {
+    pub(super) fn set_push<T: GpuStruct>(&mut self, value: &T) {
         let Some((fields, _)) = self.pipeline.push else {
             panic!("pass {}: no push constants declared", self.name)
         };
@@ -332,7 +333,7 @@ impl<'r> Pass<'r> {
     }
 
     /// Makes what was bound and pushed visible to the next draw.
-    fn flush(&mut self) {
+    pub(super) fn flush(&mut self) {
         assert_eq!(
             self.bound.len(),
             self.pipeline.slots.len(),
@@ -406,82 +407,3 @@ impl<'r> Pass<'r> {
 }
 
 type AttachmentInfo = vk::RenderingAttachmentInfo<'static>;
-
-/// The draws inside a pass.
-pub struct Draws<'p, 'r> {
-    pass: &'p mut Pass<'r>,
-}
-
-impl<'r> Draws<'_, 'r> {
-    /// Binds a texture for the following draws. It was uploaded before the frame, so it needs no barrier.
-    ///
-    /// # Panics
-    /// When the image is not in the sampled state.
-    pub fn texture(&mut self, name: &str, image: &Image, sampler: Sampler) {
-        assert_eq!(
-            image.last_use(),
-            Use::Sampled,
-            "{} was not uploaded",
-            image.name()
-        );
-        self.pass.bind_image(name, image, sampler);
-    }
-
-    /// Goes on with another pipeline that declares the same.
-    ///
-    /// # Panics
-    /// When it does not.
-    pub fn pipeline(&mut self, pipeline: &'r Pipeline) {
-        assert!(
-            pipeline.is_variant_of(self.pass.pipeline),
-            "pass {}",
-            self.pass.name
-        );
-        self.pass.pipeline = pipeline;
-        self.pass.changed = true;
-        let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
-        // SAFETY: the command buffer is inside the rendering of this pass.
-        unsafe {
-            raw.cmd_bind_pipeline(command, vk::PipelineBindPoint::GRAPHICS, pipeline.raw());
-        }
-    }
-
-    /// Replaces the push constants for the following draws.
-    pub fn push<T: GpuStruct>(&mut self, value: &T) {
-        self.pass.set_push(value);
-    }
-
-    /// Sets the vertex streams, one for each location, and the 32-bit indices.
-    pub fn geometry(&mut self, streams: &[&Buffer], indices: &Buffer) {
-        assert_eq!(
-            streams.len(),
-            self.pass.pipeline.streams,
-            "pass {}",
-            self.pass.name
-        );
-        let buffers: ArrayVec<vk::Buffer, 8> = streams.iter().map(|b| b.raw()).collect();
-        let offsets: ArrayVec<u64, 8> = streams.iter().map(|_| 0).collect();
-        let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
-        // SAFETY: the buffers are alive and were made for this use.
-        unsafe {
-            raw.cmd_bind_vertex_buffers(command, 0, &buffers, &offsets);
-            raw.cmd_bind_index_buffer(command, indices.raw(), 0, vk::IndexType::UINT32);
-        }
-    }
-
-    /// Draws a range of the indices.
-    pub fn indexed(&mut self, first: u32, count: u32) {
-        self.pass.flush();
-        let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
-        // SAFETY: the range lies within the bound index buffer (checked when the scene was loaded).
-        unsafe { raw.cmd_draw_indexed(command, count, 1, first, 0, 0) };
-    }
-
-    /// Draws three vertices without vertex data.
-    pub fn triangle(&mut self) {
-        self.pass.flush();
-        let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
-        // SAFETY: the pipeline has no vertex streams, so any vertex index is good.
-        unsafe { raw.cmd_draw(command, 3, 1, 0, 0) };
-    }
-}

@@ -1,0 +1,91 @@
+//! The draws inside a pass.
+
+use arrayvec::ArrayVec;
+use ash::vk;
+
+use super::access::Use;
+use super::buffer::Buffer;
+use super::context::Sampler;
+use super::image::Image;
+use super::layout::GpuStruct;
+use super::pass::Pass;
+use super::pipeline::Pipeline;
+
+/// The draws inside a pass.
+pub struct Draws<'p, 'r> {
+    pub(super) pass: &'p mut Pass<'r>,
+}
+
+impl<'r> Draws<'_, 'r> {
+    /// Binds a texture for the following draws. It was uploaded before the frame, so it needs no barrier.
+    ///
+    /// # Panics
+    /// When the image is not in the sampled state.
+    pub fn texture(&mut self, name: &str, image: &Image, sampler: Sampler) {
+        assert_eq!(
+            image.last_use(),
+            Use::Sampled,
+            "{} was not uploaded",
+            image.name()
+        );
+        self.pass.bind_image(name, image, sampler);
+    }
+
+    /// Goes on with another pipeline that declares the same.
+    ///
+    /// # Panics
+    /// When it does not.
+    pub fn pipeline(&mut self, pipeline: &'r Pipeline) {
+        assert!(
+            pipeline.is_variant_of(self.pass.pipeline),
+            "pass {}",
+            self.pass.name
+        );
+        self.pass.pipeline = pipeline;
+        self.pass.changed = true;
+        let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
+        // SAFETY: the command buffer is inside the rendering of this pass.
+        unsafe {
+            raw.cmd_bind_pipeline(command, vk::PipelineBindPoint::GRAPHICS, pipeline.raw());
+        }
+    }
+
+    /// Replaces the push constants for the following draws.
+    pub fn push<T: GpuStruct>(&mut self, value: &T) {
+        self.pass.set_push(value);
+    }
+
+    /// Sets the vertex streams, one for each location, and the 32-bit indices.
+    pub fn geometry(&mut self, streams: &[&Buffer], indices: &Buffer) {
+        assert_eq!(
+            streams.len(),
+            self.pass.pipeline.streams,
+            "pass {}",
+            self.pass.name
+        );
+        let buffers: ArrayVec<vk::Buffer, 8> = streams.iter().map(|b| b.raw()).collect();
+        let offsets: ArrayVec<u64, 8> = streams.iter().map(|_| 0).collect();
+        let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
+        // SAFETY: the buffers are alive and were made for this use.
+        unsafe {
+            raw.cmd_bind_vertex_buffers(command, 0, &buffers, &offsets);
+            raw.cmd_bind_index_buffer(command, indices.raw(), 0, vk::IndexType::UINT32);
+        }
+    }
+
+    /// Draws a range of the indices.
+    pub fn indexed(&mut self, first: u32, count: u32) {
+        self.pass.flush();
+        let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
+        // SAFETY: the range lies within the bound index buffer (checked when the scene was loaded).
+        unsafe { raw.cmd_draw_indexed(command, count, 1, first, 0, 0) };
+    }
+
+    /// Draws three vertices without vertex data.
+    pub fn triangle(&mut self) {
+        self.pass.flush();
+        let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
+        // SAFETY: the pipeline has no vertex streams, so any vertex index is good.
+        unsafe { raw.cmd_draw(command, 3, 1, 0, 0) };
+    }
+}

@@ -1,7 +1,7 @@
 //! `skylight bench`: milliseconds of each pass and of the whole frame.
 //!
-//! Each pass is submitted alone and waited for, because timestamps of software drivers are attributed to the wrong
-//! pass. The whole frame is one submission.
+//! Passes are timed by GPU timestamps; on software drivers, whose timestamps are attributed to the wrong pass, each pass
+//! is submitted alone and waited for. The whole frame is one submission.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use super::job::Job;
 use crate::error::Result;
 use crate::frame::Frame;
-use crate::gpu::{Recorder, Stopwatch, Timing};
+use crate::gpu::{DeviceSummary, Recorder, Stopwatch, Timing};
 use crate::output::{check_writable, print, write_text};
 use crate::passes::lighting::Precision;
 use crate::settings::Options;
@@ -34,7 +34,8 @@ pub fn run(
     options.samples = Some(1);
     let job = Job::new(scene, options)?;
     let context = job.context()?;
-    let passes = measure_passes(&job, Recorder::new(&context, Timing::Isolated)?, frames)?;
+    let timing = trustworthy(context.summary());
+    let passes = measure_passes(&job, Recorder::new(&context, timing)?, frames)?;
     let whole = measure_frames(&job, Recorder::new(&context, Timing::Off)?, frames)?;
     context.check_validation()?;
     if let Some(path) = json {
@@ -50,6 +51,15 @@ pub fn run(
         job.scene.triangles(),
         table(&passes, &whole)
     ))
+}
+
+/// How a device's passes can be timed: software drivers attribute timestamps to the wrong pass.
+fn trustworthy(device: &DeviceSummary) -> Timing {
+    if device.kind == "software" {
+        Timing::Isolated
+    } else {
+        Timing::Timestamps
+    }
 }
 
 /// Times of one name, milliseconds.
@@ -147,7 +157,13 @@ fn table(passes: &[(&'static str, Samples)], whole: &Samples) -> String {
 fn row(name: &str, times: &Samples) -> String {
     let [median, low, high] = [0.5, 0.05, 0.95].map(|q| quantile(&times.wall, q));
     let cpu = quantile(&times.cpu, 0.5);
-    format!("{name:30} {median:9.2} {low:9.2} {high:9.2} {cpu:9.2}\n")
+    // Timestamps know nothing of the CPU.
+    let cpu = if cpu.is_nan() {
+        "-".to_owned()
+    } else {
+        format!("{cpu:.2}")
+    };
+    format!("{name:30} {median:9.2} {low:9.2} {high:9.2} {cpu:>9}\n")
 }
 
 fn write_json(

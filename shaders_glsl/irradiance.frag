@@ -34,9 +34,18 @@ vec3 random_direction(inout uint t) {
     return vec3(cos(phi) * sin_theta, sin(phi) * sin_theta, sqrt(1.0 - xi1));
 }
 
+/// The frame turned around its normal, by angles that fill the circle evenly among neighbouring texels (the R2 sequence of
+/// Roberts 2018): their errors differ, and the bilinear lookup of the map averages them.
+mat3 turned(mat3 frame, vec2 texel, int face) {
+    float angle = 2.0 * PI * fract(dot(texel, vec2(0.7548776662, 0.5698402910)) + 0.6180339887 * float(face));
+    vec2 turn = vec2(cos(angle), sin(angle));
+    return mat3(turn.x * frame[0] + turn.y * frame[1], turn.x * frame[1] - turn.y * frame[0], frame[2]);
+}
+
 void main() {
     vec3 n = normalize(cube_direction(face, face_st));
     mat3 frame = frame_from_normal(n);
+    if (!MONTE_CARLO) frame = turned(frame, floor(gl_FragCoord.xy), face);
     uint edge = uint(textureSize(previous_sum, 0).x);
     uint texel = uint(gl_FragCoord.y) * edge + uint(gl_FragCoord.x);
     uint t = tea(texel, uint(face) + 6u * push.first);

@@ -16,6 +16,8 @@ layout(constant_id = 4) const bool ACES = false;
 layout(constant_id = 5) const bool GAMMA = false;
 // Exposure from the average luminance instead of the push constant.
 layout(constant_id = 6) const bool AUTO = false;
+// Ferschin's curve on luminance.
+layout(constant_id = 8) const bool EXPONENTIAL_LUMINANCE = false;
 // Show the luminance only.
 layout(constant_id = 7) const bool GREY = false;
 
@@ -36,6 +38,7 @@ void main() {
     if (GREY) c = vec3(luminance(c));
     c = max(c * exposure + push.offset, 0.0);
     if (EXPONENTIAL) c = tone_exponential(c);
+    if (EXPONENTIAL_LUMINANCE) c = tone_exponential_luminance(c);
     if (REINHARD) c = tone_reinhard(c, push.white);
     if (AGX) c = tone_agx(c);
     if (NEUTRAL) c = tone_neutral(c);

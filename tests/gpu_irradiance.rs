@@ -19,6 +19,9 @@ use skylight::daylight::sky::{Daylight, Sky};
 use skylight::passes::irradiance::{Irradiance, IrradianceSettings};
 use skylight::passes::sky_cube::SkyCube;
 
+/// Texels along a face of the maps that are tested; the program uses 32.
+const EDGE: u32 = 64;
+
 /// The two passes, without the rest of a frame.
 struct Light {
     sky: SkyCube,
@@ -33,7 +36,7 @@ impl Light {
         samples_per_pass: u32,
     ) -> Self {
         let settings = IrradianceSettings {
-            edge: 32,
+            edge: EDGE,
             method,
             samples,
             samples_per_pass,
@@ -64,7 +67,7 @@ impl Light {
         let sums = device.read(self.irradiance.sums()).into_iter();
         let mean = |t: [f32; 4]| DVec3::from_array(gpu::rgb(t)) / f64::from(t[3]);
         Cube {
-            edge: 32,
+            edge: EDGE as usize,
             texels: sums.map(mean).collect(),
         }
     }
@@ -204,8 +207,9 @@ fn check_reference(method: IrradianceMethod, samples: u32, rms_allowed: f64, lar
 
 #[test]
 fn quasi_meets_the_reference() {
-    // 1024 low-discrepancy samples of skies with a bright glow: the issue asks for 0.5 % rms.
-    check_reference(IrradianceMethod::Quasi, 1024, 5e-3, 0.03);
+    // What the project asks of low-discrepancy samples under skies with a bright glow: 0.3 % rms of 256, 0.1 % of 1024.
+    check_reference(IrradianceMethod::Quasi, 256, 3e-3, 0.02);
+    check_reference(IrradianceMethod::Quasi, 1024, 1e-3, 0.01);
 }
 
 #[test]
@@ -217,8 +221,8 @@ fn monte_carlo_meets_the_reference_within_its_noise() {
 
 #[test]
 fn the_exact_sum_meets_the_reference() {
-    // The sky's texels are stored in 16 bits, each up to 2^-10 too dark; the sum itself has no noise.
-    check_reference(IrradianceMethod::Exact, 1, 1e-3, 5e-3);
+    // No noise: what is left is the size of the coarse sky's texels.
+    check_reference(IrradianceMethod::Exact, 1, 5e-4, 3e-3);
 }
 
 #[test]
@@ -280,9 +284,9 @@ fn random_numbers_and_directions_are_the_cpus() {
     // One bilinear tap: the device's weights have 8 bits, so a 256th of the step between neighbouring texels, which is
     // largest at the horizon and in the glow.
     let mut worst = Worst::new("E of one sample against pi L(direction)", 5e-3);
-    for ((face, i, j), value) in texels(32).zip(&found.texels) {
-        let normal = skylight::daylight::cube::texel_direction(face, i, j, 32);
-        let direction = first_direction((j * 32 + i) as u32, face as u32, normal);
+    for ((face, i, j), value) in texels(EDGE as usize).zip(&found.texels) {
+        let normal = skylight::daylight::cube::texel_direction(face, i, j, EDGE as usize);
+        let direction = first_direction((j * EDGE as usize + i) as u32, face as u32, normal);
         // At the horizon the neighbours differ by all of the sky.
         if direction.y.abs() < 2.0 / 256.0 {
             continue;

@@ -116,3 +116,33 @@ fn a_sky_is_drawn_again_only_when_it_changes() {
         .collect();
     assert_eq!(drawn, [true, false, true, false, true]);
 }
+
+/// The guard holds on the device too: no input gives a texel that is not finite or negative.
+#[test]
+fn no_input_gives_a_bad_texel() {
+    let mut device = Device::new();
+    let mut cube = SkyCube::new(&device.context, 16).expect("a sky cube");
+    let mut values = 0u64;
+    for model in &MODELS {
+        for turbidity in [-5.0, 0.0, 1.0, 1.65, 2.0, 5.0, 10.0, 50.0] {
+            for elevation in (-18..=18).map(|step| f64::from(step) * 5.0) {
+                let daylight = Daylight::new(&Conditions {
+                    model: *model,
+                    turbidity,
+                    sun_elevation_deg: elevation,
+                    sun_azimuth_deg: 37.0,
+                    ..Conditions::default()
+                });
+                for texel in draw(&mut device, &mut cube, &daylight).texels {
+                    assert!(
+                        texel.is_finite() && texel.min_element() >= 0.0,
+                        "{model:?} {turbidity} {elevation}: {texel}"
+                    );
+                    values += 3;
+                }
+            }
+        }
+    }
+    println!("{values} values are finite and not negative");
+    assert!(values > 1_000_000);
+}

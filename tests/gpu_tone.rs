@@ -33,13 +33,18 @@ const fn case(column: &'static str, constant: Option<&'static str>, exposure: f3
 }
 
 /// Parameters from the file's comment line: k 0.7, gamma 2.2, L_avg 0.6, key 0.18, L_logavg 0.4, L_white 3.
-fn cases() -> [Case; 6] {
+fn cases() -> [Case; 7] {
     [
         Case {
             gamma: Some(2.2),
             ..case("linear_gamma", None, 0.7)
         },
         case("ferschin_perchannel", Some("EXPONENTIAL"), 1.0 / 0.6),
+        case(
+            "ferschin_luminance",
+            Some("EXPONENTIAL_LUMINANCE"),
+            1.0 / 0.6,
+        ),
         case("reinhard_lum_white", Some("REINHARD"), 0.18 / 0.4),
         case("khronos_neutral", Some("NEUTRAL"), 1.0),
         case("agx_base_linear", Some("AGX"), 1.0),

@@ -5,6 +5,12 @@ vec3 tone_exponential(vec3 c) {
     return 1.0 - exp(-c);
 }
 
+/// The same on luminance, the colour kept: channels may exceed 1.
+vec3 tone_exponential_luminance(vec3 c) {
+    float l = luminance(c);
+    return l > 0.0 ? c * ((1.0 - exp(-l)) / l) : vec3(0.0);
+}
+
 /// Reinhard et al. 2002, eq. 4, on luminance: white is the luminance that maps to 1.
 vec3 tone_reinhard(vec3 c, float white) {
     float l = luminance(c);

@@ -22,6 +22,8 @@ pub enum ToneCurve {
     Linear,
     /// Ferschin's exponential per channel (the lecture's other one).
     Exponential,
+    /// The same on luminance, the colour kept.
+    ExponentialLuminance,
     /// Reinhard et al. 2002, global operator with white at [`REINHARD_WHITE`], on luminance.
     Reinhard,
     /// AgX, base look.
@@ -39,6 +41,7 @@ impl ToneCurve {
         let mapped = match self {
             Self::Linear => rgb,
             Self::Exponential => exponential(rgb, 1.0),
+            Self::ExponentialLuminance => exponential_luminance(rgb, 1.0),
             Self::Reinhard => reinhard(rgb, 1.0, REINHARD_WHITE),
             Self::Agx => agx(rgb),
             Self::Neutral => neutral(rgb),
@@ -188,9 +191,10 @@ pub fn aces_hill(rgb: DVec3) -> DVec3 {
 mod tests {
     use super::*;
 
-    const CURVES: [ToneCurve; 6] = [
+    const CURVES: [ToneCurve; 7] = [
         ToneCurve::Linear,
         ToneCurve::Exponential,
+        ToneCurve::ExponentialLuminance,
         ToneCurve::Reinhard,
         ToneCurve::Agx,
         ToneCurve::Neutral,

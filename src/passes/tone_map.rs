@@ -85,6 +85,10 @@ impl ToneMap {
                 depth: Depth::Off,
                 constants: &[
                     ("EXPONENTIAL", curve(ToneCurve::Exponential)),
+                    (
+                        "EXPONENTIAL_LUMINANCE",
+                        curve(ToneCurve::ExponentialLuminance),
+                    ),
                     ("REINHARD", curve(ToneCurve::Reinhard)),
                     ("AGX", curve(ToneCurve::Agx)),
                     ("NEUTRAL", curve(ToneCurve::Neutral)),

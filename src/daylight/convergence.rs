@@ -7,6 +7,7 @@ use super::irradiance::{
     ExactIrradiance, IrradianceMethod, SphericalHarmonics, monte_carlo, quasi,
 };
 use super::quadrature::SphereQuadrature;
+use super::refinement::normals;
 
 /// Numbers of samples of the two sampling methods.
 pub const SAMPLES: [u32; 9] = [16, 32, 64, 128, 256, 512, 1024, 2048, 4096];
@@ -28,18 +29,6 @@ pub struct Convergence {
     pub rms: f64,
 }
 
-/// The 26 directions to the faces, edges and corners of a cube: the normals of the reference data.
-pub fn reference_normals() -> Vec<DVec3> {
-    let steps = [-1.0, 0.0, 1.0];
-    let all = steps.into_iter().flat_map(|x| {
-        let rows = steps.into_iter();
-        rows.flat_map(move |y| steps.map(|z| DVec3::new(x, y, z)))
-    });
-    all.filter(|n| *n != DVec3::ZERO)
-        .map(DVec3::normalize)
-        .collect()
-}
-
 /// E at each of `normals` by 256 × 512 nodes per hemisphere: within 1e-5 of E(up) of 512 × 1024 for the skies of this crate.
 pub fn reference(radiance: impl Fn(DVec3) -> DVec3, normals: &[DVec3]) -> Vec<DVec3> {
     let nodes: Vec<_> = SphereQuadrature::sphere(256, 512)
@@ -56,7 +45,7 @@ pub fn reference(radiance: impl Fn(DVec3) -> DVec3, normals: &[DVec3]) -> Vec<DV
 
 /// Every method with every number of samples for one sky.
 pub fn study(radiance: impl Fn(DVec3) -> DVec3) -> Vec<Convergence> {
-    let normals = reference_normals();
+    let normals = normals().collect::<Vec<_>>();
     let expected = reference(&radiance, &normals);
     let rms = |runs: u32, e: &dyn Fn(usize, u32) -> DVec3| {
         let up = reference_up(&normals, &expected);

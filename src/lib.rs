@@ -22,6 +22,7 @@
 //! - [`scene`]: models, materials, textures, cameras, scene files; no device.
 //! - [`gpu`]: Vulkan nouns; knows no pass by name.
 //! - [`passes`]: one file a pass; [`frame`] owns them.
+//! - [`lecture`]: every formula of the slides with its function, shader and test.
 //! - [`cli`] and [`settings`]: text to settings. [`faces`]: drivers of the one frame. [`output`]: files, whole or not at all.
 //!
 //! Imports run one way: faces → frame → passes → gpu, scene, daylight; the last three import nothing of ours.

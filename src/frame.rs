@@ -214,11 +214,6 @@ impl Frame {
         self.exposure.image()
     }
 
-    /// Number of triangles.
-    pub fn triangles(&self) -> u32 {
-        self.geometry.triangles()
-    }
-
     fn sample(&self, daylight: &Daylight, index: u32) -> Sample {
         let centre = daylight.sun_direction.as_vec3();
         if self.settings.samples <= 1 {

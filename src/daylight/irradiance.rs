@@ -73,6 +73,13 @@ pub enum IrradianceMethod {
     Sh,
 }
 
+impl IrradianceMethod {
+    /// Whether it draws directions, so that more of them lower its error.
+    pub fn is_sampled(self) -> bool {
+        matches!(self, Self::MonteCarlo | Self::Quasi)
+    }
+}
+
 /// Texels along an edge of the cube that [`IrradianceMethod::Exact`] sums here: 2e-5 of E(up) rms, 1.3e-4 at worst.
 pub const EXACT_CUBE_SIZE: usize = 64;
 

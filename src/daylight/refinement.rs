@@ -154,7 +154,7 @@ impl Refinement {
             IrradianceMethod::Quasi => self.quasi_error(count) <= error,
             IrradianceMethod::Exact | IrradianceMethod::Sh => true,
         };
-        if matches!(method, IrradianceMethod::Exact | IrradianceMethod::Sh) || self.up <= 0.0 {
+        if !method.is_sampled() || self.up <= 0.0 {
             return 1;
         }
         let mut counts =

@@ -141,9 +141,14 @@ impl Job {
         let lecture = s.preset == Some(Preset::Lecture);
         let samples_per_pass = if lecture { 5 } else { default.samples_per_pass };
         let method = s.irradiance;
-        let refinement = Refinement::new(|direction| self.daylight.radiance(direction));
-        let error = s.irradiance_error / 100.0;
-        let samples = refinement.samples(method, error, s.irradiance_samples);
+        let (error, most) = (s.irradiance_error / 100.0, s.irradiance_samples);
+        // The estimate takes milliseconds: only where it can spare samples.
+        let samples = if method.is_sampled() && error > 0.0 {
+            let refinement = Refinement::new(|direction| self.daylight.radiance(direction));
+            refinement.samples(method, error, most)
+        } else {
+            most
+        };
         IrradianceSettings {
             method,
             samples,

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
-    Sampler, shaders,
+    Context, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
 };
 use crate::gpu_struct;
+
+use super::fullscreen;
 
 gpu_struct! {
     /// How many frames there are.
@@ -28,16 +29,12 @@ impl Accumulate {
     /// When the device refuses.
     pub fn new(context: &Arc<Context>, size: [u32; 2]) -> Result<Self> {
         let format = Format::R32G32B32A32_SFLOAT;
-        let pipeline = Pipeline::new(
+        let pipeline = fullscreen(
             context,
-            &PipelineDesc {
-                name: "accumulate",
-                stages: &[&shaders::FULLSCREEN_VERT, &shaders::ACCUMULATE_FRAG],
-                vertex: &[],
-                colors: &[format],
-                depth: Depth::Off,
-                constants: &[],
-            },
+            "accumulate",
+            &shaders::ACCUMULATE_FRAG,
+            format,
+            &[],
         )?;
         let image = |name| Image::new(context, &ImageDesc::flat(name, format, size));
         Ok(Self {

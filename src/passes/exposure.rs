@@ -5,10 +5,11 @@ use std::sync::Arc;
 use glam::IVec2;
 
 use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
-    Sampler, Shader, shaders,
+    Context, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
 };
 use crate::gpu_struct;
+
+use super::fullscreen;
 
 gpu_struct! {
     /// Size of the tiling.
@@ -27,33 +28,16 @@ pub struct Exposure {
     average: Image,
 }
 
-fn pipeline(context: &Arc<Context>, name: &str, fragment: &'static Shader) -> Result<Pipeline> {
-    Pipeline::new(
-        context,
-        &PipelineDesc {
-            name,
-            stages: &[&shaders::FULLSCREEN_VERT, fragment],
-            vertex: &[],
-            colors: &[Format::R32_SFLOAT],
-            depth: Depth::Off,
-            constants: &[],
-        },
-    )
-}
-
 impl Exposure {
     /// # Errors
     /// When the device refuses.
     pub fn new(context: &Arc<Context>) -> Result<Self> {
         let image =
             |name, size| Image::new(context, &ImageDesc::flat(name, Format::R32_SFLOAT, size));
+        let tile = |name, fragment| fullscreen(context, name, fragment, Format::R32_SFLOAT, &[]);
         Ok(Self {
-            tiles_pipeline: pipeline(context, "log luminance", &shaders::LOG_LUMINANCE_FRAG)?,
-            average_pipeline: pipeline(
-                context,
-                "average luminance",
-                &shaders::AVERAGE_LUMINANCE_FRAG,
-            )?,
+            tiles_pipeline: tile("log luminance", &shaders::LOG_LUMINANCE_FRAG)?,
+            average_pipeline: tile("average luminance", &shaders::AVERAGE_LUMINANCE_FRAG)?,
             tiles: image("log luminance of tiles", TILES)?,
             average: image("average luminance", [1, 1])?,
         })

@@ -134,11 +134,6 @@ impl Gbuffer {
             });
         &self.surfaces
     }
-
-    /// The images.
-    pub fn surfaces(&self) -> &Surfaces {
-        &self.surfaces
-    }
 }
 
 #[cfg(test)]

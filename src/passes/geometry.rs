@@ -132,11 +132,6 @@ impl Geometry {
         &self.materials
     }
 
-    /// Number of triangles.
-    pub fn triangles(&self) -> u32 {
-        self.index_count / 3
-    }
-
     /// Draws everything, positions only.
     pub fn draw_positions(&self, draws: &mut Draws<'_, '_>) {
         if self.index_count > 0 {

@@ -68,15 +68,6 @@ impl Default for IrradianceSettings {
     }
 }
 
-impl IrradianceSettings {
-    fn is_sampled(&self) -> bool {
-        matches!(
-            self.method,
-            IrradianceMethod::MonteCarlo | IrradianceMethod::Quasi
-        )
-    }
-}
-
 /// The pass, its running sums and the map.
 pub struct Irradiance {
     settings: IrradianceSettings,
@@ -164,7 +155,7 @@ impl Irradiance {
 
     /// Whether all samples are in.
     pub fn is_complete(&self) -> bool {
-        let wanted = if self.settings.is_sampled() {
+        let wanted = if self.settings.method.is_sampled() {
             self.settings.samples
         } else {
             1

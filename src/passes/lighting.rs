@@ -236,11 +236,6 @@ impl Lighting {
         })
     }
 
-    /// How it was set.
-    pub fn settings(&self) -> &LightingSettings {
-        &self.settings
-    }
-
     /// Lights the surfaces; other pixels are left to [`super::background::Background`].
     pub fn record(
         &mut self,

@@ -16,9 +16,34 @@ pub mod ssao;
 pub mod tone_map;
 pub mod view;
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec3};
+
+use crate::gpu::{Context, Depth, Format, Pipeline, PipelineDesc, Result, Shader, shaders};
 
 /// cd/m² to kcd/m², lux to klx.
 fn kilo(rgb: DVec3) -> Vec3 {
     (rgb * 1e-3).as_vec3()
+}
+
+/// A pipeline that runs a fragment shader on every pixel of one target.
+fn fullscreen(
+    context: &Arc<Context>,
+    name: &str,
+    fragment: &'static Shader,
+    target: Format,
+    constants: &[(&str, u32)],
+) -> Result<Pipeline> {
+    Pipeline::new(
+        context,
+        &PipelineDesc {
+            name,
+            stages: &[&shaders::FULLSCREEN_VERT, fragment],
+            vertex: &[],
+            colors: &[target],
+            depth: Depth::Off,
+            constants,
+        },
+    )
 }

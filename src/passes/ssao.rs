@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
-    Sampler, Shader, shaders,
+    Context, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
 };
 use crate::gpu_struct;
 
+use super::fullscreen;
 use super::gbuffer::Surfaces;
 use super::view::View;
 
@@ -55,25 +55,6 @@ pub struct Ssao {
 /// A in the first channel, distance along the view axis (m) in the second, for depth-aware filters.
 const FORMAT: Format = Format::R16G16_SFLOAT;
 
-fn pipeline(
-    context: &Arc<Context>,
-    name: &str,
-    fragment: &'static Shader,
-    constants: &[(&str, u32)],
-) -> Result<Pipeline> {
-    Pipeline::new(
-        context,
-        &PipelineDesc {
-            name,
-            stages: &[&shaders::FULLSCREEN_VERT, fragment],
-            vertex: &[],
-            colors: &[FORMAT],
-            depth: Depth::Off,
-            constants,
-        },
-    )
-}
-
 impl Ssao {
     /// For pictures of `size` pixels.
     ///
@@ -89,16 +70,11 @@ impl Ssao {
         let image = |name| Image::new(context, &ImageDesc::flat(name, FORMAT, half));
         Ok(Self {
             settings,
-            trace: pipeline(context, "SSAO", &shaders::SSAO_FRAG, &constants)?,
-            blur: pipeline(context, "SSAO blur", &shaders::SSAO_BLUR_FRAG, &[])?,
+            trace: fullscreen(context, "SSAO", &shaders::SSAO_FRAG, FORMAT, &constants)?,
+            blur: fullscreen(context, "SSAO blur", &shaders::SSAO_BLUR_FRAG, FORMAT, &[])?,
             noisy: image("occlusion, noisy")?,
             smooth: image("occlusion")?,
         })
-    }
-
-    /// How it was set.
-    pub fn settings(&self) -> &SsaoSettings {
-        &self.settings
     }
 
     /// Computes A for the surfaces in view. `phase` (0..1) turns the noise from frame to frame.

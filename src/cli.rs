@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::error::ErrorKind;
 use clap::{Arg, Parser, Subcommand};
 
-use crate::faces::{BakeWishes, SkyWishes};
+use crate::faces::{BakeWishes, Motion, SkyWishes};
 use crate::settings::{Options, one_line};
 
 /// What the user wants done.
@@ -33,6 +33,9 @@ pub enum Command {
         /// Frames to measure.
         #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
         frames: u32,
+        /// What moves from frame to frame while whole frames are timed.
+        #[arg(long, value_name = "WHAT", value_enum, default_value_t)]
+        motion: Motion,
         /// How.
         #[command(flatten)]
         options: Box<Options>,

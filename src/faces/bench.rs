@@ -8,6 +8,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::job::Job;
+use super::motion::Motion;
 use crate::error::Result;
 use crate::frame::Frame;
 use crate::gpu::{DeviceSummary, Recorder, Stopwatch, Timing};
@@ -26,6 +27,7 @@ pub fn run(
     scene: Option<&Path>,
     json: Option<&Path>,
     frames: u32,
+    motion: Motion,
     mut options: Options,
 ) -> Result<()> {
     if let Some(path) = json {
@@ -36,10 +38,10 @@ pub fn run(
     let context = job.context()?;
     let timing = trustworthy(context.summary());
     let passes = measure_passes(&job, Recorder::new(&context, timing)?, frames)?;
-    let whole = measure_frames(&job, Recorder::new(&context, Timing::Off)?, frames)?;
+    let whole = measure_frames(&job, Recorder::new(&context, Timing::Off)?, frames, motion)?;
     context.check_validation()?;
     if let Some(path) = json {
-        write_json(path, &job, &passes, &whole)?;
+        write_json(path, &job, &passes, (motion, &whole))?;
     }
     let (device, size) = (context.summary(), job.settings.size);
     print(&format!(
@@ -49,7 +51,7 @@ pub fn run(
         size.width,
         size.height,
         job.scene.triangles(),
-        table(&passes, &whole)
+        table(&passes, motion, &whole)
     ))
 }
 
@@ -104,8 +106,13 @@ fn measure_passes(
     Ok(passes)
 }
 
-/// The whole frame with sky, irradiance and shadow map done.
-fn measure_frames(job: &Job, mut recorder: Recorder, frames: u32) -> Result<Samples> {
+/// The whole frame; what does not move was drawn before.
+fn measure_frames(
+    job: &Job,
+    mut recorder: Recorder,
+    frames: u32,
+    motion: Motion,
+) -> Result<Samples> {
     let mut frame = start(job, &mut recorder)?;
     while !frame.is_refined() {
         recorder.begin()?;
@@ -114,9 +121,11 @@ fn measure_frames(job: &Job, mut recorder: Recorder, frames: u32) -> Result<Samp
     }
     let mut times = Samples::default();
     for i in 0..WARM_UP + frames {
+        let camera = motion.camera(&job.camera, i);
         let start = Stopwatch::start();
+        let daylight = motion.daylight(job, i);
         recorder.begin()?;
-        frame.record(&mut recorder, &job.daylight, &job.camera, 0);
+        frame.record(&mut recorder, &daylight, &camera, 0);
         recorder.finish()?;
         if i >= WARM_UP {
             let (wall, cpu) = start.elapsed_ms();
@@ -145,13 +154,13 @@ fn quantile(samples: &[f64], q: f64) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
-fn table(passes: &[(&'static str, Samples)], whole: &Samples) -> String {
+fn table(passes: &[(&'static str, Samples)], motion: Motion, whole: &Samples) -> String {
     let head = format!(
         "{:30} {:>9} {:>9} {:>9} {:>9}\n",
         "milliseconds", "median", "p5", "p95", "CPU"
     );
     let rows = passes.iter().map(|(name, times)| row(name, times));
-    head + &rows.collect::<String>() + &row("whole frame, light unchanged", whole)
+    head + &rows.collect::<String>() + &row(motion.frame_name(), whole)
 }
 
 fn row(name: &str, times: &Samples) -> String {
@@ -170,7 +179,7 @@ fn write_json(
     path: &Path,
     job: &Job,
     passes: &[(&'static str, Samples)],
-    whole: &Samples,
+    (motion, whole): (Motion, &Samples),
 ) -> Result<()> {
     let times = |t: &Samples| {
         let [median, low, high] = [0.5, 0.05, 0.95].map(|q| quantile(&t.wall, q));
@@ -191,6 +200,7 @@ fn write_json(
         "size": [size.width, size.height],
         "triangles": job.scene.triangles(),
         "passes": passes,
+        "motion": motion.frame_name(),
         "frame": times(whole),
     });
     write_text(path, &format!("{report:#}\n"))

@@ -5,6 +5,7 @@ mod bench;
 mod info;
 mod job;
 mod light;
+mod motion;
 mod panorama;
 mod plot_spectrum;
 mod plot_study;
@@ -14,6 +15,7 @@ mod sky_report;
 mod sky_table;
 
 pub use bake::{BakeWishes, Layout, Map};
+pub use motion::Motion;
 pub use sky::SkyWishes;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -36,8 +38,9 @@ pub fn run(command: Command) -> Result<()> {
             scene,
             json,
             frames,
+            motion,
             options,
-        } => bench::run(scene.as_deref(), json.as_deref(), frames, *options),
+        } => bench::run(scene.as_deref(), json.as_deref(), frames, motion, *options),
         Command::Sky { wishes, options } => sky::run(&wishes, *options),
         Command::Bake { wishes, options } => bake::run(&wishes, *options),
         Command::Info => info::run(),

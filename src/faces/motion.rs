@@ -1,0 +1,89 @@
+//! What changes from frame to frame while frames are timed.
+
+use std::borrow::Cow;
+
+use clap::ValueEnum;
+use glam::Quat;
+
+use super::job::Job;
+use super::light::conditions;
+use crate::daylight::sky::Daylight;
+use crate::scene::Camera;
+
+/// What moves while whole frames are timed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum Motion {
+    /// Nothing: every frame shows the same.
+    None,
+    /// The camera, every frame: nothing of the view can be reused.
+    #[default]
+    Camera,
+    /// Camera and sun, every frame: sky, irradiance and shadow map begin anew.
+    Sun,
+}
+
+/// Turn of the camera about its target between two frames, radians: a slow walk around.
+const CAMERA_STEP: f32 = 0.002;
+/// Frames after which the camera turns round, so that it stays near the view that was asked for.
+const CAMERA_SWING: u32 = 64;
+/// The sun's way between two frames, degrees of azimuth: that of a minute.
+const SUN_STEP_DEG: f64 = 0.25;
+
+impl Motion {
+    /// The camera of frame number `index`.
+    pub fn camera(self, camera: &Camera, index: u32) -> Camera {
+        if self == Self::None {
+            return *camera;
+        }
+        // There and back again: 0 1 2 .. 63 64 63 .. 1 0.
+        let phase = index % (2 * CAMERA_SWING);
+        let step = phase.min(2 * CAMERA_SWING - phase);
+        let turn = Quat::from_rotation_y(CAMERA_STEP * step as f32);
+        Camera {
+            eye: camera.target + turn * (camera.eye - camera.target),
+            ..*camera
+        }
+    }
+
+    /// The daylight of frame number `index`.
+    pub fn daylight(self, job: &Job, index: u32) -> Cow<'_, Daylight> {
+        if self != Self::Sun {
+            return Cow::Borrowed(&job.daylight);
+        }
+        let mut sun = job.sun;
+        sun.azimuth_deg += SUN_STEP_DEG * f64::from(index);
+        Cow::Owned(Daylight::new(&conditions(&job.settings, &sun)))
+    }
+
+    /// What the row of the whole frame is called.
+    pub fn frame_name(self) -> &'static str {
+        match self {
+            Self::None => "whole frame, nothing moves",
+            Self::Camera => "whole frame, camera moves",
+            Self::Sun => "whole frame, sun and camera",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    #[test]
+    fn the_camera_moves_every_frame_and_comes_back() {
+        let camera = Camera {
+            eye: Vec3::new(4.0, 2.0, 9.0),
+            target: Vec3::new(0.0, 1.0, 0.0),
+            fov_deg: 50.0,
+            near: 0.01,
+        };
+        for i in 0..3 * CAMERA_SWING {
+            let [a, b] = [i, i + 1].map(|i| Motion::Camera.camera(&camera, i));
+            assert!((a.eye - b.eye).length() > 0.01, "frame {i}");
+            assert!((a.eye - camera.eye).length() < 1.5, "frame {i}");
+            assert_eq!(Motion::None.camera(&camera, i), camera);
+        }
+    }
+}

@@ -5,7 +5,7 @@ mod common;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use skylight::scene::{LoadOptions, Loaded, Scene, load};
+use skylight::scene::{LoadOptions, Loaded, Scene, load, load_telling};
 
 /// Files of the shared folder that are rightly refused, and a part of the line that says why.
 const REFUSED: [(&str, &str); 12] = [
@@ -421,4 +421,22 @@ fn scene_files_cannot_go_round_in_circles() {
         typo.contains("turbidty") && typo.contains("known are sky, turbidity"),
         "{typo}"
     );
+}
+
+#[test]
+fn loading_tells_how_far_it_is_from_another_thread() {
+    let told = std::sync::Mutex::new(Vec::new());
+    let tell = |share: f32, stage: &'static str| told.lock().expect("told").push((share, stage));
+    let scene = std::thread::scope(|threads| {
+        let loading =
+            threads.spawn(|| load_telling(None, &LoadOptions::default(), &tell).expect("bundled"));
+        loading.join().expect("loaded").scene
+    });
+    assert!(scene.triangles() > 0);
+    let told = told.into_inner().expect("told");
+    assert!(
+        told.len() > 3 && told.is_sorted_by(|a, b| a.0 <= b.0),
+        "{told:?}"
+    );
+    assert_eq!(told.last().map(|t| t.0), Some(1.0));
 }

@@ -4,23 +4,27 @@ use std::path::Path;
 
 use super::files::Files;
 use super::material::Material;
+use super::progress::Reporter;
 use super::texture::TextureStore;
 use super::{LoadOptions, Scene};
 
 /// A scene in the making, and where its files come from.
 #[derive(Debug)]
-pub(super) struct Builder {
+pub(super) struct Builder<'p> {
     pub scene: Scene,
     pub files: Files,
     pub textures: TextureStore,
+    /// Of the model that is being added.
+    pub progress: Reporter<'p>,
 }
 
-impl Builder {
-    pub fn new(files: Files, options: &LoadOptions) -> Self {
+impl<'p> Builder<'p> {
+    pub fn new(files: Files, options: &LoadOptions, progress: Reporter<'p>) -> Self {
         Self {
             scene: Scene::default(),
             files,
             textures: TextureStore::new(options),
+            progress,
         }
     }
 

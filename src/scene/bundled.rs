@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::files::Files;
-use super::{LoadOptions, Loaded, SceneError, load_from};
+use super::{LoadOptions, Loaded, Progress, SceneError, load_from};
 
 /// The files of the bundled scene; `examples/make_colonnade.rs` makes the model.
 static FILES: &[(&str, &[u8])] = &[
@@ -26,7 +26,19 @@ static FILES: &[(&str, &[u8])] = &[
 /// # Errors
 /// None with the files of the project; a test loads it.
 pub fn bundled(options: &LoadOptions) -> Result<Loaded, SceneError> {
-    load_from(Files::Embedded(FILES), Path::new("colonnade.toml"), options)
+    load_bundled(options, &|_, _| ())
+}
+
+pub(super) fn load_bundled(
+    options: &LoadOptions,
+    progress: Progress<'_>,
+) -> Result<Loaded, SceneError> {
+    load_from(
+        Files::Embedded(FILES),
+        Path::new("colonnade.toml"),
+        options,
+        progress,
+    )
 }
 
 #[cfg(test)]

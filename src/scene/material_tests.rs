@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::scene::LoadOptions;
+use crate::scene::progress::Reporter;
 
 static FILES: &[(&str, &[u8])] = &[
     ("a b.mtl", b""),
@@ -10,7 +11,8 @@ static FILES: &[(&str, &[u8])] = &[
 ];
 
 fn read(mtl: &str) -> Vec<Material> {
-    let mut builder = Builder::new(Files::Embedded(FILES), &LoadOptions::default());
+    let progress = Reporter::new(&|_, _| ());
+    let mut builder = Builder::new(Files::Embedded(FILES), &LoadOptions::default(), progress);
     let mut libraries = Libraries::default();
     libraries.add(&mut builder, Path::new("m.mtl"), mtl);
     let (materials, _) = tobj::load_mtl_buf(&mut libraries.text.as_bytes()).expect("clean text");

@@ -13,6 +13,7 @@ mod material;
 mod normals;
 mod obj;
 mod obj_text;
+mod progress;
 mod scene_file;
 mod soup;
 mod texture;
@@ -27,12 +28,14 @@ pub use bundled::bundled;
 pub use camera::{Camera, DEFAULT_FOV_DEG};
 pub use error::SceneError;
 pub use material::Material;
+pub use progress::Progress;
 pub use scene_file::NamedCamera;
 pub use texture::Texture;
 
 use builder::Builder;
 use files::Files;
 use obj::{Placement, append_obj};
+use progress::Reporter;
 
 /// Everything there is to see: one arena of vertices, the parts that draw them, and what they look like.
 #[derive(Debug, Clone, PartialEq)]
@@ -138,17 +141,35 @@ pub struct Loaded {
 /// One line that names the file, for whatever keeps the scene from being shown. A missing material library or texture is
 /// a line in [`Scene::warnings`] instead.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
-    load_from(
-        Files::Disk {
-            max_bytes: options.max_file_bytes,
-        },
-        path,
-        options,
-    )
+    load_telling(Some(path), options, &|_, _| ())
 }
 
-fn load_from(files: Files, path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
-    let mut builder = Builder::new(files, options);
+/// As [`load`], or the bundled scene without a path, telling how far it is. It needs no device and may run on any thread,
+/// so that an event loop can go on meanwhile.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_telling(
+    path: Option<&Path>,
+    options: &LoadOptions,
+    progress: Progress<'_>,
+) -> Result<Loaded, SceneError> {
+    let disk = Files::Disk {
+        max_bytes: options.max_file_bytes,
+    };
+    match path {
+        Some(path) => load_from(disk, path, options, progress),
+        None => bundled::load_bundled(options, progress),
+    }
+}
+
+fn load_from(
+    files: Files,
+    path: &Path,
+    options: &LoadOptions,
+    progress: Progress<'_>,
+) -> Result<Loaded, SceneError> {
+    let mut builder = Builder::new(files, options, Reporter::new(progress));
     let extension = path
         .extension()
         .map(|e| e.to_string_lossy().to_ascii_lowercase());
@@ -163,6 +184,7 @@ fn load_from(files: Files, path: &Path, options: &LoadOptions) -> Result<Loaded,
             (Vec::new(), Vec::new())
         }
     };
+    progress(1.0, "loaded");
     Ok(Loaded {
         path: path.to_owned(),
         scene: builder.scene,
@@ -173,7 +195,7 @@ fn load_from(files: Files, path: &Path, options: &LoadOptions) -> Result<Loaded,
 
 /// Adds a model of any known format.
 fn append_model(
-    builder: &mut Builder,
+    builder: &mut Builder<'_>,
     path: &Path,
     placement: &Placement,
 ) -> Result<(), SceneError> {

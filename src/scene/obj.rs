@@ -38,7 +38,9 @@ pub(super) fn append_obj(
     path: &Path,
     placement: &Placement,
 ) -> Result<(), SceneError> {
+    builder.progress.at(0.0, "reading");
     let text = builder.files.read_text(path)?;
+    builder.progress.at(0.1, "parsing");
     let malformed = |line, what| SceneError::Malformed {
         path: path.to_owned(),
         line,
@@ -47,6 +49,7 @@ pub(super) fn append_obj(
     let cleaned = obj_text::clean(&text).map_err(|e| malformed(e.line, e.what))?;
     drop(text);
     let folder = path.parent().unwrap_or(Path::new(""));
+    builder.progress.at(0.4, "reading materials");
     let libraries = Libraries::read(builder, path, folder, &cleaned.libraries);
     let (models, materials) =
         parse(&cleaned, &libraries).map_err(|(line, what)| malformed(line, what))?;
@@ -63,6 +66,7 @@ pub(super) fn append_obj(
         let material = numbers.of(builder, path, model.mesh.material_id);
         append_model(&mut soup, &model.mesh, material.unwrap_or(NONE), &mut faces);
     }
+    builder.progress.at(0.7, "building the mesh");
     soup.triangles.retain(|t| undrawn.keep(t.material));
     finish(builder, path, soup, placement, &cleaned, undrawn)
 }

@@ -73,7 +73,9 @@ pub(super) fn append_scene(
             .unwrap_or_default(),
     );
     let folder = path.parent().unwrap_or(Path::new(""));
-    for mesh in &meshes {
+    let whole = builder.progress;
+    for (i, mesh) in meshes.iter().enumerate() {
+        builder.progress = whole.part(i, meshes.len());
         append_model(builder, &folder.join(&mesh.file), &mesh.placement)?;
     }
     Ok((options, cameras))

@@ -11,6 +11,7 @@ fn load(toml: &str) -> Result<Loaded, String> {
         Files::Embedded(files.leak()),
         Path::new("dir/s.toml"),
         &LoadOptions::default(),
+        &|_, _| (),
     )
     .map_err(|error| error.to_string())
 }

@@ -1,0 +1,67 @@
+//! How far loading is: a fraction and a stage, told to whoever waits.
+
+/// Told the fraction done, 0..=1 and never falling, and the stage by name. It is called on the thread that loads and
+/// often, so it should be quick: set a value that the waiting thread reads.
+pub type Progress<'p> = &'p (dyn Fn(f32, &'static str) + Sync);
+
+/// Tells the progress of one part of the work as a stretch of the whole.
+#[derive(Clone, Copy)]
+pub(super) struct Reporter<'p> {
+    tell: Progress<'p>,
+    from: f32,
+    to: f32,
+}
+
+impl std::fmt::Debug for Reporter<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Reporter({}..{})", self.from, self.to)
+    }
+}
+
+impl<'p> Reporter<'p> {
+    /// The whole work.
+    pub fn new(tell: Progress<'p>) -> Self {
+        Self {
+            tell,
+            from: 0.0,
+            to: 1.0,
+        }
+    }
+
+    /// Part `index` of `count` equal parts.
+    pub fn part(self, index: usize, count: usize) -> Self {
+        let at = |i: usize| self.from + (self.to - self.from) * i as f32 / count.max(1) as f32;
+        Self {
+            from: at(index),
+            to: at(index + 1),
+            ..self
+        }
+    }
+
+    /// This share of the part, 0..=1, is done; the next thing is `stage`.
+    pub fn at(&self, share: f32, stage: &'static str) {
+        (self.tell)(self.from + (self.to - self.from) * share, stage);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+
+    #[test]
+    fn parts_fill_the_whole_in_order() {
+        let told = Mutex::new(Vec::new());
+        let tell = |share: f32, _: &'static str| told.lock().expect("one thread").push(share);
+        let whole = Reporter::new(&tell);
+        for i in 0..4 {
+            whole.part(i, 4).at(0.5, "half a part");
+        }
+        whole.at(1.0, "done");
+        assert_eq!(
+            *told.lock().expect("one thread"),
+            [0.125, 0.375, 0.625, 0.875, 1.0]
+        );
+    }
+}

@@ -13,6 +13,7 @@ mod render;
 mod sky;
 mod sky_report;
 mod sky_table;
+pub mod view;
 
 pub use bake::{BakeWishes, Layout, Map};
 pub use motion::Motion;

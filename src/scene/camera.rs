@@ -67,8 +67,14 @@ impl Camera {
     ///
     /// `fov_deg` is the vertical field of view in degrees, within (0, 180); `aspect` is width / height.
     pub fn framing(bounds: &Bounds, fov_deg: f32, aspect: f32) -> Self {
-        let target = bounds.centre();
         let toward_eye = direction(FRAMING_AZIMUTH_DEG, FRAMING_ELEVATION_DEG);
+        Self::framing_from(bounds, toward_eye, fov_deg, aspect)
+    }
+
+    /// A view of everything within `bounds` from the side of its middle where `toward_eye` points: a unit vector that is
+    /// not vertical. The other arguments are those of [`Camera::framing`].
+    pub fn framing_from(bounds: &Bounds, toward_eye: Vec3, fov_deg: f32, aspect: f32) -> Self {
+        let target = bounds.centre();
         let right = Vec3::Y.cross(toward_eye).normalize();
         let up = toward_eye.cross(right);
         let tan_y = (0.5 * fov_deg).to_radians().tan();

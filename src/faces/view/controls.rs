@@ -1,0 +1,397 @@
+//! The camera in the hand: orbit, pan, dolly, look, fly, frame the model, move to a viewpoint.
+//!
+//! Plain numbers in, a [`Camera`] out. The camera always stands upright: its pitch stays short of the vertical and
+//! it never rolls. Drags act at once; what moves by itself (flight, the way to a viewpoint) goes on in
+//! [`Controls::advance`], by closed forms of time, so that it does not depend on the rate of frames.
+
+use glam::DVec3;
+
+use crate::daylight::sun_position::{azimuth_elevation, direction};
+use crate::scene::{Bounds, Camera};
+
+/// Steepest pitch that a drag reaches, degrees: nearer to the vertical the heading gets lost in rounding.
+const MAX_PITCH_DEG: f64 = 89.5;
+/// Degrees that the model turns when dragged over the height of the picture.
+const ORBIT_DEG: f64 = 180.0;
+/// Degrees that the eye turns when the mouse moves by the height of the picture.
+const LOOK_DEG: f64 = 90.0;
+/// Share of the distance to the pivot that one step of the wheel leaves.
+const DOLLY_STEP: f64 = 0.85;
+/// Factor on the speed of flight by one step of the wheel.
+const SPEED_STEP: f64 = 1.25;
+/// Range of the factor that the wheel puts on the speed of flight.
+const SPEED_RANGE: (f64, f64) = (1.0 / 64.0, 64.0);
+/// Speed of flight, sizes of the scene a second.
+const CRUISE: f64 = 0.15;
+/// Factor of the fast key on the speed; the slow key divides by it.
+const FAST: f64 = 4.0;
+/// Time constant in which flight takes up speed and loses it, seconds.
+const INERTIA_S: f64 = 0.08;
+/// Longest time that one step advances, seconds: after a stall the flight goes on where it was.
+const LONGEST_STEP_S: f64 = 0.5;
+/// Time to a viewpoint, seconds.
+const TRAVEL_S: f64 = 0.35;
+/// Nearest and farthest that the pivot may be to the eye, and farthest from the scene, sizes of the scene.
+const REACH: (f64, f64) = (1e-4, 100.0);
+/// The target of the camera is no nearer than this share of the largest coordinate, or rounding would turn the camera.
+const TARGET_SHARE: f64 = 0.01;
+
+/// Movement of the pointer, in heights of the picture: right and down are positive.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Drag {
+    /// To the right.
+    pub right: f64,
+    /// Downward.
+    pub down: f64,
+}
+
+/// Which keys of flight are held.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct FlyKeys {
+    /// W: along the line of sight.
+    pub forward: bool,
+    /// S.
+    pub back: bool,
+    /// A.
+    pub left: bool,
+    /// D.
+    pub right: bool,
+    /// E: against gravity, wherever one looks.
+    pub up: bool,
+    /// Q.
+    pub down: bool,
+    /// Four times the speed.
+    pub fast: bool,
+    /// A quarter of the speed.
+    pub slow: bool,
+}
+
+/// Where the camera is, as one turns it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Pose {
+    /// What one orbits about and dollies to, metres.
+    pivot: DVec3,
+    /// Heading of the line of sight, degrees clockwise from north.
+    azimuth_deg: f64,
+    /// Its elevation, degrees.
+    elevation_deg: f64,
+    /// From the eye to the pivot, metres.
+    distance: f64,
+    /// Vertical, degrees.
+    fov_deg: f64,
+}
+
+impl Pose {
+    fn of(camera: &Camera) -> Self {
+        let (eye, target) = (camera.eye.as_dvec3(), camera.target.as_dvec3());
+        let sight = (target - eye)
+            .try_normalize()
+            .unwrap_or(camera.forward().as_dvec3());
+        let (azimuth, elevation_deg) = azimuth_elevation(sight);
+        // North is at the top of a camera that looks straight up: it has bent over backward from looking south.
+        let zenith = elevation_deg >= 90.0;
+        Self {
+            pivot: target,
+            azimuth_deg: if zenith { 180.0 } else { azimuth },
+            elevation_deg,
+            distance: eye.distance(target),
+            fov_deg: camera.fov_deg.into(),
+        }
+    }
+
+    fn forward(&self) -> DVec3 {
+        direction(self.azimuth_deg, self.elevation_deg)
+    }
+
+    /// Level, for the camera never rolls.
+    fn right(&self) -> DVec3 {
+        direction(self.azimuth_deg + 90.0, 0.0)
+    }
+
+    fn eye(&self) -> DVec3 {
+        self.pivot - self.forward() * self.distance
+    }
+
+    fn turn(&mut self, azimuth_deg: f64, elevation_deg: f64) {
+        self.azimuth_deg = (self.azimuth_deg + azimuth_deg).rem_euclid(360.0);
+        self.elevation_deg =
+            (self.elevation_deg + elevation_deg).clamp(-MAX_PITCH_DEG, MAX_PITCH_DEG);
+    }
+
+    /// The pose the share `t` (0..1) of the way to `other`.
+    fn toward(&self, other: &Self, t: f64) -> Self {
+        let turn = (other.azimuth_deg - self.azimuth_deg + 180.0).rem_euclid(360.0) - 180.0;
+        let mix = |a: f64, b: f64| a + (b - a) * t;
+        Self {
+            pivot: self.pivot.lerp(other.pivot, t),
+            azimuth_deg: self.azimuth_deg + turn * t,
+            elevation_deg: mix(self.elevation_deg, other.elevation_deg),
+            distance: self.distance.powf(1.0 - t) * other.distance.powf(t),
+            fov_deg: mix(self.fov_deg, other.fov_deg),
+        }
+    }
+}
+
+/// A move to another pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Travel {
+    from: Pose,
+    to: Pose,
+    elapsed_s: f64,
+}
+
+/// The camera's state between the events of a window.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Controls {
+    pose: Pose,
+    near: f32,
+    /// Size of what there is to see, metres: the measure of speeds and limits.
+    size: f64,
+    /// Middle of what there is to see, metres.
+    centre: DVec3,
+    /// Factor that the wheel puts on the speed of flight.
+    speed: f64,
+    /// Of flight, metres a second.
+    velocity: DVec3,
+    travel: Option<Travel>,
+}
+
+impl Controls {
+    /// Takes up `camera` in a scene within `bounds`: until something moves, [`Controls::camera`] is that camera.
+    pub fn new(camera: &Camera, bounds: &Bounds) -> Self {
+        let pose = Pose::of(camera);
+        let centre = bounds.centre().as_dvec3();
+        let diagonal = f64::from(bounds.diagonal());
+        Self {
+            pose,
+            near: camera.near,
+            size: if diagonal > 0.0 {
+                diagonal
+            } else {
+                pose.distance
+            },
+            centre,
+            speed: 1.0,
+            velocity: DVec3::ZERO,
+            travel: None,
+        }
+    }
+
+    /// The camera of this moment.
+    pub fn camera(&self) -> Camera {
+        let eye = self.pose.eye();
+        let nearest = TARGET_SHARE * eye.abs().max_element();
+        let target = eye + self.pose.forward() * self.pose.distance.max(nearest);
+        Camera {
+            eye: eye.as_vec3(),
+            target: target.as_vec3(),
+            fov_deg: self.pose.fov_deg as f32,
+            near: self.near,
+        }
+    }
+
+    /// What the camera orbits about, metres.
+    pub fn pivot(&self) -> DVec3 {
+        self.pose.pivot
+    }
+
+    /// Speed of flight without fast or slow key, metres a second.
+    pub fn fly_speed(&self) -> f64 {
+        CRUISE * self.size * self.speed
+    }
+
+    /// Whether something moves without further events.
+    pub fn is_moving(&self) -> bool {
+        self.travel.is_some() || self.velocity != DVec3::ZERO
+    }
+
+    /// Turns the model under the hand: the eye moves about the pivot.
+    pub fn orbit(&mut self, drag: Drag) {
+        self.by_hand(drag, |pose, drag| {
+            pose.turn(ORBIT_DEG * drag.right, -ORBIT_DEG * drag.down);
+        });
+    }
+
+    /// Looks around: the eye stays where it is.
+    pub fn look(&mut self, drag: Drag) {
+        self.by_hand(drag, |pose, drag| {
+            let eye = pose.eye();
+            pose.turn(LOOK_DEG * drag.right, -LOOK_DEG * drag.down);
+            pose.pivot = eye + pose.forward() * pose.distance;
+        });
+    }
+
+    /// Shifts the model with the hand: what is at the pivot's distance stays under the pointer.
+    pub fn pan(&mut self, drag: Drag) {
+        self.by_hand(drag, |pose, drag| {
+            let height = 2.0 * pose.distance * (0.5 * pose.fov_deg).to_radians().tan();
+            let up = pose.right().cross(pose.forward());
+            pose.pivot += (up * drag.down - pose.right() * drag.right) * height;
+        });
+    }
+
+    /// Moves toward (`steps` > 0) or away from `about`, metres, or the pivot: each step by the same share of the distance.
+    pub fn dolly(&mut self, steps: f64, about: Option<DVec3>) {
+        let about = about.filter(|p| p.is_finite());
+        if !steps.is_finite() {
+            return;
+        }
+        self.travel = None;
+        let wanted = self.pose.distance * DOLLY_STEP.powf(steps);
+        let distance = self.within_reach(wanted);
+        let centre = about.unwrap_or(self.pose.pivot);
+        // The whole view shrinks toward the point, which so stays where it is in the picture.
+        self.pose.pivot = centre + (self.pose.pivot - centre) * (distance / self.pose.distance);
+        self.pose.distance = distance;
+        self.hold();
+    }
+
+    /// Makes flight faster (`steps` > 0) or slower.
+    pub fn change_speed(&mut self, steps: f64) {
+        if steps.is_finite() {
+            let speed = self.speed * SPEED_STEP.powf(steps);
+            self.speed = speed.clamp(SPEED_RANGE.0, SPEED_RANGE.1);
+        }
+    }
+
+    /// Lets `seconds` pass with these keys held. Returns whether the camera has moved.
+    pub fn advance(&mut self, seconds: f64, keys: FlyKeys) -> bool {
+        let t = if seconds.is_finite() {
+            seconds.clamp(0.0, LONGEST_STEP_S)
+        } else {
+            0.0
+        };
+        let before = self.pose;
+        let goal = self.wanted_velocity(keys);
+        if goal != DVec3::ZERO {
+            self.travel = None;
+        }
+        self.travel_on(t);
+        self.fly_on(goal, t);
+        self.pose != before
+    }
+
+    /// dv/dt = (goal − v)/τ, integrated: the same way in the same time, however it is cut into frames.
+    fn fly_on(&mut self, goal: DVec3, t: f64) {
+        let left = (-t / INERTIA_S).exp();
+        let lag = self.velocity - goal;
+        self.pose.pivot += goal * t + lag * (INERTIA_S * (1.0 - left));
+        self.velocity = goal + lag * left;
+        if goal == DVec3::ZERO && self.velocity.length() < 1e-3 * self.fly_speed() {
+            self.velocity = DVec3::ZERO;
+        }
+        self.hold();
+    }
+
+    fn wanted_velocity(&self, keys: FlyKeys) -> DVec3 {
+        let axis = |plus: bool, minus: bool| f64::from(i8::from(plus) - i8::from(minus));
+        let way = self.pose.forward() * axis(keys.forward, keys.back)
+            + self.pose.right() * axis(keys.right, keys.left)
+            + DVec3::Y * axis(keys.up, keys.down);
+        let haste = FAST.powf(axis(keys.fast, keys.slow));
+        way.normalize_or_zero() * (self.fly_speed() * haste)
+    }
+
+    fn travel_on(&mut self, t: f64) {
+        let Some(travel) = &mut self.travel else {
+            return;
+        };
+        travel.elapsed_s += t;
+        let share = travel.elapsed_s / TRAVEL_S;
+        self.pose = if share < 1.0 {
+            // Starts and ends at rest.
+            travel
+                .from
+                .toward(&travel.to, share * share * (3.0 - 2.0 * share))
+        } else {
+            travel.to
+        };
+        if share >= 1.0 {
+            self.travel = None;
+        }
+    }
+
+    /// Travels to where all of `bounds` is in view, looking the way one looks. `aspect` is width / height.
+    pub fn frame_all(&mut self, bounds: &Bounds, aspect: f32) {
+        let mut pose = self.pose;
+        pose.turn(0.0, 0.0);
+        let toward_eye = -pose.forward().as_vec3();
+        let framed =
+            Camera::framing_from(bounds, toward_eye, pose.fov_deg as f32, aspect.max(1e-3));
+        self.go(Pose {
+            pivot: framed.target.as_dvec3(),
+            distance: f64::from(framed.eye.distance(framed.target)),
+            ..pose
+        });
+    }
+
+    /// Travels to `camera`.
+    pub fn go_to(&mut self, camera: &Camera) {
+        self.go(Pose::of(camera));
+    }
+
+    /// Turns toward `point`, metres, which becomes the pivot.
+    pub fn focus(&mut self, point: DVec3) {
+        let eye = self.pose.eye();
+        let distance = eye.distance(point);
+        if !(point.is_finite() && distance > REACH.0 * self.size) {
+            return;
+        }
+        let (azimuth_deg, elevation_deg) = azimuth_elevation(point - eye);
+        let mut pose = Pose {
+            pivot: point,
+            azimuth_deg,
+            elevation_deg,
+            distance,
+            ..self.pose
+        };
+        pose.turn(0.0, 0.0);
+        self.go(pose);
+    }
+
+    /// Ends a move at once where it leads to.
+    pub fn arrive(&mut self) {
+        if let Some(travel) = self.travel.take() {
+            self.pose = travel.to;
+        }
+        self.velocity = DVec3::ZERO;
+    }
+
+    fn go(&mut self, to: Pose) {
+        self.velocity = DVec3::ZERO;
+        self.travel = (to != self.pose).then_some(Travel {
+            from: self.pose,
+            to,
+            elapsed_s: 0.0,
+        });
+    }
+
+    /// A drag: it ends a move, and a pointer that is nowhere does nothing.
+    fn by_hand(&mut self, drag: Drag, act: impl FnOnce(&mut Pose, Drag)) {
+        if drag == Drag::default() || !(drag.right.is_finite() && drag.down.is_finite()) {
+            return;
+        }
+        self.travel = None;
+        act(&mut self.pose, drag);
+        self.hold();
+    }
+
+    fn within_reach(&self, distance: f64) -> f64 {
+        distance.clamp(REACH.0 * self.size, self.reach())
+    }
+
+    /// Whoever starts farther off than the limit may stay there.
+    fn reach(&self) -> f64 {
+        (REACH.1 * self.size).max(self.pose.distance)
+    }
+
+    /// Keeps the pivot where one finds back from.
+    fn hold(&mut self) {
+        let offset = self.pose.pivot - self.centre;
+        self.pose.pivot = self.centre + offset.clamp_length_max(self.reach());
+    }
+}
+
+#[cfg(test)]
+#[path = "controls_tests.rs"]
+mod tests;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::error::ErrorKind;
 use clap::{Arg, Parser, Subcommand};
 
-use crate::faces::{BakeWishes, Motion, SkyWishes};
+use crate::faces::{BakeWishes, CompareWishes, Motion, SkyWishes};
 use crate::settings::{Options, one_line};
 
 /// What the user wants done.
@@ -64,6 +64,12 @@ pub enum Command {
         /// Of which daylight.
         #[command(flatten)]
         options: Box<Options>,
+    },
+    /// Compare two pictures of one view: radiometric errors, and FLIP, the difference that a viewer sees.
+    Compare {
+        /// Which.
+        #[command(flatten)]
+        wishes: CompareWishes,
     },
     /// List the Vulkan devices and what each lacks.
     Info,

@@ -33,6 +33,17 @@ pub enum Error {
         /// Why, and what to do.
         reason: String,
     },
+    /// A picture that cannot be read.
+    #[error("cannot read {}: {reason}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// Pictures that do not belong together.
+    #[error("cannot compare: {0}")]
+    Compare(String),
     /// Results that nobody can read.
     #[error("cannot write to standard output: {0}")]
     Stdout(String),

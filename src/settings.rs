@@ -10,10 +10,10 @@ use clap::{Args, Command, FromArgMatches};
 pub use crate::daylight::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCurve};
 pub(crate) use resolve::name;
 pub use resolve::{CameraParts, Exposure, Settings, SunInput};
-pub(crate) use values::sun as direction;
 pub use values::{
     AoResolution, Direction, ExposureMode, Place, Preset, Show, Size, SolarTime, Switch,
 };
+pub(crate) use values::{exposure_factor, sun as direction};
 
 /// A value or a name that makes no sense: one line that names it and the remedy.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

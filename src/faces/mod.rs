@@ -2,6 +2,7 @@
 
 mod bake;
 mod bench;
+mod compare;
 mod info;
 mod job;
 mod light;
@@ -16,6 +17,7 @@ mod sky_table;
 pub mod view;
 
 pub use bake::{BakeWishes, Layout, Map};
+pub use compare::CompareWishes;
 pub use motion::Motion;
 pub use sky::SkyWishes;
 
@@ -44,6 +46,7 @@ pub fn run(command: Command) -> Result<()> {
         } => bench::run(scene.as_deref(), json.as_deref(), frames, motion, *options),
         Command::Sky { wishes, options } => sky::run(&wishes, *options),
         Command::Bake { wishes, options } => bake::run(&wishes, *options),
+        Command::Compare { wishes } => compare::run(&wishes),
         Command::Info => info::run(),
     }
 }

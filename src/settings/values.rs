@@ -109,7 +109,7 @@ fn within(name: &str, unit: &str, range: RangeInclusive<f64>, value: f64) -> Res
 /// Defines a parser of a number within a range.
 macro_rules! ranged {
     ($($function:ident: $name:literal, $unit:literal, $range:expr;)*) => {
-        $(pub(super) fn $function(text: &str) -> Result<f64, String> {
+        $(pub(crate) fn $function(text: &str) -> Result<f64, String> {
             within($name, $unit, $range, number(text)?)
         })*
     };
@@ -123,6 +123,7 @@ ranged! {
     ev100: "exposure value", "", -20.0..=40.0;
     gamma: "gamma", "", 0.1..=10.0;
     scale: "scale", "", 0.0..=1e6;
+    exposure_factor: "exposure", "", 1e-9..=1e9;
     irradiance_error: "error", "percent", 0.0..=100.0;
     ao_radius: "radius", "metres", 0.0..=1000.0;
     specular: "specular scale", "", 0.0..=100.0;

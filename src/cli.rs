@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::error::ErrorKind;
 use clap::{Arg, Parser, Subcommand};
 
-use crate::faces::{BakeWishes, CompareWishes, Motion, SkyWishes};
+use crate::faces::{BakeWishes, BenchWishes, CompareWishes, SkyWishes};
 use crate::settings::{Options, one_line};
 
 /// What the user wants done.
@@ -25,17 +25,9 @@ pub enum Command {
     },
     /// Time every pass of the frame.
     Bench {
-        /// Scene file (.toml) or model (.obj) [default: the bundled scene].
-        scene: Option<PathBuf>,
-        /// Write the table as JSON too.
-        #[arg(long, value_name = "FILE")]
-        json: Option<PathBuf>,
-        /// Frames to measure.
-        #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-        frames: u32,
-        /// What moves from frame to frame while whole frames are timed.
-        #[arg(long, value_name = "WHAT", value_enum, default_value_t)]
-        motion: Motion,
+        /// What to measure.
+        #[command(flatten)]
+        wishes: BenchWishes,
         /// How.
         #[command(flatten)]
         options: Box<Options>,
@@ -230,7 +222,7 @@ mod tests {
         assert_eq!(parse(words("info")), Ok(Command::Info));
         assert!(matches!(
             parse(words("bench --frames 3 --json t.json")),
-            Ok(Command::Bench { frames: 3, .. })
+            Ok(Command::Bench { wishes, .. }) if wishes.frames == 3
         ));
     }
 

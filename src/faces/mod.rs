@@ -17,6 +17,7 @@ mod sky_table;
 pub mod view;
 
 pub use bake::{BakeWishes, Layout, Map};
+pub use bench::BenchWishes;
 pub use compare::CompareWishes;
 pub use motion::Motion;
 pub use sky::SkyWishes;
@@ -37,13 +38,7 @@ pub fn run(command: Command) -> Result<()> {
             output,
             options,
         } => render::run(scene.as_deref(), &output, *options),
-        Command::Bench {
-            scene,
-            json,
-            frames,
-            motion,
-            options,
-        } => bench::run(scene.as_deref(), json.as_deref(), frames, motion, *options),
+        Command::Bench { wishes, options } => bench::run(&wishes, *options),
         Command::Sky { wishes, options } => sky::run(&wishes, *options),
         Command::Bake { wishes, options } => bake::run(&wishes, *options),
         Command::Compare { wishes } => compare::run(&wishes),

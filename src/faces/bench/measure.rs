@@ -1,0 +1,197 @@
+//! The measurement: warm-up, then frame after frame.
+
+use std::sync::Arc;
+
+use super::statistics::Samples;
+use crate::error::Result;
+use crate::faces::job::Job;
+use crate::faces::motion::Motion;
+use crate::frame::Frame;
+use crate::gpu::{Context, DeviceSummary, PassTime, Recorder, Stopwatch, Timing};
+use crate::passes::lighting::Precision;
+
+/// Frames that are drawn and forgotten: shaders are compiled at their first use.
+const WARM_UP: u32 = 3;
+
+/// Times of whole frames, each one submission.
+#[derive(Debug, Clone, Default)]
+pub struct Whole {
+    /// From the first command to the last result.
+    pub frame: Samples,
+    /// Recording alone.
+    pub record: Samples,
+    /// From submission to the last result, without recording.
+    pub device: Samples,
+}
+
+/// What was measured.
+#[derive(Debug, Clone, Default)]
+pub struct Measured {
+    /// Every pass with sky, irradiance and shadow map drawn anew each frame, in the order of drawing.
+    pub passes: Vec<(&'static str, Samples)>,
+    /// The passes of each frame together.
+    pub parts: Samples,
+    /// Whole frames with sky, irradiance and shadow map drawn anew.
+    pub new_light: Whole,
+    /// Whole frames in motion; of sky, irradiance and shadow map only what moved was drawn.
+    pub moving: Whole,
+}
+
+/// How a device's passes can be timed: software drivers attribute timestamps to the wrong pass.
+pub fn trustworthy(device: &DeviceSummary) -> Timing {
+    if device.kind == "software" {
+        Timing::Isolated
+    } else {
+        Timing::Timestamps
+    }
+}
+
+/// A frame and the recorders that draw it: one that times passes, one that leaves the frame whole.
+pub struct Bench<'j> {
+    job: &'j Job,
+    motion: Motion,
+    frame: Frame,
+    parts: Recorder,
+    whole: Recorder,
+}
+
+impl<'j> Bench<'j> {
+    /// Makes everything that is measured.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn new(job: &'j Job, context: &Arc<Context>, motion: Motion) -> Result<Self> {
+        let settings = job.frame_settings(job.settings.show, Precision::Half);
+        let mut whole = Recorder::new(context, Timing::Off)?;
+        whole.begin()?;
+        let frame = Frame::new(&mut whole, &job.scene, settings)?;
+        whole.finish()?;
+        Ok(Self {
+            job,
+            motion,
+            frame,
+            parts: Recorder::new(context, trustworthy(context.summary()))?,
+            whole,
+        })
+    }
+
+    /// Measures `frames` frames of each kind.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn run(&mut self, frames: u32) -> Result<Measured> {
+        let mut measured = Measured::default();
+        let mut forgotten = Measured::default();
+        for i in 0..WARM_UP + frames {
+            let into = if i < WARM_UP {
+                &mut forgotten
+            } else {
+                &mut measured
+            };
+            // Alternating: what disturbs the machine disturbs both alike.
+            self.passes(2 * i, into)?;
+            self.frame.invalidate();
+            self.whole(2 * i + 1, &mut into.new_light)?;
+        }
+        self.refine()?;
+        for i in 0..WARM_UP + frames {
+            let into = if i < WARM_UP {
+                &mut forgotten
+            } else {
+                &mut measured
+            };
+            self.whole(i, &mut into.moving)?;
+        }
+        Ok(measured)
+    }
+
+    /// Every pass by itself, with everything drawn anew.
+    fn passes(&mut self, index: u32, into: &mut Measured) -> Result<()> {
+        self.frame.invalidate();
+        let camera = self.motion.camera(&self.job.camera, index);
+        let daylight = self.motion.daylight(self.job, index);
+        let recorder = &mut self.parts;
+        recorder.begin()?;
+        self.frame.record(recorder, &daylight, &camera, 0);
+        recorder.finish()?;
+        into.push(recorder.timings().passes());
+        Ok(())
+    }
+
+    /// The frame as one submission. What the CPU does for a new sun is part of recording.
+    fn whole(&mut self, index: u32, into: &mut Whole) -> Result<()> {
+        let camera = self.motion.camera(&self.job.camera, index);
+        let recorder = &mut self.whole;
+        let recording = Stopwatch::start();
+        let daylight = self.motion.daylight(self.job, index);
+        recorder.begin()?;
+        self.frame.record(recorder, &daylight, &camera, 0);
+        let (record, record_cpu) = recording.elapsed_ms();
+        let waiting = Stopwatch::start();
+        recorder.finish()?;
+        let (device, device_cpu) = waiting.elapsed_ms();
+        into.record.push(record, record_cpu);
+        into.device.push(device, device_cpu);
+        into.frame.push(record + device, record_cpu + device_cpu);
+        Ok(())
+    }
+
+    fn refine(&mut self) -> Result<()> {
+        while !self.frame.is_refined() {
+            self.whole.begin()?;
+            self.frame.record_light(&mut self.whole, &self.job.daylight);
+            self.whole.finish()?;
+        }
+        Ok(())
+    }
+}
+
+impl Measured {
+    /// Takes the passes of one frame. What a frame does several times under one name is one time.
+    fn push(&mut self, passes: &[PassTime]) {
+        let mut totals: Vec<PassTime> = Vec::new();
+        for time in passes {
+            match totals.iter_mut().find(|t| t.name == time.name) {
+                Some(total) => {
+                    total.ms += time.ms;
+                    total.cpu_ms += time.cpu_ms;
+                }
+                None => totals.push(*time),
+            }
+        }
+        for total in &totals {
+            let known = self.passes.iter().position(|p| p.0 == total.name);
+            let index = known.unwrap_or(self.passes.len());
+            if known.is_none() {
+                self.passes.push((total.name, Samples::default()));
+            }
+            self.passes[index].1.push(total.ms, total.cpu_ms);
+        }
+        let sum = |of: fn(&PassTime) -> f64| totals.iter().map(of).sum();
+        self.parts.push(sum(|t| t.ms), sum(|t| t.cpu_ms));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_that_is_used_twice_is_one_pass() {
+        let pass = |name, ms| PassTime {
+            name,
+            ms,
+            cpu_ms: 2.0 * ms,
+        };
+        let mut measured = Measured::default();
+        measured.push(&[pass("sky", 1.0), pass("shadow", 5.0), pass("sky", 2.0)]);
+        let medians: Vec<_> = measured
+            .passes
+            .iter()
+            .map(|(name, samples)| (*name, samples.summary().median_ms))
+            .collect();
+        assert_eq!(medians, [("sky", 3.0), ("shadow", 5.0)]);
+        let parts = measured.parts.summary();
+        assert_eq!((parts.median_ms, parts.cpu_median_ms), (8.0, Some(16.0)));
+    }
+}

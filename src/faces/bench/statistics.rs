@@ -1,0 +1,80 @@
+//! Times of repeated work: medians, percentiles, noise.
+
+use serde::{Deserialize, Serialize};
+
+/// Times of one piece of work, milliseconds.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Samples {
+    wall: Vec<f64>,
+    cpu: Vec<f64>,
+}
+
+/// What [`Samples`] come to.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Half of the samples lie below, milliseconds.
+    pub median_ms: f64,
+    /// 5 % of the samples lie below, milliseconds.
+    pub p5_ms: f64,
+    /// 95 % of the samples lie below, milliseconds.
+    pub p95_ms: f64,
+    /// Median of the CPU time of all threads, milliseconds. Timestamps of the device know nothing of it.
+    pub cpu_median_ms: Option<f64>,
+}
+
+impl Samples {
+    /// Takes one time; a CPU time that is not known is NaN.
+    pub fn push(&mut self, wall: f64, cpu: f64) {
+        self.wall.push(wall);
+        if cpu.is_finite() {
+            self.cpu.push(cpu);
+        }
+    }
+
+    /// Median and percentiles. NaN without samples.
+    pub fn summary(&self) -> Summary {
+        let [p5_ms, median_ms, p95_ms] = [0.05, 0.5, 0.95].map(|q| quantile(&self.wall, q));
+        Summary {
+            median_ms,
+            p5_ms,
+            p95_ms,
+            cpu_median_ms: (!self.cpu.is_empty()).then(|| quantile(&self.cpu, 0.5)),
+        }
+    }
+}
+
+/// The value below which the share `q` of the samples lies (nearest rank). NaN without samples.
+pub fn quantile(samples: &[f64], q: f64) -> f64 {
+    let mut sorted = samples.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let rank = (q * sorted.len() as f64).ceil() as usize;
+    sorted
+        .get(rank.saturating_sub(1))
+        .copied()
+        .unwrap_or(f64::NAN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_samples() {
+        let samples = [5.0, 1.0, 4.0, 2.0, 3.0];
+        assert_eq!(quantile(&samples, 0.5), 3.0);
+        assert_eq!(quantile(&samples, 0.05), 1.0);
+        assert_eq!(quantile(&samples, 0.95), 5.0);
+        assert!(quantile(&[], 0.5).is_nan());
+    }
+
+    #[test]
+    fn unknown_cpu_times_are_left_out() {
+        let mut samples = Samples::default();
+        samples.push(2.0, f64::NAN);
+        assert_eq!(samples.summary().cpu_median_ms, None);
+        samples.push(4.0, 7.0);
+        let summary = samples.summary();
+        assert_eq!(summary.cpu_median_ms, Some(7.0));
+        assert_eq!((summary.p5_ms, summary.p95_ms), (2.0, 4.0));
+    }
+}

@@ -21,6 +21,8 @@ pub enum Use {
     CopyTarget,
     /// Read by the CPU.
     HostRead,
+    /// Given by the presentation engine: no content, and not to be touched before its semaphore has been waited for.
+    Acquired,
     /// Handed to the presentation engine.
     Present,
 }
@@ -98,6 +100,13 @@ const fn row(of: Use) -> (Stage, Access, Access, Layout) {
             Access::NONE,
             Layout::GENERAL,
         ),
+        // The submission waits for the semaphore at this stage: the barrier chains to it.
+        Use::Acquired => (
+            Stage::COLOR_ATTACHMENT_OUTPUT,
+            Access::NONE,
+            Access::NONE,
+            Layout::UNDEFINED,
+        ),
         Use::Present => (
             Stage::NONE,
             Access::NONE,
@@ -137,7 +146,7 @@ pub const fn barrier(previous: Use, next: Use) -> Option<Barrier> {
 mod tests {
     use super::*;
 
-    const ALL: [Use; 9] = [
+    const ALL: [Use; 10] = [
         Use::Undefined,
         Use::ColorAttachment,
         Use::DepthAttachment,
@@ -146,6 +155,7 @@ mod tests {
         Use::CopySource,
         Use::CopyTarget,
         Use::HostRead,
+        Use::Acquired,
         Use::Present,
     ];
 
@@ -291,6 +301,18 @@ mod tests {
             Use::Present,
             (Stage::COLOR_ATTACHMENT_OUTPUT, Stage::NONE),
             (Access::COLOR_ATTACHMENT_WRITE, Access::NONE),
+        );
+    }
+
+    #[test]
+    fn acquired_images_wait_where_their_semaphore_is_waited_for() {
+        let output = Stage::COLOR_ATTACHMENT_OUTPUT;
+        let drawn = Access::COLOR_ATTACHMENT_READ | Access::COLOR_ATTACHMENT_WRITE;
+        expect(
+            Use::Acquired,
+            Use::ColorAttachment,
+            (output, output),
+            (Access::NONE, drawn),
         );
     }
 

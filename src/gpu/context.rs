@@ -1,6 +1,6 @@
 //! Instance, device, queue, memory and the few samplers: what everything else keeps alive.
 
-use std::ffi::CStr;
+use std::ffi::{CStr, c_char};
 use std::mem::ManuallyDrop;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -9,6 +9,7 @@ use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 
 use super::error::{During, GpuError, Result};
 use super::select::{self, DeviceSummary};
+use super::surface::{self, RawSurface, Surface, WindowHandles};
 use super::validation::{LAYER, Messenger};
 
 /// How to make a [`Context`].
@@ -41,12 +42,17 @@ pub(super) struct InstanceGuard {
 }
 
 impl InstanceGuard {
-    pub(super) fn new(entry: &ash::Entry, validate: bool) -> Result<Self> {
+    /// `windows` are the extensions that a window system asks for.
+    pub(super) fn new(
+        entry: &ash::Entry,
+        validate: bool,
+        windows: &[*const c_char],
+    ) -> Result<Self> {
         let app = vk::ApplicationInfo::default()
             .application_name(c"skylight")
             .engine_name(c"skylight")
             .api_version(vk::API_VERSION_1_3);
-        let mut extensions = Vec::new();
+        let mut extensions = windows.to_vec();
         if has_instance_extension(entry, None, ext::debug_utils::NAME)? {
             extensions.push(ext::debug_utils::NAME.as_ptr());
         }
@@ -127,10 +133,11 @@ impl Drop for DeviceGuard {
 /// The device and what belongs to it. Shared by everything that was made with it.
 pub struct Context {
     // Dropped by hand first, then in the order of the fields: device, messenger, instance, loader.
-    allocator: ManuallyDrop<Mutex<Allocator>>,
+    allocator: ManuallyDrop<Arc<Mutex<Allocator>>>,
     samplers: [vk::Sampler; SAMPLERS.len()],
     device: DeviceGuard,
     pub(super) push_descriptor: Option<khr::push_descriptor::Device>,
+    pub(super) swapchain: Option<khr::swapchain::Device>,
     pub(super) debug: Option<ext::debug_utils::Device>,
     pub(super) queue: vk::Queue,
     pub(super) queue_family: u32,
@@ -139,7 +146,7 @@ pub struct Context {
     summary: DeviceSummary,
     messenger: Option<Messenger>,
     instance: InstanceGuard,
-    _entry: ash::Entry,
+    entry: ash::Entry,
 }
 
 impl Context {
@@ -148,14 +155,40 @@ impl Context {
     /// # Errors
     /// No loader, no device, an unknown `device`, a missing feature (named), or a driver fault.
     pub fn new(options: &ContextOptions) -> Result<Arc<Self>> {
+        Ok(Self::open(options, None)?.0)
+    }
+
+    /// Opens a device that can present to a window.
+    ///
+    /// # Errors
+    /// As [`Context::new`], and when no device can present to this window.
+    pub fn for_window(
+        options: &ContextOptions,
+        window: Arc<dyn WindowHandles>,
+    ) -> Result<(Arc<Self>, Surface)> {
+        let (context, surface) = Self::open(options, Some(window))?;
+        let surface = surface.ok_or(GpuError::NoDevice)?;
+        Ok((context.clone(), Surface::new(context, surface)))
+    }
+
+    fn open(
+        options: &ContextOptions,
+        window: Option<Arc<dyn WindowHandles>>,
+    ) -> Result<(Arc<Self>, Option<RawSurface>)> {
         let entry = load()?;
-        let instance = InstanceGuard::new(&entry, options.validate)?;
+        let windows = window
+            .as_deref()
+            .map_or(Ok(&[][..]), surface::instance_extensions)?;
+        let instance = InstanceGuard::new(&entry, options.validate, windows)?;
         let messenger = options
             .validate
             .then(|| Messenger::new(&entry, &instance.raw))
             .transpose()?;
+        let surface = window
+            .map(|window| RawSurface::new(&entry, &instance.raw, window))
+            .transpose()?;
         let chosen = select::choose(
-            select::candidates(&instance.raw)?,
+            select::candidates(&instance.raw, surface.as_ref())?,
             options.device.as_deref(),
         )?;
         let push = !options.no_push_descriptors
@@ -163,7 +196,7 @@ impl Context {
                 .summary
                 .optional
                 .contains(&("VK_KHR_push_descriptor", true));
-        let device = create_device(&instance.raw, &chosen, push)?;
+        let device = create_device(&instance.raw, &chosen, push, surface.is_some())?;
         // SAFETY: `chosen` comes from this instance; the queue family was found on it.
         let (queue, limits) = unsafe {
             (
@@ -178,13 +211,17 @@ impl Context {
             .then(|| ext::debug_utils::Device::new(&instance.raw, &device.raw));
         let push_descriptor =
             push.then(|| khr::push_descriptor::Device::new(&instance.raw, &device.raw));
+        let swapchain = surface
+            .is_some()
+            .then(|| khr::swapchain::Device::new(&instance.raw, &device.raw));
         let allocator = create_allocator(&instance.raw, &device.raw, chosen.handle)?;
         let samplers = create_samplers(&device.raw)?;
-        Ok(Arc::new(Self {
-            allocator: ManuallyDrop::new(Mutex::new(allocator)),
+        let context = Arc::new(Self {
+            allocator: ManuallyDrop::new(Arc::new(Mutex::new(allocator))),
             samplers,
             device,
             push_descriptor,
+            swapchain,
             debug,
             queue,
             queue_family: chosen.queue_family,
@@ -193,8 +230,22 @@ impl Context {
             summary: chosen.summary,
             messenger,
             instance,
-            _entry: entry,
-        }))
+            entry,
+        });
+        Ok((context, surface))
+    }
+
+    pub(super) fn entry(&self) -> &ash::Entry {
+        &self.entry
+    }
+
+    pub(super) fn instance(&self) -> &ash::Instance {
+        &self.instance.raw
+    }
+
+    /// The allocator, for a renderer that manages its own buffers; it must be dropped before the context.
+    pub(super) fn shared_allocator(&self) -> Arc<Mutex<Allocator>> {
+        Arc::clone(&self.allocator)
     }
 
     /// The device in words.
@@ -306,6 +357,7 @@ fn create_device(
     instance: &ash::Instance,
     chosen: &select::Candidate,
     push_descriptors: bool,
+    presents: bool,
 ) -> Result<DeviceGuard> {
     let priority = [1.0];
     let queues = [vk::DeviceQueueCreateInfo::default()
@@ -314,6 +366,9 @@ fn create_device(
     let mut extensions = Vec::new();
     if push_descriptors {
         extensions.push(select::PUSH_DESCRIPTORS.as_ptr());
+    }
+    if presents {
+        extensions.push(khr::swapchain::NAME.as_ptr());
     }
     let core = vk::PhysicalDeviceFeatures::default().geometry_shader(true);
     let mut v12 = vk::PhysicalDeviceVulkan12Features::default()

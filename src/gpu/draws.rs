@@ -81,6 +81,11 @@ impl<'r> Draws<'_, 'r> {
         unsafe { raw.cmd_draw_indexed(command, count, 1, first, 0, 0) };
     }
 
+    /// The command buffer and the size of the target, pixels, for a renderer of its own that draws last.
+    pub(super) fn foreign(&self) -> (vk::CommandBuffer, [u32; 2]) {
+        (self.pass.recorder.command, self.pass.target().size())
+    }
+
     /// Draws three vertices without vertex data.
     pub fn triangle(&mut self) {
         self.pass.flush();

@@ -61,6 +61,9 @@ pub enum GpuError {
         /// The allocator's words.
         reason: String,
     },
+    /// The window's surface is of no use.
+    #[error("the window cannot be drawn to: {0}")]
+    Window(String),
     /// A size beyond what the device can do.
     #[error("{what} of {asked} exceeds what \"{device}\" supports ({limit})")]
     TooLarge {

@@ -82,6 +82,8 @@ impl<'a> ImageDesc<'a> {
 pub struct Image {
     context: Arc<Context>,
     raw: vk::Image,
+    /// Images of a swapchain are not ours to destroy.
+    is_borrowed: bool,
     allocation: Option<Allocation>,
     sampled_view: vk::ImageView,
     attachment_view: vk::ImageView,
@@ -153,6 +155,7 @@ impl Image {
         let mut image = Self {
             context: context.clone(),
             raw,
+            is_borrowed: false,
             allocation: None,
             sampled_view: vk::ImageView::null(),
             attachment_view: vk::ImageView::null(),
@@ -171,6 +174,31 @@ impl Image {
         };
         image.sampled_view = image.view(sampled, desc.levels)?;
         image.attachment_view = image.view(vk::ImageViewType::TYPE_2D_ARRAY, 1)?;
+        Ok(image)
+    }
+
+    /// An image of a swapchain, which outlives it.
+    pub(super) fn of_swapchain(
+        context: &Arc<Context>,
+        raw: vk::Image,
+        format: vk::Format,
+        size: [u32; 2],
+    ) -> Result<Self> {
+        let mut image = Self {
+            context: context.clone(),
+            raw,
+            is_borrowed: true,
+            allocation: None,
+            sampled_view: vk::ImageView::null(),
+            attachment_view: vk::ImageView::null(),
+            format,
+            size,
+            layers: 1,
+            levels: 1,
+            last_use: Cell::new(Use::Undefined),
+            name: "window".to_owned(),
+        };
+        image.attachment_view = image.view(vk::ImageViewType::TYPE_2D, 1)?;
         Ok(image)
     }
 
@@ -332,7 +360,9 @@ impl Drop for Image {
             self.context
                 .raw()
                 .destroy_image_view(self.attachment_view, None);
-            self.context.raw().destroy_image(self.raw, None);
+            if !self.is_borrowed {
+                self.context.raw().destroy_image(self.raw, None);
+            }
         }
         if let Some(allocation) = self.allocation.take() {
             // Freeing fails only for a foreign allocation.

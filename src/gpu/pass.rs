@@ -279,6 +279,15 @@ impl<'r> Pass<'r> {
         }
     }
 
+    /// What it draws to: all attachments have the size of this one.
+    pub(super) fn target(&self) -> &'r Image {
+        let color = self.colors.first().map(|c| c.0);
+        let Some(target) = color.or(self.depth.map(|d| d.0)) else {
+            panic!("pass {}: draws to nothing", self.name)
+        };
+        target
+    }
+
     fn begin_rendering(&self) {
         let colors: ArrayVec<AttachmentInfo, MAX_COLORS> = self
             .colors
@@ -295,9 +304,7 @@ impl<'r> Pass<'r> {
                 info.store_op(vk::AttachmentStoreOp::NONE)
             }
         });
-        let Some(target) = self.colors.first().map(|c| c.0).or(self.depth.map(|d| d.0)) else {
-            panic!("pass {}: draws to nothing", self.name)
-        };
+        let target = self.target();
         let [width, height] = target.size();
         let area = vk::Rect2D {
             offset: vk::Offset2D::default(),

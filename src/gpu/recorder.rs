@@ -26,6 +26,8 @@ pub struct Recorder {
     command_pool: vk::CommandPool,
     descriptor_pool: vk::DescriptorPool,
     fence: vk::Fence,
+    is_pending: bool,
+    acquired: Option<vk::Semaphore>,
     uniforms: Buffer,
     uniform_end: u64,
     kept: Vec<Buffer>,
@@ -56,6 +58,8 @@ impl Recorder {
             command_pool,
             descriptor_pool: vk::DescriptorPool::null(),
             fence: vk::Fence::null(),
+            is_pending: false,
+            acquired: None,
             uniforms,
             uniform_end: 0,
             kept: Vec::new(),
@@ -98,11 +102,12 @@ impl Recorder {
             .during("create a descriptor pool")
     }
 
-    /// Starts a frame.
+    /// Starts a frame, after the one that was submitted before is done.
     ///
     /// # Errors
     /// When the driver has no memory left.
     pub fn begin(&mut self) -> Result<()> {
+        self.wait()?;
         self.uniform_end = 0;
         self.timings.clear();
         self.queries.reset();
@@ -132,35 +137,82 @@ impl Recorder {
     /// # Errors
     /// When the device is lost, or a pass could not be recorded.
     pub fn finish(&mut self) -> Result<()> {
-        let submitted = self.submit_and_wait();
-        self.kept.clear();
-        if let Some(fault) = self.fault.take() {
-            return Err(fault);
-        }
-        submitted?;
-        if self.timing == Timing::Timestamps {
-            self.queries.collect(&mut self.timings)?;
-        }
-        Ok(())
+        let submitted = self.submit(None);
+        let done = self.wait();
+        submitted.and(done)
     }
 
-    fn submit_and_wait(&self) -> Result<()> {
+    /// Submits what was recorded, to run while the CPU goes on; `signal` is signalled at its end.
+    pub(super) fn submit(&mut self, signal: Option<vk::Semaphore>) -> Result<()> {
         let raw = self.context.raw();
         let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(self.command)];
-        let submit = [vk::SubmitInfo2::default().command_buffer_infos(&commands)];
+        let wait = self.acquired.take().map(|semaphore| {
+            vk::SemaphoreSubmitInfo::default()
+                .semaphore(semaphore)
+                .stage_mask(vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT)
+        });
+        let signal = signal.map(|semaphore| {
+            vk::SemaphoreSubmitInfo::default()
+                .semaphore(semaphore)
+                .stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+        });
+        let submit = [vk::SubmitInfo2::default()
+            .command_buffer_infos(&commands)
+            .wait_semaphore_infos(wait.as_slice())
+            .signal_semaphore_infos(signal.as_slice())];
         // SAFETY: the command buffer is recording; the fence is unsignalled and used by this submission alone.
         unsafe {
             raw.end_command_buffer(self.command)
                 .during("end a command buffer")?;
             raw.queue_submit2(self.context.queue, &submit, self.fence)
                 .during("submit work")?;
-            raw.wait_for_fences(&[self.fence], true, u64::MAX)
-                .during("wait for the device")?;
-            raw.reset_fences(&[self.fence]).during("reset a fence")
         }
+        self.is_pending = true;
+        Ok(())
     }
 
-    /// Times of the last finished frame; empty with [`Timing::Off`].
+    /// Waits until what was submitted is done, and lets go of what it used.
+    ///
+    /// # Errors
+    /// When the device is lost, or a pass could not be recorded.
+    pub fn wait(&mut self) -> Result<()> {
+        let waited = self.wait_for_fence();
+        self.kept.clear();
+        if let Some(fault) = self.fault.take() {
+            return Err(fault);
+        }
+        if waited? && self.timing == Timing::Timestamps {
+            self.queries.collect(&mut self.timings)?;
+        }
+        Ok(())
+    }
+
+    /// Whether there was anything to wait for.
+    fn wait_for_fence(&mut self) -> Result<bool> {
+        if !std::mem::take(&mut self.is_pending) {
+            return Ok(false);
+        }
+        let raw = self.context.raw();
+        // SAFETY: the fence belongs to the one pending submission.
+        unsafe {
+            raw.wait_for_fences(&[self.fence], true, u64::MAX)
+                .during("wait for the device")?;
+            raw.reset_fences(&[self.fence]).during("reset a fence")?;
+        }
+        Ok(true)
+    }
+
+    /// The next submission waits for this semaphore before it draws to an acquired image.
+    pub(super) fn wait_for(&mut self, acquired: vk::Semaphore) {
+        self.acquired = Some(acquired);
+    }
+
+    /// Times passes differently from the next frame on.
+    pub fn set_timing(&mut self, timing: Timing) {
+        self.timing = timing;
+    }
+
+    /// Times of the last frame that was waited for; empty with [`Timing::Off`].
     pub fn timings(&self) -> &Timings {
         &self.timings
     }
@@ -243,10 +295,10 @@ impl Recorder {
     pub(super) fn isolate(&mut self, mark: &Mark) {
         let Mark::Wall(name) = mark else { return };
         let start = Stopwatch::start();
-        let done = self.submit_and_wait();
+        let done = self.submit(None).and_then(|()| self.wait_for_fence());
         let (ms, cpu_ms) = start.elapsed_ms();
         self.timings.push(PassTime { name, ms, cpu_ms });
-        if let Err(fault) = done.and_then(|()| self.begin_commands()) {
+        if let Err(fault) = done.and_then(|_| self.begin_commands()) {
             self.fault.get_or_insert(fault);
         }
     }

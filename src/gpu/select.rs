@@ -5,6 +5,7 @@ use std::ffi::{CStr, c_char};
 use ash::vk;
 
 use super::error::{During, GpuError, Result};
+use super::surface::RawSurface;
 
 /// What a device is called and whether the renderer can use it.
 #[derive(Debug, Clone)]
@@ -57,15 +58,18 @@ fn kind_and_rank(kind: vk::PhysicalDeviceType) -> (&'static str, u32) {
     }
 }
 
-/// The candidates in the driver's order.
-pub(super) fn candidates(instance: &ash::Instance) -> Result<Vec<Candidate>> {
+/// The candidates in the driver's order; for a window, what keeps a device from presenting to it counts as missing.
+pub(super) fn candidates(
+    instance: &ash::Instance,
+    surface: Option<&RawSurface>,
+) -> Result<Vec<Candidate>> {
     // SAFETY: the instance is alive for the whole call.
     let handles =
         unsafe { instance.enumerate_physical_devices() }.during("enumerate Vulkan devices")?;
     handles
         .into_iter()
         .enumerate()
-        .map(|(i, handle)| candidate(instance, i, handle))
+        .map(|(i, handle)| candidate(instance, i, handle, surface))
         .collect()
 }
 
@@ -73,6 +77,7 @@ fn candidate(
     instance: &ash::Instance,
     index: usize,
     handle: vk::PhysicalDevice,
+    surface: Option<&RawSurface>,
 ) -> Result<Candidate> {
     let mut driver = vk::PhysicalDeviceDriverProperties::default();
     let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
@@ -82,7 +87,7 @@ fn candidate(
     let (kind, rank) = kind_and_rank(properties.device_type);
     let version = properties.api_version;
     let extensions = extensions(instance, handle)?;
-    let queue_family = graphics_queue(instance, handle);
+    let queue_family = graphics_queue(instance, handle, surface)?;
     let mut missing = Vec::new();
     if version < vk::API_VERSION_1_3 {
         missing.push("Vulkan 1.3".to_owned());
@@ -90,7 +95,11 @@ fn candidate(
         missing.extend(missing_features(instance, handle));
     }
     if queue_family.is_none() {
-        missing.push("a graphics queue".to_owned());
+        let to = surface.map_or("", |_| " that presents to this window");
+        missing.push(format!("a graphics queue{to}"));
+    }
+    if surface.is_some() && !extensions.iter().any(|e| e == "VK_KHR_swapchain") {
+        missing.push("VK_KHR_swapchain".to_owned());
     }
     let summary = DeviceSummary {
         index,
@@ -129,13 +138,20 @@ fn extensions(instance: &ash::Instance, handle: vk::PhysicalDevice) -> Result<Ve
     Ok(list.iter().map(|e| text(&e.extension_name)).collect())
 }
 
-fn graphics_queue(instance: &ash::Instance, handle: vk::PhysicalDevice) -> Option<u32> {
+fn graphics_queue(
+    instance: &ash::Instance,
+    handle: vk::PhysicalDevice,
+    surface: Option<&RawSurface>,
+) -> Result<Option<u32>> {
     // SAFETY: `handle` comes from this instance.
     let families = unsafe { instance.get_physical_device_queue_family_properties(handle) };
-    let graphics = families
-        .iter()
-        .position(|f| f.queue_flags.contains(vk::QueueFlags::GRAPHICS))?;
-    u32::try_from(graphics).ok()
+    for (family, properties) in (0u32..).zip(&families) {
+        let draws = properties.queue_flags.contains(vk::QueueFlags::GRAPHICS);
+        if draws && surface.map_or(Ok(true), |s| s.is_supported(handle, family))? {
+            return Ok(Some(family));
+        }
+    }
+    Ok(None)
 }
 
 fn missing_features(instance: &ash::Instance, handle: vk::PhysicalDevice) -> Vec<String> {
@@ -236,8 +252,8 @@ fn named(summaries: &[&DeviceSummary], wanted: &str) -> Result<usize> {
 /// When there is no Vulkan loader or the driver fails.
 pub fn devices() -> Result<Vec<DeviceSummary>> {
     let entry = super::context::load()?;
-    let instance = super::context::InstanceGuard::new(&entry, false)?;
-    Ok(candidates(&instance.raw)?
+    let instance = super::context::InstanceGuard::new(&entry, false, &[])?;
+    Ok(candidates(&instance.raw, None)?
         .into_iter()
         .map(|c| c.summary)
         .collect())

@@ -1,12 +1,12 @@
 //! The frame: owns the passes; [`Frame::record`] is the whole pipeline in reading order.
 
+mod sample;
+
 use std::sync::Arc;
 
-use glam::{DVec2, UVec2, Vec2, Vec3};
+use glam::{UVec2, Vec3};
 
-use crate::daylight::sampling;
 use crate::daylight::sky::Daylight;
-use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
 use crate::gpu::{Context, Image, Recorder, Result};
 use crate::passes::accumulate::Accumulate;
 use crate::passes::background::Background;
@@ -15,13 +15,16 @@ use crate::passes::gbuffer::Gbuffer;
 use crate::passes::geometry::Geometry;
 use crate::passes::irradiance::{Irradiance, IrradianceSettings};
 use crate::passes::lighting::{Light, Lighting, LightingSettings, Show};
+use crate::passes::probe::{Probe, Reading};
 use crate::passes::shadow::Shadow;
-use crate::passes::shadow_fit;
+use crate::passes::shadow_fit::{self, ShadowView};
 use crate::passes::sky_cube::SkyCube;
 use crate::passes::ssao::{Ssao, SsaoSettings};
 use crate::passes::tone_map::{ToneMap, ToneSettings};
 use crate::passes::view::View;
 use crate::scene::{Camera, Scene};
+
+use sample::Sample;
 
 /// Everything that is fixed while frames are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,12 +47,14 @@ pub struct FrameSettings {
     pub tone: ToneSettings,
 }
 
-/// Where a frame samples the pixel and the sun's disc.
-#[derive(Debug, Clone, Copy)]
-struct Sample {
-    jitter: Vec2,
+/// What the newest frame was drawn with, for passes that look at it afterwards.
+#[derive(Clone, Copy)]
+struct Drawn {
+    view: View,
     sun_direction: Vec3,
-    phase: f32,
+    shadow_view: ShadowView,
+    /// Whether it is part of an average.
+    is_averaged: bool,
 }
 
 /// The passes, wired.
@@ -67,6 +72,8 @@ pub struct Frame {
     accumulate: Option<Accumulate>,
     exposure: Exposure,
     tone_map: ToneMap,
+    probe: Option<Probe>,
+    drawn: Option<Drawn>,
 }
 
 impl Frame {
@@ -74,18 +81,11 @@ impl Frame {
     ///
     /// # Errors
     /// When the device refuses or has no memory left.
-    pub fn new(
-        recorder: &mut Recorder,
-        scene: &Scene,
-        mut settings: FrameSettings,
-    ) -> Result<Self> {
+    pub fn new(recorder: &mut Recorder, scene: &Scene, settings: FrameSettings) -> Result<Self> {
         let context = recorder.context().clone();
-        let size = settings.size.to_array();
-        let averaged = settings.samples > 1;
         let geometry = Geometry::new(recorder, scene)?;
-        if !geometry.is_specular() {
-            settings.lighting.specular_scale = 0.0;
-        }
+        let settings = settings.for_scene(&geometry);
+        let size = settings.size.to_array();
         Ok(Self {
             geometry,
             sky_cube: SkyCube::new(&context, settings.sky_edge)?,
@@ -95,21 +95,77 @@ impl Frame {
             ssao: Ssao::new(&context, size, settings.ssao)?,
             lighting: Lighting::new(&context, size, settings.lighting)?,
             background: Background::new(&context, settings.lighting)?,
-            accumulate: averaged
-                .then(|| Accumulate::new(&context, size))
-                .transpose()?,
+            accumulate: accumulate(&context, &settings)?,
             exposure: Exposure::new(&context)?,
             tone_map: ToneMap::new(&context, size, settings.tone)?,
+            probe: None,
+            drawn: None,
             settings,
             context,
         })
+    }
+
+    /// Takes over other settings: makes anew what they change, and keeps the rest (the scene, a sky that is drawn).
+    /// `recorder` must be recording, with no frame in flight.
+    ///
+    /// # Errors
+    /// When the device refuses or has no memory left; the frame is as it was, or partly new, and can be drawn.
+    pub fn apply(&mut self, recorder: &mut Recorder, settings: FrameSettings) -> Result<()> {
+        let (old, new) = (self.settings, settings.for_scene(&self.geometry));
+        let context = self.context.clone();
+        let size = new.size.to_array();
+        let resized = new.size != old.size;
+        if new.sky_edge != old.sky_edge {
+            self.sky_cube = SkyCube::new(&context, new.sky_edge)?;
+        }
+        if new.irradiance != old.irradiance {
+            self.irradiance = Irradiance::new(recorder, new.irradiance)?;
+        }
+        if new.shadow_resolution != old.shadow_resolution {
+            self.shadow = Shadow::new(&context, new.shadow_resolution)?;
+        }
+        if resized {
+            self.gbuffer = Gbuffer::new(&context, size)?;
+        }
+        if resized || new.ssao != old.ssao {
+            self.ssao = Ssao::new(&context, size, new.ssao)?;
+        }
+        if resized || new.lighting != old.lighting {
+            self.lighting = Lighting::new(&context, size, new.lighting)?;
+            self.background = Background::new(&context, new.lighting)?;
+            self.probe = None;
+        }
+        if resized || (new.samples > 1) != (old.samples > 1) {
+            self.accumulate = accumulate(&context, &new)?;
+        }
+        if resized || new.tone != old.tone {
+            self.tone_map = ToneMap::new(&context, size, new.tone)?;
+        }
+        self.drawn = None;
+        self.settings = new;
+        Ok(())
     }
 
     /// Records frame number `index` of the picture (0 starts a new average).
     ///
     /// Sky, irradiance and shadow map are drawn only when their inputs changed.
     pub fn record(&mut self, rec: &mut Recorder, daylight: &Daylight, camera: &Camera, index: u32) {
-        let sample = self.sample(daylight, index);
+        self.draw(rec, daylight, camera, Some(index));
+    }
+
+    /// Records a frame that is no part of an average: while the view or the light moves.
+    pub fn preview(&mut self, rec: &mut Recorder, daylight: &Daylight, camera: &Camera) {
+        self.draw(rec, daylight, camera, None);
+    }
+
+    fn draw(
+        &mut self,
+        rec: &mut Recorder,
+        daylight: &Daylight,
+        camera: &Camera,
+        index: Option<u32>,
+    ) {
+        let sample = Sample::new(self.settings.samples, daylight, index.unwrap_or(0));
         let view = View {
             camera: *camera,
             size: self.settings.size,
@@ -140,10 +196,16 @@ impl Frame {
             .record(rec, surfaces, materials, occlusion, &light, &view);
         self.background
             .record(rec, &surfaces.depth, &light, &view, frame);
-        let radiance = match &mut self.accumulate {
-            Some(accumulate) => accumulate.record(rec, frame, index),
-            None => frame,
+        let radiance = match (&mut self.accumulate, index) {
+            (Some(accumulate), Some(index)) => accumulate.record(rec, frame, index),
+            _ => frame,
         };
+        self.drawn = Some(Drawn {
+            view,
+            sun_direction: sample.sun_direction,
+            shadow_view,
+            is_averaged: index.is_some(),
+        });
 
         let average = self.exposure.record(rec, radiance);
         self.tone_map.record(rec, radiance, average);
@@ -166,10 +228,70 @@ impl Frame {
 
     /// The picture in kcd/m² (or the quantity shown), averaged over the samples.
     pub fn radiance(&self) -> &Image {
-        match &self.accumulate {
-            Some(accumulate) => accumulate.image(),
-            None => self.lighting.image(),
+        match (&self.accumulate, &self.drawn) {
+            (Some(accumulate), Some(drawn)) if drawn.is_averaged => accumulate.image(),
+            _ => self.lighting.image(),
         }
+    }
+
+    /// Records the question what one pixel of the newest frame shows; [`Frame::reading`] has the answer when the work is
+    /// done. Without a frame, or outside of it, nothing is asked.
+    ///
+    /// # Errors
+    /// When the device has no memory left.
+    pub fn ask(&mut self, rec: &mut Recorder, daylight: &Daylight, pixel: [u32; 2]) -> Result<()> {
+        let size = self.settings.size.to_array();
+        let Some(drawn) = self
+            .drawn
+            .filter(|_| pixel[0] < size[0] && pixel[1] < size[1])
+        else {
+            return Ok(());
+        };
+        let mut probe = match self.probe.take() {
+            Some(probe) => probe,
+            None => Probe::new(&self.context, size, self.settings.lighting)?,
+        };
+        let light = Light {
+            daylight,
+            sun_direction: drawn.sun_direction,
+            shadow_view: &drawn.shadow_view,
+            shadow_map: self.shadow.image(),
+            sky_irradiance: self.irradiance.image(),
+            sky_radiance: self.sky_cube.image(),
+        };
+        let (surfaces, occlusion) = (self.gbuffer.surfaces(), self.ssao.image());
+        let materials = self.geometry.materials();
+        let shown = (self.radiance(), self.settings.lighting.show);
+        let near = drawn.view.camera.near;
+        probe.record(rec, pixel, shown, surfaces, near, |lighting, rec| {
+            lighting.record_pixel(
+                rec,
+                surfaces,
+                materials,
+                occlusion,
+                &light,
+                &drawn.view,
+                pixel,
+            );
+        });
+        self.probe = Some(probe);
+        Ok(())
+    }
+
+    /// The answer to the last [`Frame::ask`], once.
+    pub fn reading(&mut self) -> Option<Reading> {
+        self.probe.as_mut()?.reading()
+    }
+
+    /// Samples of the sky's irradiance so far, and in all.
+    pub fn irradiance_progress(&self) -> (u32, u32) {
+        let settings = self.irradiance.settings();
+        let wanted = if settings.method.is_sampled() {
+            settings.samples
+        } else {
+            1
+        };
+        (self.irradiance.samples_done(), wanted)
     }
 
     /// The picture in display values.
@@ -213,52 +335,21 @@ impl Frame {
     pub fn average_luminance(&self) -> &Image {
         self.exposure.image()
     }
+}
 
-    fn sample(&self, daylight: &Daylight, index: u32) -> Sample {
-        let centre = daylight.sun_direction.as_vec3();
-        if self.settings.samples <= 1 {
-            return Sample {
-                jitter: Vec2::ZERO,
-                sun_direction: centre,
-                phase: 0.0,
-            };
+impl FrameSettings {
+    /// A scene without any ρ_s needs none of its lookups.
+    fn for_scene(mut self, geometry: &Geometry) -> Self {
+        if !geometry.is_specular() {
+            self.lighting.specular_scale = 0.0;
         }
-        // Two stretches of one sequence, far apart, so that pixel and disc are not sampled in step.
-        let pixel = sampling::r2(index) - 0.5;
-        let disc = sampling::r2(index.wrapping_add(1 << 20));
-        Sample {
-            jitter: pixel.as_vec2(),
-            sun_direction: on_disc(centre, disc),
-            phase: sampling::radical_inverse(index) as f32,
-        }
+        self
     }
 }
 
-/// A uniform point of the sun's disc for `xi` in the unit square.
-fn on_disc(centre: Vec3, xi: DVec2) -> Vec3 {
-    let radius = (xi.x.sqrt() * SUN_ANGULAR_RADIUS) as f32;
-    let angle = (xi.y * std::f64::consts::TAU) as f32;
-    let (tangent, bitangent) = centre.any_orthonormal_pair();
-    (centre + radius * (angle.cos() * tangent + angle.sin() * bitangent)).normalize()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_disc_is_covered_and_not_left() {
-        let centre = Vec3::new(0.3, 0.5, -0.8).normalize();
-        let angles: Vec<f64> = (0..1000)
-            .map(|i| f64::from(on_disc(centre, sampling::r2(i)).cross(centre).length()).asin())
-            .collect();
-        let largest = angles.iter().copied().fold(0.0, f64::max);
-        assert!(largest <= SUN_ANGULAR_RADIUS * 1.001 && largest > SUN_ANGULAR_RADIUS * 0.97);
-        // Uniform over the disc: half of the points lie within 1/sqrt(2) of the radius.
-        let inner = angles
-            .iter()
-            .filter(|a| **a < SUN_ANGULAR_RADIUS / 2f64.sqrt())
-            .count();
-        assert!((450..550).contains(&inner), "{inner}");
-    }
+/// The mean over frames, where more than one is asked for.
+fn accumulate(context: &Arc<Context>, settings: &FrameSettings) -> Result<Option<Accumulate>> {
+    (settings.samples > 1)
+        .then(|| Accumulate::new(context, settings.size.to_array()))
+        .transpose()
 }

@@ -46,7 +46,7 @@ pub use layout::{GpuStruct, check_layout};
 pub use pass::{Load, Pass};
 pub use pipeline::{Depth, Pipeline, PipelineDesc};
 pub use presenter::Presenter;
-pub use read_back::{Pixels, read_back};
+pub use read_back::{Pixels, Texel, copy_texel, read_back};
 pub use recorder::Recorder;
 pub use select::{DeviceSummary, devices};
 pub use shader::{Binding, BindingKind, Field, Shader, Stage, compiled as shaders};

@@ -65,6 +65,8 @@ pub struct Pass<'r> {
     colors: ArrayVec<(&'r Image, Load), MAX_COLORS>,
     depth: Option<(&'r Image, Load)>,
     push: ArrayVec<u8, MAX_PUSH>,
+    /// Part of the target, when not all of it is drawn to.
+    area: Option<vk::Rect2D>,
 }
 
 impl<'r> Pass<'r> {
@@ -83,6 +85,7 @@ impl<'r> Pass<'r> {
             colors: ArrayVec::new(),
             depth: None,
             push: ArrayVec::new(),
+            area: None,
         }
     }
 
@@ -135,6 +138,21 @@ impl<'r> Pass<'r> {
     /// Tests a depth attachment without writing it; the pass may sample it too.
     pub fn depth_test(self, image: &'r Image) -> Self {
         self.depth(image, Load::Keep)
+    }
+
+    /// Draws to this pixel of the target alone; what the others hold is kept.
+    pub fn only(mut self, pixel: [u32; 2]) -> Self {
+        self.area = Some(vk::Rect2D {
+            offset: vk::Offset2D {
+                x: pixel[0].cast_signed(),
+                y: pixel[1].cast_signed(),
+            },
+            extent: vk::Extent2D {
+                width: 1,
+                height: 1,
+            },
+        });
+        self
     }
 
     /// Draws one triangle over the whole target (the vertex shader makes it from the vertex index).
@@ -306,10 +324,10 @@ impl<'r> Pass<'r> {
         });
         let target = self.target();
         let [width, height] = target.size();
-        let area = vk::Rect2D {
+        let area = self.area.unwrap_or(vk::Rect2D {
             offset: vk::Offset2D::default(),
             extent: vk::Extent2D { width, height },
-        };
+        });
         let mut info = vk::RenderingInfo::default()
             .render_area(area)
             .layer_count(target.layers())

@@ -35,6 +35,21 @@ pub struct Surfaces {
     pub depth: Image,
 }
 
+/// Twin of `octahedral_decode`: a texel of [`Surfaces::normal`] as a unit vector.
+pub fn decode_normal([x, y]: [f32; 2]) -> [f32; 3] {
+    let z = 1.0 - x.abs() - y.abs();
+    let folded = |a: f32, b: f32| {
+        if z < 0.0 {
+            (1.0 - b.abs()) * 1f32.copysign(a)
+        } else {
+            a
+        }
+    };
+    Vec3::new(folded(x, y), folded(y, x), z)
+        .normalize_or(Vec3::Y)
+        .to_array()
+}
+
 /// The pass and its images.
 pub struct Gbuffer {
     /// By whether ρ_d and ρ_s have maps: a lookup that is not needed costs as much as one that is.
@@ -94,6 +109,11 @@ impl Gbuffer {
         })
     }
 
+    /// The images as they were last drawn.
+    pub fn surfaces(&self) -> &Surfaces {
+        &self.surfaces
+    }
+
     /// Draws the scene.
     pub fn record(
         &mut self,
@@ -140,6 +160,24 @@ impl Gbuffer {
 mod tests {
     use super::*;
     use crate::gpu::{GpuStruct, check_layout};
+
+    #[test]
+    fn normals_come_back() {
+        // The six axes and the middle of an upper and a lower octant.
+        let third = 3f32.sqrt().recip();
+        for (texel, normal) in [
+            ([1.0, 0.0], [1.0, 0.0, 0.0]),
+            ([0.0, -1.0], [0.0, -1.0, 0.0]),
+            ([0.0, 0.0], [0.0, 0.0, 1.0]),
+            ([1.0, 1.0], [0.0, 0.0, -1.0]),
+            ([1.0 / 3.0, 1.0 / 3.0], [third, third, third]),
+            ([2.0 / 3.0, -2.0 / 3.0], [third, -third, -third]),
+        ] {
+            let decoded = Vec3::from_array(decode_normal(texel));
+            let error = (decoded - Vec3::from_array(normal)).length();
+            assert!(error < 1e-6, "{texel:?}: {decoded}");
+        }
+    }
 
     #[test]
     fn host_and_shader_agree() {

@@ -153,6 +153,11 @@ impl Irradiance {
         &self.irradiance
     }
 
+    /// Settings as they are.
+    pub fn settings(&self) -> &IrradianceSettings {
+        &self.settings
+    }
+
     /// Whether all samples are in.
     pub fn is_complete(&self) -> bool {
         let wanted = if self.settings.method.is_sampled() {

@@ -10,7 +10,7 @@ use serde::Deserialize;
 
 use crate::daylight::sky::Daylight;
 use crate::gpu::{
-    Buffer, Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder,
+    Buffer, Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, PipelineDesc, Recorder,
     Result, Sampler, shaders,
 };
 use crate::gpu_struct;
@@ -246,6 +246,37 @@ impl Lighting {
         light: &Light<'_>,
         view: &View,
     ) -> &Image {
+        self.describe(recorder, surfaces, materials, occlusion, light, view)
+            .draw();
+        &self.radiance
+    }
+
+    /// Lights one pixel.
+    #[allow(clippy::too_many_arguments)]
+    pub fn record_pixel(
+        &mut self,
+        recorder: &mut Recorder,
+        surfaces: &Surfaces,
+        materials: &Buffer,
+        occlusion: &Image,
+        light: &Light<'_>,
+        view: &View,
+        pixel: [u32; 2],
+    ) {
+        self.describe(recorder, surfaces, materials, occlusion, light, view)
+            .only(pixel)
+            .draw();
+    }
+
+    fn describe<'r>(
+        &'r self,
+        recorder: &'r mut Recorder,
+        surfaces: &'r Surfaces,
+        materials: &'r Buffer,
+        occlusion: &'r Image,
+        light: &Light<'r>,
+        view: &View,
+    ) -> Pass<'r> {
         recorder
             .pass("lighting", &self.pipeline)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
@@ -261,8 +292,6 @@ impl Lighting {
             .uniform("sun", &self.sun_block(light))
             .color(&self.radiance, Load::Discard)
             .depth_test(&surfaces.depth)
-            .draw();
-        &self.radiance
     }
 
     fn sun_block(&self, light: &Light<'_>) -> SunBlock {

@@ -9,6 +9,8 @@ pub mod gbuffer;
 pub mod geometry;
 pub mod irradiance;
 pub mod lighting;
+pub mod present;
+pub mod probe;
 pub mod shadow;
 pub mod shadow_fit;
 pub mod sky_cube;

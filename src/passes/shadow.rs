@@ -82,6 +82,11 @@ impl Shadow {
         &self.depth
     }
 
+    /// The map as it was last drawn.
+    pub fn image(&self) -> &Image {
+        &self.depth
+    }
+
     /// Forgets what was drawn, so that the next frame draws it again.
     pub fn invalidate(&mut self) {
         self.drawn = None;

@@ -77,6 +77,11 @@ impl Ssao {
         })
     }
 
+    /// A as it was last computed.
+    pub fn image(&self) -> &Image {
+        &self.smooth
+    }
+
     /// Computes A for the surfaces in view. `phase` (0..1) turns the noise from frame to frame.
     pub fn record(
         &mut self,

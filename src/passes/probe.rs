@@ -1,0 +1,126 @@
+//! What is under one pixel: its luminance, and the surface with its illuminance.
+
+use std::sync::Arc;
+
+use crate::gpu::{Buffer, BufferKind, Context, Image, Recorder, Result, Texel, copy_texel};
+
+use super::gbuffer::Surfaces;
+use super::lighting::{Lighting, LightingSettings, Precision, Show};
+
+/// What one pixel shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reading {
+    /// Column and row.
+    pub pixel: [u32; 2],
+    /// Radiance of the picture, linear RGB, cd/m² (the quantity shown, in its unit, when that is another).
+    pub radiance: [f32; 3],
+    /// The surface, where there is one.
+    pub surface: Option<SurfaceReading>,
+}
+
+/// A surface under a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceReading {
+    /// Illuminance by sun and sky, linear RGB, lux.
+    pub illuminance: [f32; 3],
+    /// World normal on the viewer's side.
+    pub normal: [f32; 3],
+    /// ρ_d, linear RGB.
+    pub albedo: [f32; 3],
+    /// Distance along the view axis, metres.
+    pub distance: f32,
+    /// Number of the material in the scene.
+    pub material: u32,
+}
+
+/// Texels that are copied: radiance, illuminance, normal, albedo, material, depth.
+const TEXELS: usize = 6;
+
+/// The pass and where its texels arrive.
+pub struct Probe {
+    illuminance: Lighting,
+    buffer: Buffer,
+    asked: Option<Asked>,
+}
+
+/// What the texels in the buffer are.
+#[derive(Clone, Copy)]
+struct Asked {
+    pixel: [u32; 2],
+    texels: [Texel; TEXELS],
+    near: f32,
+    unit: f32,
+}
+
+impl Probe {
+    /// For pictures of `size` pixels.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn new(context: &Arc<Context>, size: [u32; 2], settings: LightingSettings) -> Result<Self> {
+        let settings = LightingSettings {
+            show: Show::Irradiance,
+            precision: Precision::Half,
+            ..settings
+        };
+        let bytes = (TEXELS * Texel::MOST_BYTES) as u64;
+        Ok(Self {
+            illuminance: Lighting::new(context, size, settings)?,
+            buffer: Buffer::new(context, "probe", BufferKind::ReadBack, bytes)?,
+            asked: None,
+        })
+    }
+
+    /// Asks for one pixel. `light` draws the illuminance with the pass it is given, at this pixel alone.
+    pub fn record(
+        &mut self,
+        recorder: &mut Recorder,
+        pixel: [u32; 2],
+        (radiance, shown): (&Image, Show),
+        surfaces: &Surfaces,
+        near: f32,
+        light: impl FnOnce(&mut Lighting, &mut Recorder),
+    ) {
+        light(&mut self.illuminance, recorder);
+        let images = [
+            radiance,
+            self.illuminance.image(),
+            &surfaces.normal,
+            &surfaces.albedo,
+            &surfaces.material,
+            &surfaces.depth,
+        ];
+        let mut slot = 0;
+        let texels = images.map(|image| {
+            let texel = copy_texel(recorder, image, pixel, &self.buffer, slot);
+            slot += 1;
+            texel
+        });
+        self.asked = Some(Asked {
+            pixel,
+            texels,
+            near,
+            unit: shown.file_unit(),
+        });
+    }
+
+    /// The answer, once the frame that asked is done.
+    pub fn reading(&mut self) -> Option<Reading> {
+        let asked = self.asked.take()?;
+        let [radiance, illuminance, normal, albedo, material, depth] =
+            asked.texels.map(|t| t.read(&self.buffer));
+        let rgb = |t: [f32; 4], unit: f32| [t[0] * unit, t[1] * unit, t[2] * unit];
+        let surface = (depth[0] > 0.0).then(|| SurfaceReading {
+            illuminance: rgb(illuminance, Show::Irradiance.file_unit()),
+            normal: super::gbuffer::decode_normal([normal[0], normal[1]]),
+            albedo: rgb(albedo, 1.0),
+            distance: asked.near / depth[0],
+            material: material[0] as u32,
+        });
+        Some(Reading {
+            pixel: asked.pixel,
+            radiance: rgb(radiance, asked.unit),
+            surface,
+        })
+    }
+}

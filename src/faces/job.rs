@@ -20,8 +20,25 @@ use crate::passes::irradiance::IrradianceSettings;
 use crate::passes::lighting::{LightingSettings, Precision, Show};
 use crate::passes::ssao::SsaoSettings;
 use crate::passes::tone_map::{Scale, ToneSettings};
-use crate::scene::{self, Camera, LoadOptions, Scene};
+use crate::scene::{self, Camera, LoadOptions, Loaded, Scene};
 use crate::settings::{AoResolution, Exposure, Options, Preset, Settings};
+
+/// How a scene is to be loaded.
+pub fn load_options(options: &Options) -> LoadOptions {
+    LoadOptions {
+        smooth_deg: options.smooth.map(|s| s as f32),
+        ..LoadOptions::default()
+    }
+}
+
+/// How a device is to be opened.
+pub fn context_options(device: Option<String>, validate: bool) -> ContextOptions {
+    ContextOptions {
+        device,
+        validate,
+        ..ContextOptions::default()
+    }
+}
 
 /// A scene under a daylight, and how it is to be drawn.
 pub struct Job {
@@ -45,23 +62,25 @@ impl Job {
     /// # Errors
     /// A scene that cannot be read, or options that make no sense.
     pub fn new(path: Option<&Path>, options: Options) -> Result<Self> {
-        let load = LoadOptions {
-            smooth_deg: options.smooth.map(|s| s as f32),
-            ..LoadOptions::default()
-        };
-        let loaded = match path {
-            Some(path) => scene::load(path, &load)?,
-            None => scene::bundled(&load)?,
-        };
+        let loaded = scene::load_telling(path, &load_options(&options), &|_, _| ())?;
+        let job = Self::of(path, loaded, options)?;
+        if !job.settings.quiet {
+            for warning in job.warnings() {
+                eprintln!("warning: {warning}");
+            }
+        }
+        Ok(job)
+    }
+
+    /// Decides everything about a scene that is loaded.
+    ///
+    /// # Errors
+    /// Options that make no sense.
+    pub fn of(path: Option<&Path>, loaded: Loaded, options: Options) -> Result<Self> {
         let settings = Settings::resolve(options, &loaded)?;
         let sun = sun_position(&settings)?;
         let daylight = Daylight::new(&conditions(&settings, &sun));
         let scene = loaded.scene;
-        if !settings.quiet {
-            for warning in scene.warnings.iter().chain(&daylight.warnings) {
-                eprintln!("warning: {warning}");
-            }
-        }
         let camera = settings.camera(&scene.bounds);
         let name = path.map_or("bundled".to_owned(), |p| p.display().to_string());
         Ok(Self {
@@ -74,16 +93,31 @@ impl Job {
         })
     }
 
+    /// What is odd about the scene and its light, a line each.
+    pub fn warnings(&self) -> impl Iterator<Item = &String> {
+        self.scene.warnings.iter().chain(&self.daylight.warnings)
+    }
+
+    /// Follows the settings after a change of place, time, sky or air.
+    ///
+    /// # Errors
+    /// A moment that the ephemeris does not cover: the light is as it was.
+    pub fn relight(&mut self) -> Result<()> {
+        self.sun = sun_position(&self.settings)?;
+        self.daylight = Daylight::new(&conditions(&self.settings, &self.sun));
+        Ok(())
+    }
+
     /// Opens the device that the user wants.
     ///
     /// # Errors
     /// When there is none.
     pub fn context(&self) -> Result<Arc<Context>> {
-        Ok(Context::new(&ContextOptions {
-            device: self.settings.device.clone(),
-            validate: self.settings.validate,
-            ..ContextOptions::default()
-        })?)
+        let s = &self.settings;
+        Ok(Context::new(&context_options(
+            s.device.clone(),
+            s.validate,
+        ))?)
     }
 
     /// The settings of the frame.

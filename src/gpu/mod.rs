@@ -18,6 +18,7 @@ mod context;
 mod draws;
 mod error;
 mod image;
+mod instance;
 mod layout;
 mod mips;
 mod pass;

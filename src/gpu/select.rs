@@ -251,8 +251,8 @@ fn named(summaries: &[&DeviceSummary], wanted: &str) -> Result<usize> {
 /// # Errors
 /// When there is no Vulkan loader or the driver fails.
 pub fn devices() -> Result<Vec<DeviceSummary>> {
-    let entry = super::context::load()?;
-    let instance = super::context::InstanceGuard::new(&entry, false, &[])?;
+    let entry = super::instance::load()?;
+    let instance = super::instance::InstanceGuard::new(&entry, false, &[])?;
     Ok(candidates(&instance.raw, None)?
         .into_iter()
         .map(|c| c.summary)

@@ -3,6 +3,7 @@
 //! # A tour, in the order of the light
 //!
 //! 1. [`sun_position`]: a place and a moment give the direction of the sun, by SPA or by the lecture's formulas.
+//!    [`sun_path`]: its ways over the sky, for a diagram.
 //! 2. [`sunlight`]: the sun's spectrum through five transmittances of the air gives its disc in cd/m² and its
 //!    illuminance in lux. [`spectrum`] integrates, [`colour`] turns XYZ into linear BT.709 RGB.
 //! 3. [`preetham`], [`hosek`], [`cie`]: the sky's radiance in a direction.
@@ -36,6 +37,7 @@ pub mod refinement;
 pub mod sampling;
 pub mod sky;
 pub mod spectrum;
+pub mod sun_path;
 pub mod sun_position;
 pub mod sunlight;
 pub mod tone_curve;

@@ -64,6 +64,9 @@ pub enum SunPositionError {
     /// Longitude outside ±180°, or not a number.
     #[error("longitude {0} is not in -180..=180 degrees")]
     Longitude(f64),
+    /// A year the ephemeris does not cover.
+    #[error("no sun position in the year {0}; the years -500 to 3000 are known")]
+    Year(i32),
     /// A moment the ephemeris does not cover.
     #[error("no sun position for this moment: {0}")]
     Moment(#[from] solar_positioning::Error),
@@ -228,6 +231,31 @@ pub struct SunEvents {
     pub noon: Option<DateTime<FixedOffset>>,
     /// The upper limb vanishes; `None` in polar day or night.
     pub sunset: Option<DateTime<FixedOffset>>,
+}
+
+/// A day on which the sun neither rises nor sets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Polar {
+    /// It stays up.
+    Day,
+    /// It stays down.
+    Night,
+}
+
+impl SunEvents {
+    /// Which kind of day it is where the sun neither rises nor sets; `None` where it does. The place is that of the events.
+    pub fn polar(&self, latitude: f64, longitude: f64) -> Option<Polar> {
+        if self.sunrise.is_some() || self.sunset.is_some() {
+            return None;
+        }
+        // Looked at where it is highest.
+        let noon = spa(self.noon?, latitude, longitude).ok()?;
+        Some(if noon.apparent_elevation_deg > 0.0 {
+            Polar::Day
+        } else {
+            Polar::Night
+        })
+    }
 }
 
 /// Sunrise, solar noon and sunset on the calendar day of `date` in the time zone `offset`, by SPA.

@@ -10,7 +10,7 @@ use crate::daylight::colour::{
     chromaticity, correlated_colour_temperature, luminance, xyz_from_rgb,
 };
 use crate::daylight::irradiance::IrradianceEstimator;
-use crate::daylight::sun_position::{self, SunEvents, sun_events};
+use crate::daylight::sun_position::{self, Polar, SunEvents, sun_events};
 use crate::daylight::sunlight::{Sunlight, air_mass};
 use crate::error::Result;
 use crate::settings::{Direction, SunInput};
@@ -190,7 +190,6 @@ fn events(light: &Light) -> Result<Option<SunEvents>> {
     Ok(Some(sun_events(day, *when.offset(), latitude, longitude)?))
 }
 
-/// Whether the sun that neither rises nor sets is up: looked at where it is highest.
 fn polar(light: &Light, events: &SunEvents) -> Option<&'static str> {
     let SunInput::Place {
         latitude,
@@ -200,14 +199,9 @@ fn polar(light: &Light, events: &SunEvents) -> Option<&'static str> {
     else {
         return None;
     };
-    if events.sunrise.is_some() || events.sunset.is_some() {
-        return None;
-    }
-    let noon = sun_position::spa(events.noon?, latitude, longitude).ok()?;
-    Some(if noon.apparent_elevation_deg > 0.0 {
-        "day"
-    } else {
-        "night"
+    Some(match events.polar(latitude, longitude)? {
+        Polar::Day => "day",
+        Polar::Night => "night",
     })
 }
 

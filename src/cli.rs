@@ -209,6 +209,8 @@ mod tests {
             assert_eq!(options.eye, Some([-17.5, 3.0, 13.0]));
             assert_eq!(options.place.map(|p| p.longitude), Some(-70.0));
         }
+        let (_, _, options) = render("render --place Zürich");
+        assert_eq!(options.place.map(|p| p.longitude), Some(8.54));
     }
 
     #[test]
@@ -248,6 +250,7 @@ mod tests {
             ),
             ("render --ev100 3 --exposure auto", "cannot be used with"),
             ("render --eye 1,2", "three numbers"),
+            ("sky --place copenhagn", "did you mean \"Copenhagen\"?"),
             ("render -o picture.jpg", ".png or .exr"),
             ("render -o png", ".png or .exr"),
             ("render --samples 0", "--samples"),

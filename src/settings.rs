@@ -39,8 +39,8 @@ pub struct Options {
     #[arg(long, value_enum, value_name = "NAME", help_heading = "Picture")]
     pub preset: Option<Preset>,
 
-    /// Latitude and longitude, degrees, north and east positive [default: 55.79,12.52].
-    #[arg(long, value_name = "LAT,LON", value_parser = values::place, allow_hyphen_values = true, help_heading = "Sun and sky")]
+    /// Latitude and longitude, degrees, north and east positive, or the name of a city [default: 55.79,12.52].
+    #[arg(long, value_name = "LAT,LON|CITY", value_parser = values::place, allow_hyphen_values = true, help_heading = "Sun and sky")]
     pub place: Option<Place>,
     /// Moment with its UTC offset [default: 2026-06-21T15:00+02:00].
     #[arg(long, value_name = "MOMENT", value_parser = values::when, help_heading = "Sun and sky")]

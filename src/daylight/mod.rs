@@ -3,7 +3,7 @@
 //! # A tour, in the order of the light
 //!
 //! 1. [`sun_position`]: a place and a moment give the direction of the sun, by SPA or by the lecture's formulas.
-//!    [`sun_path`]: its ways over the sky, for a diagram.
+//!    [`sun_path`]: its ways over the sky, for a diagram; [`cities`]: places by name, with their clocks.
 //! 2. [`sunlight`]: the sun's spectrum through five transmittances of the air gives its disc in cd/m² and its
 //!    illuminance in lux. [`spectrum`] integrates, [`colour`] turns XYZ into linear BT.709 RGB.
 //! 3. [`preetham`], [`hosek`], [`cie`]: the sky's radiance in a direction.
@@ -23,6 +23,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 pub mod cie;
+pub mod cities;
 pub mod colour;
 pub mod convergence;
 pub mod cube;

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use chrono::{DateTime, FixedOffset, NaiveDate};
 use clap::ValueEnum;
 
+use crate::daylight::cities;
 pub use crate::passes::lighting::Show;
 
 /// Width and height of a picture, pixels, 1..16 384 each.
@@ -144,8 +145,15 @@ pub(super) fn point(text: &str) -> Result<[f64; 3], String> {
     Ok(point)
 }
 
-/// `LAT,LON`, degrees.
+/// `LAT,LON`, degrees, or the name of a city.
 pub(super) fn place(text: &str) -> Result<Place, String> {
+    if text.trim().starts_with(char::is_alphabetic) {
+        let city = cities::named(text)?;
+        return Ok(Place {
+            latitude: city.latitude,
+            longitude: city.longitude,
+        });
+    }
     let [latitude, longitude] = list(text, "LAT,LON in degrees, for instance 55.79,12.52")?;
     within("latitude", "degrees", -90.0..=90.0, latitude)?;
     within("longitude", "degrees", -180.0..=180.0, longitude)?;
@@ -316,6 +324,12 @@ mod tests {
         for text in ["91,0", "0,181", "NaN,0", "1", "-90.1,0"] {
             assert!(place(text).is_err(), "{text}");
         }
+        let lisbon = Place {
+            latitude: 38.72,
+            longitude: -9.14,
+        };
+        assert_eq!(place(" lisboa"), Ok(lisbon));
+        assert_eq!(place("38.72,-9.14"), Ok(lisbon));
         for text in ["0,12", "367,12", "1.5,12", "172,25", "172"] {
             assert!(solar(text).is_err(), "{text}");
         }

@@ -1,4 +1,5 @@
 //! Published tables, as Rust data.
 
 pub mod cie_1931_2deg;
+pub mod cities;
 pub mod preetham_spectra;

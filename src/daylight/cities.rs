@@ -1,0 +1,296 @@
+//! Cities by name, with the clock that hangs on their walls.
+//!
+//! Names are compared without case and accents: `sao` finds São Paulo, `koln` Cologne.
+
+use chrono::{DateTime, Duration, FixedOffset, NaiveDateTime, Offset, TimeZone};
+use chrono_tz::Tz;
+use deunicode::deunicode;
+
+pub use super::data::cities::CITIES;
+use super::sun_position::direction;
+
+/// Radius of the earth as a ball, km.
+const EARTH_RADIUS_KM: f64 = 6371.0;
+
+/// A city of the list.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct City {
+    /// Name in English, or as English writes it.
+    pub name: &'static str,
+    /// Another name by which it is found: its own language's, or a former one; may be empty.
+    pub other_name: &'static str,
+    /// ISO 3166-1 code of the country or territory, two letters.
+    pub country: &'static str,
+    /// Degrees, positive north.
+    pub latitude: f64,
+    /// Degrees, positive east.
+    pub longitude: f64,
+    /// Time zone, with its history and its summer times.
+    pub zone: Tz,
+}
+
+impl City {
+    /// The moment `when` by the clock of the city.
+    pub fn clock(&self, when: DateTime<FixedOffset>) -> DateTime<FixedOffset> {
+        when.with_timezone(&self.zone).fixed_offset()
+    }
+
+    /// The moment at which the city's clock shows `local`: the first where it does so twice, and where it is put
+    /// forward over `local`, as if it had not been.
+    pub fn moment(&self, local: NaiveDateTime) -> DateTime<FixedOffset> {
+        let moment = self.zone.from_local_datetime(&local).earliest();
+        moment.map_or_else(|| self.skipped(local), |moment| moment.fixed_offset())
+    }
+
+    /// A local time that the start of summer time leaves out, by the offset of the day before.
+    fn skipped(&self, local: NaiveDateTime) -> DateTime<FixedOffset> {
+        let before = local
+            .checked_sub_signed(Duration::days(1))
+            .unwrap_or(NaiveDateTime::MIN);
+        let offset = self.zone.offset_from_utc_datetime(&before).fix();
+        let moment = offset.from_local_datetime(&local).earliest();
+        self.clock(moment.unwrap_or(DateTime::<chrono::Utc>::MIN_UTC.fixed_offset()))
+    }
+
+    fn names(&self) -> impl Iterator<Item = String> {
+        [self.name, self.other_name]
+            .into_iter()
+            .filter(|name| !name.is_empty())
+            .map(folded)
+    }
+}
+
+/// Without case, accents and what surrounds a name.
+fn folded(text: &str) -> String {
+    deunicode(text.trim()).to_lowercase()
+}
+
+/// Cities whose names begin with `text`, then those with a word that does, then those that contain it; each by name. All
+/// of them when `text` is empty.
+pub fn search(text: &str) -> Vec<&'static City> {
+    let wanted = folded(text);
+    let rank = |city: &City| {
+        let ranks = city.names().filter_map(|name| {
+            let at = name.find(&wanted)?;
+            let word = name.contains(&format!(" {wanted}"));
+            Some(if at == 0 { 0 } else { 2 - u8::from(word) })
+        });
+        ranks.min()
+    };
+    let mut found: Vec<(u8, String, &City)> = CITIES
+        .iter()
+        .filter_map(|city| Some((rank(city)?, folded(city.name), city)))
+        .collect();
+    found.sort_by(|a, b| (a.0, &a.1).cmp(&(b.0, &b.1)));
+    found.into_iter().map(|(_, _, city)| city).collect()
+}
+
+/// The city of this name.
+///
+/// # Errors
+/// One line that suggests the name that is most like it.
+pub fn named(text: &str) -> Result<&'static City, String> {
+    let wanted = folded(text);
+    if let Some(city) = CITIES
+        .iter()
+        .find(|city| city.names().any(|name| name == wanted))
+    {
+        return Ok(city);
+    }
+    let likeness = |city: &City| {
+        let all = city
+            .names()
+            .map(|name| strsim::jaro_winkler(&name, &wanted));
+        all.fold(0.0, f64::max)
+    };
+    let by_spelling = CITIES
+        .iter()
+        .max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+    let nearest = search(&wanted).first().copied().or(by_spelling);
+    let hint = nearest.map_or(String::new(), |city| {
+        format!("did you mean \"{}\"? Otherwise ", city.name)
+    });
+    Err(format!(
+        "\"{}\" is no city of the list; {hint}write LAT,LON in degrees",
+        text.trim()
+    ))
+}
+
+/// The city nearest to a place (degrees), and how far it is, km.
+pub fn nearest(latitude: f64, longitude: f64) -> (&'static City, f64) {
+    // Longitude and latitude are an azimuth and an elevation over the plane of the equator.
+    let here = direction(longitude, latitude);
+    let distance = |city: &City| {
+        let there = direction(city.longitude, city.latitude);
+        EARTH_RADIUS_KM * here.angle_between(there)
+    };
+    let mut best = (&CITIES[0], distance(&CITIES[0]));
+    for city in &CITIES[1..] {
+        let km = distance(city);
+        if km < best.1 {
+            best = (city, km);
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use chrono::NaiveDate;
+    use std::collections::HashSet;
+
+    fn moment(text: &str) -> DateTime<FixedOffset> {
+        DateTime::parse_from_rfc3339(text).unwrap()
+    }
+
+    fn local(month: u32, day: u32, hour: u32, minute: u32) -> NaiveDateTime {
+        let date = NaiveDate::from_ymd_opt(2026, month, day).unwrap();
+        date.and_hms_opt(hour, minute, 0).unwrap()
+    }
+
+    fn names(text: &str) -> Vec<&'static str> {
+        search(text).iter().map(|city| city.name).collect()
+    }
+
+    #[test]
+    fn the_list_is_sound() {
+        let mut seen = HashSet::new();
+        for city in CITIES {
+            assert!(city.latitude.abs() <= 90.0 && city.longitude.abs() <= 180.0);
+            assert!(
+                city.country.len() == 2 && city.country.chars().all(|c| c.is_ascii_uppercase())
+            );
+            for name in city.names() {
+                assert!(seen.insert(name.clone()), "{name} is there twice");
+                let parts = name.split(',').count();
+                assert!(
+                    parts == 1 && name.starts_with(char::is_alphabetic),
+                    "{name}"
+                );
+                assert_eq!(named(&name), Ok(city));
+            }
+            // The meridian of a zone is at most some 45° from its cities: a slip of sign or column is farther.
+            let noon = moment("2026-01-01T12:00:00Z");
+            let offset_h = f64::from(city.clock(noon).offset().local_minus_utc()) / 3600.0;
+            let off = (offset_h - city.longitude / 15.0 + 12.0).rem_euclid(24.0) - 12.0;
+            let pole = city.latitude == -90.0;
+            assert!(
+                pole || off.abs() < 3.2,
+                "{}: {off} h from its sun",
+                city.name
+            );
+        }
+        println!("{} cities", CITIES.len());
+        assert!(CITIES.len() >= 200);
+        for (low, high) in [
+            (-91.0, -60.0),
+            (-60.0, -30.0),
+            (-30.0, 0.0),
+            (0.0, 30.0),
+            (30.0, 60.0),
+            (60.0, 90.0),
+        ] {
+            let band = CITIES
+                .iter()
+                .filter(|c| c.latitude > low && c.latitude <= high);
+            assert!(band.count() > 1, "{low}..{high}");
+        }
+    }
+
+    #[test]
+    fn searches_forgive_case_and_accents() {
+        assert_eq!(names("sao"), ["São Paulo"]);
+        assert_eq!(names("  ZÜR "), ["Zürich"]);
+        assert_eq!(names("zur"), ["Zürich"]);
+        assert_eq!(names("Tromso"), ["Tromsø"]);
+        assert_eq!(names("københ"), ["Copenhagen"]);
+        assert_eq!(names("kobenh"), ["Copenhagen"]);
+        assert_eq!(names("xyzzy"), [""; 0]);
+        assert_eq!(search("").len(), CITIES.len());
+    }
+
+    #[test]
+    fn beginnings_come_first() {
+        // Beginnings of names, of words, then insides.
+        let found = names("port");
+        let at = |name: &str| found.iter().position(|n| *n == name).expect(name);
+        assert_eq!(&found[..3], ["Port Louis", "Port Moresby", "Portland"]);
+        let found_or = names("or");
+        let first_inside = found_or.iter().position(|n| *n == "New York").unwrap();
+        assert!(found_or.iter().position(|n| *n == "New Orleans").unwrap() < first_inside);
+        assert!(at("Porto") < found.len());
+    }
+
+    #[test]
+    fn a_name_is_a_place_or_a_suggestion() {
+        assert_eq!(named("copenhagen").map(|c| c.latitude), Ok(55.68));
+        assert_eq!(named("SAO PAULO").map(|c| c.country), Ok("BR"));
+        for (wrong, right) in [
+            ("copenhagn", "Copenhagen"),
+            ("kopenhagen", "Copenhagen"),
+            ("copen", "Copenhagen"),
+            ("Sidney", "Sydney"),
+            ("reykjavic", "Reykjavík"),
+            ("los angelos", "Los Angeles"),
+        ] {
+            let error = named(wrong).expect_err(wrong);
+            assert!(
+                error.contains(&format!("did you mean \"{right}\"?")),
+                "{error}"
+            );
+            assert_eq!(error.lines().count(), 1);
+        }
+    }
+
+    #[test]
+    fn clocks_keep_summer_time() {
+        let copenhagen = named("copenhagen").unwrap();
+        let offset = |when: &str| copenhagen.clock(moment(when)).offset().local_minus_utc() / 3600;
+        assert_eq!(
+            (
+                offset("2026-01-15T12:00:00Z"),
+                offset("2026-07-15T12:00:00Z")
+            ),
+            (1, 2)
+        );
+        // Clocks are put forward on 29 March and back on 25 October.
+        assert_eq!(
+            copenhagen.moment(local(3, 29, 2, 30)),
+            moment("2026-03-29T03:30:00+02:00")
+        );
+        assert_eq!(
+            copenhagen.moment(local(10, 25, 2, 30)),
+            moment("2026-10-25T02:30:00+02:00")
+        );
+        let sydney = named("sydney").unwrap();
+        assert_eq!(
+            sydney.moment(local(1, 15, 12, 0)),
+            moment("2026-01-15T12:00:00+11:00")
+        );
+        let delhi = named("delhi").unwrap();
+        assert_eq!(
+            delhi.moment(local(6, 1, 12, 0)),
+            moment("2026-06-01T12:00:00+05:30")
+        );
+        for city in CITIES {
+            let noon = local(6, 21, 12, 0);
+            assert_eq!(city.moment(noon).naive_local(), noon, "{}", city.name);
+            city.moment(NaiveDateTime::MIN);
+            city.moment(NaiveDateTime::MAX);
+        }
+    }
+
+    #[test]
+    fn the_nearest_city_may_be_over_the_date_line() {
+        let (city, km) = nearest(55.7, 12.55);
+        assert_eq!(city.name, "Copenhagen");
+        assert!(km < 5.0, "{km}");
+        assert_eq!(nearest(-18.0, -179.9).0.name, "Suva");
+        let (pole, km) = nearest(-90.0, 77.0);
+        assert_eq!(pole.name, "South Pole");
+        assert!(km < 1e-6, "{km}");
+        let (_, lyngby) = nearest(55.79, 12.52);
+        assert!(lyngby < 1.0);
+    }
+}

@@ -19,6 +19,7 @@ const SOURCES: &str = "shaders_glsl";
 fn main() {
     println!("cargo:rerun-if-changed={SOURCES}");
     println!("cargo:rerun-if-changed=build.rs");
+    tell_commit();
     if let Err(message) = build() {
         eprintln!("{}", message.trim_end());
         process::exit(1);
@@ -56,6 +57,30 @@ fn build() -> Result<(), String> {
     );
     let out = PathBuf::from(env::var("OUT_DIR").map_err(|e| e.to_string())?).join("shaders.rs");
     fs::write(&out, generated).map_err(|e| format!("{}: {e}", out.display()))
+}
+
+/// The commit that is built, for measurements. Only release builds are measured: other builds are spared from being
+/// made again at every commit.
+fn tell_commit() {
+    let git = |arguments: &[&str]| {
+        let output = process::Command::new("git").args(arguments).output().ok()?;
+        let text = String::from_utf8(output.stdout).ok()?;
+        output.status.success().then(|| text.trim().to_owned())
+    };
+    let release = env::var("PROFILE").is_ok_and(|p| p == "release");
+    let mut commit = String::from("unknown");
+    if release && let Some(hash) = git(&["rev-parse", "--short=12", "HEAD"]) {
+        let changed = git(&["status", "--porcelain", "--untracked-files=no"]);
+        let dirty = changed.is_none_or(|list| !list.is_empty());
+        commit = hash + if dirty { " and changes" } else { "" };
+        if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]) {
+            println!("cargo:rerun-if-changed={log}");
+        }
+        for folder in ["src", "Cargo.lock"] {
+            println!("cargo:rerun-if-changed={folder}");
+        }
+    }
+    println!("cargo:rustc-env=SKYLIGHT_COMMIT={commit}");
 }
 
 fn stage_files() -> Result<Vec<PathBuf>, String> {

@@ -224,7 +224,7 @@ mod tests {
         assert_eq!(parse(words("info")), Ok(Command::Info));
         assert!(matches!(
             parse(words("bench --frames 3 --json t.json")),
-            Ok(Command::Bench { wishes, .. }) if wishes.frames == 3
+            Ok(Command::Bench { wishes, .. }) if wishes.frames == Some(3)
         ));
     }
 

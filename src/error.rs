@@ -44,6 +44,16 @@ pub enum Error {
     /// Pictures that do not belong together.
     #[error("cannot compare: {0}")]
     Compare(String),
+    /// Something takes longer than it may.
+    #[error("slower than {factor} times {file}: {slower}")]
+    Slower {
+        /// The factor allowed.
+        factor: f64,
+        /// The earlier measurement.
+        file: String,
+        /// What is slower, with ratios.
+        slower: String,
+    },
     /// Results that nobody can read.
     #[error("cannot write to standard output: {0}")]
     Stdout(String),

@@ -13,7 +13,7 @@ pub use resolve::{CameraParts, Exposure, Settings, SunInput};
 pub use values::{
     AoResolution, Direction, ExposureMode, Place, Preset, Show, Size, SolarTime, Switch,
 };
-pub(crate) use values::{exposure_factor, sun as direction};
+pub(crate) use values::{exposure_factor, ratio, sun as direction};
 
 /// A value or a name that makes no sense: one line that names it and the remedy.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -8,7 +8,7 @@ use std::process::{Command, Output};
 
 use gpu::{Device, Model, camera, clear_day, matt, settings};
 use skylight::gpu::{
-    Context, ContextOptions, Depth, Format, GpuError, Image, ImageDesc, Load, Pipeline,
+    Context, ContextOptions, Depth, Format, GpuError, Image, ImageDesc, Load, Optional, Pipeline,
     PipelineDesc, Recorder, Sampler, Timing, read_back, shaders,
 };
 use skylight::passes::accumulate::Push;
@@ -134,7 +134,7 @@ fn draw_everything(device: &mut Device) -> Vec<u8> {
 fn descriptor_pools_draw_what_push_descriptors_draw() {
     let mut pushed = Device::new();
     let mut pooled = Device::with(&ContextOptions {
-        no_push_descriptors: true,
+        without: vec![Optional::PushDescriptor],
         ..ContextOptions::default()
     });
     let (a, b) = (draw_everything(&mut pushed), draw_everything(&mut pooled));

@@ -86,12 +86,23 @@ fn reference_up(normals: &[DVec3], expected: &[DVec3]) -> f64 {
     up.map_or(1.0, |k| expected[k].max_element())
 }
 
-/// Exponent p of error ∝ samples^p: the slope of a straight line through the logarithms, by least squares.
+/// Exponent p of error ∝ samples^p.
 pub fn exponent(rows: &[Convergence], method: IrradianceMethod) -> f64 {
     let points: Vec<(f64, f64)> = rows
         .iter()
         .filter(|row| row.method == method)
-        .map(|row| (f64::from(row.samples).ln(), row.rms.ln()))
+        .map(|row| (f64::from(row.samples), row.rms))
+        .collect();
+    power(&points)
+}
+
+/// Exponent p of y ∝ x^p: the slope of a straight line through the logarithms, by least squares. Points that have none are
+/// left out; NaN for less than two places.
+pub fn power(points: &[(f64, f64)]) -> f64 {
+    let points: Vec<(f64, f64)> = points
+        .iter()
+        .filter(|(x, y)| *x > 0.0 && *y > 0.0)
+        .map(|(x, y)| (x.ln(), y.ln()))
         .collect();
     let n = points.len() as f64;
     let mean_x = points.iter().map(|p| p.0).sum::<f64>() / n;
@@ -105,6 +116,14 @@ pub fn exponent(rows: &[Convergence], method: IrradianceMethod) -> f64 {
 mod tests {
     use super::*;
     use crate::daylight::{Conditions, Daylight};
+
+    #[test]
+    fn the_exponent_of_a_power_is_found() {
+        let squares = [1.0, 2.0, 5.0].map(|x: f64| (x, 3.0 * x * x));
+        assert!((power(&squares) - 2.0).abs() < 1e-12);
+        assert!((power(&[(1.0, 4.0), (10.0, 4.0), (0.0, 9.0)])).abs() < 1e-12);
+        assert!(power(&[(2.0, 4.0)]).is_nan() && power(&[]).is_nan());
+    }
 
     #[test]
     fn random_samples_converge_as_the_square_root() {

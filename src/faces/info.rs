@@ -9,7 +9,7 @@ use crate::output::print;
 /// # Errors
 /// When there is no Vulkan, or no device.
 pub fn run() -> Result<()> {
-    let devices = devices()?;
+    let devices = devices(&[])?;
     if devices.is_empty() {
         return Err(GpuError::NoDevice.into());
     }
@@ -25,7 +25,7 @@ fn describe(device: &DeviceSummary) -> String {
     let optional: Vec<String> = device
         .optional
         .iter()
-        .map(|(name, present)| format!("{name}: {}", if *present { "yes" } else { "no" }))
+        .map(|(what, present)| format!("{}: {}", what.name(), if *present { "yes" } else { "no" }))
         .collect();
     format!(
         "{} \"{}\"\n    kind     {}\n    Vulkan   {}\n    driver   {}\n    lacks    {lacks}\n    \

@@ -22,6 +22,8 @@ pub use compare::CompareWishes;
 pub use motion::Motion;
 pub use sky::SkyWishes;
 
+use std::path::PathBuf;
+
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::Command;
@@ -43,6 +45,15 @@ pub fn run(command: Command) -> Result<()> {
         Command::Bake { wishes, options } => bake::run(&wishes, *options),
         Command::Compare { wishes } => compare::run(&wishes),
         Command::Info => info::run(),
+    }
+}
+
+/// A file name that ends in `.svg`.
+fn svg_path(text: &str) -> std::result::Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match path.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case("svg") => Ok(path),
+        _ => Err("the name must end in .svg".to_owned()),
     }
 }
 

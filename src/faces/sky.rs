@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::light::Light;
 use super::sky_report::SkyReport;
-use super::{plot_spectrum, plot_study};
+use super::{plot_spectrum, plot_study, svg_path};
 use crate::daylight::IrradianceMethod;
 use crate::daylight::convergence::{Convergence, exponent, study};
 use crate::error::Result;
@@ -29,14 +29,6 @@ pub struct SkyWishes {
     /// Instead: error against samples for each way of computing the irradiance of this sky.
     #[arg(long)]
     pub irradiance_study: bool,
-}
-
-fn svg_path(text: &str) -> std::result::Result<PathBuf, String> {
-    let path = PathBuf::from(text);
-    match path.extension() {
-        Some(extension) if extension.eq_ignore_ascii_case("svg") => Ok(path),
-        _ => Err("the name must end in .svg".to_owned()),
-    }
 }
 
 /// Irradiance by the exact sum unless the user wants another way: nothing here has to be fast.

@@ -8,7 +8,7 @@ use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 
 use super::error::{During, GpuError, Result};
 use super::instance::{InstanceGuard, has_instance_extension, load};
-use super::select::{self, DeviceSummary};
+use super::select::{self, DeviceSummary, Optional};
 use super::surface::{self, RawSurface, Surface, WindowHandles};
 use super::validation::Messenger;
 
@@ -19,8 +19,8 @@ pub struct ContextOptions {
     pub device: Option<String>,
     /// Turn on the validation layer with synchronization validation.
     pub validate: bool,
-    /// Bind through descriptor pools although the device has push descriptors (to test that path).
-    pub no_push_descriptors: bool,
+    /// What to do without although the device has it.
+    pub without: Vec<Optional>,
 }
 
 /// How an image is looked up.
@@ -109,15 +109,11 @@ impl Context {
             .map(|window| RawSurface::new(&entry, &instance.raw, window))
             .transpose()?;
         let chosen = select::choose(
-            select::candidates(&instance.raw, surface.as_ref())?,
+            select::candidates(&instance.raw, surface.as_ref(), &options.without)?,
             options.device.as_deref(),
         )?;
-        let push = !options.no_push_descriptors
-            && chosen
-                .summary
-                .optional
-                .contains(&("VK_KHR_push_descriptor", true));
-        let device = create_device(&instance.raw, &chosen, push, surface.is_some())?;
+        let push = chosen.summary.has(Optional::PushDescriptor);
+        let device = create_device(&instance.raw, &chosen, surface.is_some())?;
         // SAFETY: `chosen` comes from this instance; the queue family was found on it.
         let (queue, limits) = unsafe {
             (
@@ -172,6 +168,11 @@ impl Context {
     /// The device in words.
     pub fn summary(&self) -> &DeviceSummary {
         &self.summary
+    }
+
+    /// Whether the device counts what its pipelines do.
+    pub(super) fn counts_work(&self) -> bool {
+        self.summary.has(Optional::PipelineStatistics)
     }
 
     /// Messages of the validation layer so far; empty when validation is off.
@@ -277,7 +278,6 @@ impl Drop for Context {
 fn create_device(
     instance: &ash::Instance,
     chosen: &select::Candidate,
-    push_descriptors: bool,
     presents: bool,
 ) -> Result<DeviceGuard> {
     let priority = [1.0];
@@ -285,13 +285,15 @@ fn create_device(
         .queue_family_index(chosen.queue_family)
         .queue_priorities(&priority)];
     let mut extensions = Vec::new();
-    if push_descriptors {
+    if chosen.summary.has(Optional::PushDescriptor) {
         extensions.push(select::PUSH_DESCRIPTORS.as_ptr());
     }
     if presents {
         extensions.push(khr::swapchain::NAME.as_ptr());
     }
-    let core = vk::PhysicalDeviceFeatures::default().geometry_shader(true);
+    let core = vk::PhysicalDeviceFeatures::default()
+        .geometry_shader(true)
+        .pipeline_statistics_query(chosen.summary.has(Optional::PipelineStatistics));
     let mut v12 = vk::PhysicalDeviceVulkan12Features::default()
         .scalar_block_layout(true)
         .host_query_reset(true);

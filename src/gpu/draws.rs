@@ -10,6 +10,7 @@ use super::image::Image;
 use super::layout::GpuStruct;
 use super::pass::Pass;
 use super::pipeline::Pipeline;
+use super::work::{texel_bytes, texels};
 
 /// The draws inside a pass.
 pub struct Draws<'p, 'r> {
@@ -28,6 +29,7 @@ impl<'r> Draws<'_, 'r> {
             "{} was not uploaded",
             image.name()
         );
+        self.pass.buffer_bytes += texels(image) * texel_bytes(image.format());
         self.pass.bind_image(name, image, sampler);
     }
 
@@ -65,6 +67,7 @@ impl<'r> Draws<'_, 'r> {
         );
         let buffers: ArrayVec<vk::Buffer, 8> = streams.iter().map(|b| b.raw()).collect();
         let offsets: ArrayVec<u64, 8> = streams.iter().map(|_| 0).collect();
+        self.pass.buffer_bytes += streams.iter().map(|s| s.size()).sum::<u64>();
         let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
         // SAFETY: the buffers are alive and were made for this use.
         unsafe {
@@ -76,6 +79,7 @@ impl<'r> Draws<'_, 'r> {
     /// Draws a range of the indices.
     pub fn indexed(&mut self, first: u32, count: u32) {
         self.pass.flush();
+        self.pass.buffer_bytes += 4 * u64::from(count);
         let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
         // SAFETY: the range lies within the bound index buffer (checked when the scene was loaded).
         unsafe { raw.cmd_draw_indexed(command, count, 1, first, 0, 0) };

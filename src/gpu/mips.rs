@@ -5,6 +5,7 @@ use ash::vk;
 use super::access::Use;
 use super::image::Image;
 use super::recorder::Recorder;
+use super::work::{Traffic, texel_bytes, texels};
 
 impl Recorder {
     /// Fills the mip levels of an image from its first: each texel is the mean of four.
@@ -20,6 +21,7 @@ impl Recorder {
         image.set_last_use(Use::CopySource);
         self.end_timing(&mark);
         self.unlabel();
+        self.end_work(&mark, || mip_traffic(image));
         self.isolate(&mark);
     }
 
@@ -67,5 +69,19 @@ impl Recorder {
                 vk::Filter::LINEAR,
             );
         }
+    }
+}
+
+/// Every level but the last is read, every level but the first is written.
+fn mip_traffic(image: &Image) -> Traffic {
+    let bytes = |level: u32| {
+        let [width, height] = image.size().map(|edge| u64::from((edge >> level).max(1)));
+        width * height * u64::from(image.layers()) * texel_bytes(image.format())
+    };
+    let last = image.levels().saturating_sub(1);
+    Traffic {
+        bytes_read: (0..last).map(bytes).sum(),
+        bytes_written: (1..=last).map(bytes).sum(),
+        ..Traffic::new(texels(image))
     }
 }

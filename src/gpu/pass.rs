@@ -13,6 +13,7 @@ use super::layout::{GpuStruct, check_layout};
 use super::pipeline::{Pipeline, block_size};
 use super::recorder::Recorder;
 use super::shader::{Binding, BindingKind};
+use super::work::{Traffic, texels};
 
 const MAX_BINDINGS: usize = 16;
 const MAX_COLORS: usize = 8;
@@ -67,6 +68,8 @@ pub struct Pass<'r> {
     push: ArrayVec<u8, MAX_PUSH>,
     /// Part of the target, when not all of it is drawn to.
     area: Option<vk::Rect2D>,
+    /// Bytes of the buffers and textures that are read.
+    pub(super) buffer_bytes: u64,
 }
 
 impl<'r> Pass<'r> {
@@ -86,6 +89,7 @@ impl<'r> Pass<'r> {
             depth: None,
             push: ArrayVec::new(),
             area: None,
+            buffer_bytes: 0,
         }
     }
 
@@ -113,6 +117,7 @@ impl<'r> Pass<'r> {
             offset: 0,
             range: vk::WHOLE_SIZE,
         };
+        self.buffer_bytes += buffer.size();
         self.bind(binding, Resource::Buffer(info));
         self
     }
@@ -184,7 +189,29 @@ impl<'r> Pass<'r> {
                 .cmd_end_rendering(self.recorder.command)
         };
         self.recorder.unlabel();
+        let traffic = self.traffic();
+        self.recorder.end_work(&mark, || traffic);
         self.recorder.isolate(&mark);
+    }
+
+    fn traffic(&self) -> Traffic {
+        let target = self.colors.first().map(|c| c.0).or(self.depth.map(|d| d.0));
+        let mut traffic = Traffic::new(target.map_or(0, texels));
+        traffic.bytes_read += self.buffer_bytes;
+        for image in &self.reads {
+            traffic.sample(image);
+        }
+        for (image, load) in &self.colors {
+            traffic.write(image, *load == Load::Keep);
+        }
+        match self.depth {
+            Some((image, load)) if self.pipeline.writes_depth => {
+                traffic.write(image, load == Load::Keep);
+            }
+            Some((image, _)) => traffic.test(image),
+            None => {}
+        }
+        traffic
     }
 
     fn depth_use(&self) -> Use {

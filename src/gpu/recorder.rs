@@ -13,6 +13,7 @@ use super::image::Image;
 use super::pass::Pass;
 use super::pipeline::Pipeline;
 use super::timings::{PassTime, Queries, Stopwatch, Timing, Timings};
+use super::work::{PassWork, Traffic, WorkLog};
 
 /// Bytes of uniform blocks a recorder can hold between `begin` and `finish`.
 const UNIFORM_BYTES: u64 = 1 << 16;
@@ -34,6 +35,7 @@ pub struct Recorder {
     timing: Timing,
     queries: Queries,
     timings: Timings,
+    work: Option<WorkLog>,
     fault: Option<GpuError>,
 }
 
@@ -66,6 +68,9 @@ impl Recorder {
             timing,
             queries,
             timings: Timings::default(),
+            work: (timing == Timing::Work)
+                .then(|| WorkLog::new(context))
+                .transpose()?,
             fault: None,
         };
         let allocate = vk::CommandBufferAllocateInfo::default()
@@ -111,6 +116,9 @@ impl Recorder {
         self.uniform_end = 0;
         self.timings.clear();
         self.queries.reset();
+        if let Some(work) = &mut self.work {
+            work.reset();
+        }
         if self.descriptor_pool != vk::DescriptorPool::null() {
             let flags = vk::DescriptorPoolResetFlags::empty();
             // SAFETY: no submission that uses its sets is pending.
@@ -181,10 +189,16 @@ impl Recorder {
         if let Some(fault) = self.fault.take() {
             return Err(fault);
         }
-        if waited? && self.timing == Timing::Timestamps {
-            self.queries.collect(&mut self.timings)?;
+        if !waited? {
+            return Ok(());
         }
-        Ok(())
+        if let Some(work) = &mut self.work {
+            work.collect()?;
+        }
+        match self.timing {
+            Timing::Timestamps => self.queries.collect(&mut self.timings),
+            _ => Ok(()),
+        }
     }
 
     /// Whether there was anything to wait for.
@@ -207,7 +221,7 @@ impl Recorder {
         self.acquired = Some(acquired);
     }
 
-    /// Times passes differently from the next frame on.
+    /// Times passes differently from the next frame on ([`Timing::Work`] needs a recorder that was made for it).
     pub fn set_timing(&mut self, timing: Timing) {
         self.timing = timing;
     }
@@ -215,6 +229,11 @@ impl Recorder {
     /// Times of the last frame that was waited for; empty with [`Timing::Off`].
     pub fn timings(&self) -> &Timings {
         &self.timings
+    }
+
+    /// What the passes of the last finished frame did; empty but with [`Timing::Work`].
+    pub fn work(&self) -> &[PassWork] {
+        self.work.as_ref().map_or(&[], WorkLog::passes)
     }
 
     /// The context it records for.
@@ -281,6 +300,10 @@ impl Recorder {
                 .begin(self.command, name)
                 .map_or(Mark::None, Mark::Query),
             Timing::Isolated => Mark::Wall(name),
+            Timing::Work => match &mut self.work {
+                Some(work) => Mark::Work(work.begin(self.command, name)),
+                None => Mark::None,
+            },
         }
     }
 
@@ -288,6 +311,14 @@ impl Recorder {
     pub(super) fn end_timing(&self, mark: &Mark) {
         if let Mark::Query(index) = mark {
             self.queries.end(self.command, *index);
+        }
+    }
+
+    /// With [`Timing::Work`], notes what the pass that was just recorded touches.
+    pub(super) fn end_work(&mut self, mark: &Mark, traffic: impl FnOnce() -> Traffic) {
+        if let (Mark::Work(index), Some(work)) = (mark, &mut self.work) {
+            work.end(self.command, *index);
+            work.note(*index, traffic());
         }
     }
 
@@ -361,4 +392,5 @@ pub(super) enum Mark {
     None,
     Query(u32),
     Wall(&'static str),
+    Work(usize),
 }

@@ -3,6 +3,7 @@
 use std::ffi::{CStr, c_char};
 
 use ash::vk;
+use clap::ValueEnum;
 
 use super::error::{During, GpuError, Result};
 use super::surface::RawSurface;
@@ -22,10 +23,36 @@ pub struct DeviceSummary {
     pub driver: String,
     /// Features, extensions and formats that are needed but missing; empty when the device will do.
     pub missing: Vec<String>,
-    /// Extensions that are used where present, with whether they are.
-    pub optional: Vec<(&'static str, bool)>,
+    /// What is used where present, with whether it is.
+    pub optional: Vec<(Optional, bool)>,
     /// Largest edge of a 2D image, pixels.
     pub max_image_edge: u32,
+}
+
+/// What is used where present, and done without elsewhere.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Optional {
+    /// The extension VK_KHR_push_descriptor; descriptor pools otherwise.
+    PushDescriptor,
+    /// The feature pipelineStatisticsQuery; the benchmark has no such columns otherwise.
+    PipelineStatistics,
+}
+
+impl Optional {
+    /// Name in the Vulkan specification.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PushDescriptor => "VK_KHR_push_descriptor",
+            Self::PipelineStatistics => "pipelineStatisticsQuery",
+        }
+    }
+}
+
+impl DeviceSummary {
+    /// Whether something optional is present and may be used.
+    pub fn has(&self, optional: Optional) -> bool {
+        self.optional.contains(&(optional, true))
+    }
 }
 
 /// A device under consideration.
@@ -58,10 +85,12 @@ fn kind_and_rank(kind: vk::PhysicalDeviceType) -> (&'static str, u32) {
     }
 }
 
-/// The candidates in the driver's order; for a window, what keeps a device from presenting to it counts as missing.
+/// The candidates in the driver's order; for a window, what keeps a device from presenting to it counts as missing. What
+/// is listed in `without` counts as not present.
 pub(super) fn candidates(
     instance: &ash::Instance,
     surface: Option<&RawSurface>,
+    without: &[Optional],
 ) -> Result<Vec<Candidate>> {
     // SAFETY: the instance is alive for the whole call.
     let handles =
@@ -69,7 +98,7 @@ pub(super) fn candidates(
     handles
         .into_iter()
         .enumerate()
-        .map(|(i, handle)| candidate(instance, i, handle, surface))
+        .map(|(i, handle)| candidate(instance, i, handle, surface, without))
         .collect()
 }
 
@@ -78,6 +107,7 @@ fn candidate(
     index: usize,
     handle: vk::PhysicalDevice,
     surface: Option<&RawSurface>,
+    without: &[Optional],
 ) -> Result<Candidate> {
     let mut driver = vk::PhysicalDeviceDriverProperties::default();
     let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
@@ -117,10 +147,7 @@ fn candidate(
             text(&driver.driver_info)
         ),
         missing,
-        optional: vec![(
-            "VK_KHR_push_descriptor",
-            extensions.iter().any(|e| e == "VK_KHR_push_descriptor"),
-        )],
+        optional: optional(instance, handle, &extensions, without),
         max_image_edge: properties.limits.max_image_dimension2_d,
     };
     Ok(Candidate {
@@ -129,6 +156,24 @@ fn candidate(
         queue_family: queue_family.unwrap_or(0),
         rank,
     })
+}
+
+fn optional(
+    instance: &ash::Instance,
+    handle: vk::PhysicalDevice,
+    extensions: &[String],
+    without: &[Optional],
+) -> Vec<(Optional, bool)> {
+    // SAFETY: `handle` comes from this instance.
+    let core = unsafe { instance.get_physical_device_features(handle) };
+    let present = |optional: &Optional| match optional {
+        Optional::PushDescriptor => extensions.iter().any(|e| e == optional.name()),
+        Optional::PipelineStatistics => core.pipeline_statistics_query == vk::TRUE,
+    };
+    Optional::value_variants()
+        .iter()
+        .map(|o| (*o, present(o) && !without.contains(o)))
+        .collect()
 }
 
 fn extensions(instance: &ash::Instance, handle: vk::PhysicalDevice) -> Result<Vec<String>> {
@@ -246,14 +291,14 @@ fn named(summaries: &[&DeviceSummary], wanted: &str) -> Result<usize> {
         })
 }
 
-/// Every device of this machine, also those that will not do.
+/// Every device of this machine, also those that will not do. What is listed in `without` counts as not present.
 ///
 /// # Errors
 /// When there is no Vulkan loader or the driver fails.
-pub fn devices() -> Result<Vec<DeviceSummary>> {
+pub fn devices(without: &[Optional]) -> Result<Vec<DeviceSummary>> {
     let entry = super::instance::load()?;
     let instance = super::instance::InstanceGuard::new(&entry, false, &[])?;
-    Ok(candidates(&instance.raw, None)?
+    Ok(candidates(&instance.raw, None, without)?
         .into_iter()
         .map(|c| c.summary)
         .collect())

@@ -19,6 +19,8 @@ pub enum Timing {
     Timestamps,
     /// Each pass is submitted alone and waited for: wall time, trustworthy on software drivers too.
     Isolated,
+    /// Not at all; bytes and pipeline statistics are counted instead (they would disturb the times).
+    Work,
 }
 
 /// Time of one pass.

@@ -125,6 +125,7 @@ ranged! {
     gamma: "gamma", "", 0.1..=10.0;
     scale: "scale", "", 0.0..=1e6;
     exposure_factor: "exposure", "", 1e-9..=1e9;
+    ratio: "ratio", "", 0.0..=1e9;
     irradiance_error: "error", "percent", 0.0..=100.0;
     ao_radius: "radius", "metres", 0.0..=1000.0;
     specular: "specular scale", "", 0.0..=100.0;

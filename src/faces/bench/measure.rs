@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::faces::job::Job;
 use crate::faces::motion::Motion;
 use crate::frame::Frame;
-use crate::gpu::{Context, DeviceSummary, PassTime, Recorder, Stopwatch, Timing};
+use crate::gpu::{Context, DeviceSummary, PassTime, PassWork, Recorder, Stopwatch, Timing};
 use crate::passes::lighting::Precision;
 
 /// Frames that are drawn and forgotten: shaders are compiled at their first use.
@@ -31,8 +31,10 @@ pub struct Measured {
     pub passes: Vec<(&'static str, Samples)>,
     /// The passes of each frame together.
     pub parts: Samples,
-    /// Whole frames with sky, irradiance and shadow map drawn anew.
-    pub new_light: Whole,
+    /// The work of every pass in one frame.
+    pub work: Vec<PassWork>,
+    /// Whole frames with everything drawn anew.
+    pub anew: Whole,
     /// Whole frames in motion; of sky, irradiance and shadow map only what moved was drawn.
     pub moving: Whole,
 }
@@ -91,8 +93,9 @@ impl<'j> Bench<'j> {
             // Alternating: what disturbs the machine disturbs both alike.
             self.passes(2 * i, into)?;
             self.frame.invalidate();
-            self.whole(2 * i + 1, &mut into.new_light)?;
+            self.whole(2 * i + 1, &mut into.anew)?;
         }
+        measured.work = self.work()?;
         self.refine()?;
         for i in 0..WARM_UP + frames {
             let into = if i < WARM_UP {
@@ -134,6 +137,18 @@ impl<'j> Bench<'j> {
         into.device.push(device, device_cpu);
         into.frame.push(record + device, record_cpu + device_cpu);
         Ok(())
+    }
+
+    /// What the passes do, counted in a frame that is not timed.
+    fn work(&mut self) -> Result<Vec<PassWork>> {
+        let mut recorder = Recorder::new(self.whole.context(), Timing::Work)?;
+        self.frame.invalidate();
+        recorder.begin()?;
+        let job = self.job;
+        self.frame
+            .record(&mut recorder, &job.daylight, &job.camera, 0);
+        recorder.finish()?;
+        Ok(recorder.work().to_vec())
     }
 
     fn refine(&mut self) -> Result<()> {

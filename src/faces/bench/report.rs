@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::BenchWishes;
 use super::measure::{Measured, Whole, trustworthy};
 use super::statistics::Summary;
+use super::work::Work;
 use crate::faces::job::Job;
 use crate::gpu::{Context, Timing};
 use crate::settings::name;
@@ -17,10 +18,28 @@ pub const SUM_TOLERANCE: f64 = 0.15;
 /// A measurement and what was measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Report {
+    /// What was measured.
+    #[serde(flatten)]
+    pub head: Head,
+    /// Each pass, with everything drawn anew.
+    pub passes: Vec<Row>,
+    /// The sum of the passes of a frame.
+    pub parts: Summary,
+    /// The whole frame; of sky, irradiance and shadow map only what moved was drawn.
+    pub frame: Frame,
+    /// The whole frame with sky, irradiance and shadow map drawn anew.
+    pub frame_anew: Frame,
+}
+
+/// What was measured.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Head {
     /// The device.
     pub device: Device,
     /// Version of the program.
     pub version: String,
+    /// Its commit, where known.
+    pub commit: String,
     /// Name of the scene.
     pub scene: String,
     /// Width and height of the picture, pixels.
@@ -37,14 +56,6 @@ pub struct Report {
     pub timing: String,
     /// Options, by name.
     pub settings: BTreeMap<String, String>,
-    /// Each pass.
-    pub passes: Vec<Row>,
-    /// The sum of the passes of a frame.
-    pub parts: Summary,
-    /// The whole frame; of sky, irradiance and shadow map only what moved was drawn.
-    pub frame: Frame,
-    /// The whole frame with sky, irradiance and shadow map drawn anew.
-    pub frame_new_light: Frame,
 }
 
 /// The device measured.
@@ -68,6 +79,9 @@ pub struct Row {
     /// Its time.
     #[serde(flatten)]
     pub time: Summary,
+    /// What it does.
+    #[serde(flatten)]
+    pub work: Work,
 }
 
 /// A whole frame.
@@ -82,48 +96,81 @@ pub struct Frame {
     pub device: Summary,
 }
 
-impl Report {
-    /// Sums up.
-    pub fn new(job: &Job, context: &Context, measured: &Measured, wishes: &BenchWishes) -> Self {
-        let summary = context.summary();
-        let row = |(name, samples): &(&str, super::statistics::Samples)| Row {
-            name: (*name).to_owned(),
-            time: samples.summary(),
+impl Head {
+    /// Of a measurement that is about to begin.
+    pub fn new(job: &Job, context: &Context, wishes: &BenchWishes) -> Self {
+        let device = context.summary();
+        let timing = match trustworthy(device) {
+            Timing::Timestamps => "timestamps",
+            _ => "isolated",
         };
         let settings = job.settings.parameters().into_iter();
         Self {
             device: Device {
-                name: summary.name.clone(),
-                kind: summary.kind.to_owned(),
-                driver: summary.driver.trim().to_owned(),
-                vulkan: summary.api.clone(),
+                name: device.name.clone(),
+                kind: device.kind.to_owned(),
+                driver: device.driver.trim().to_owned(),
+                vulkan: device.api.clone(),
             },
             version: env!("CARGO_PKG_VERSION").to_owned(),
+            commit: commit(),
             scene: job.name.clone(),
             size: [job.settings.size.width, job.settings.size.height],
             triangles: job.scene.triangles(),
-            frames: wishes.frames,
+            frames: wishes.frames(),
             motion: name(wishes.motion),
             frame_name: wishes.motion.frame_name().to_owned(),
-            timing: match trustworthy(summary) {
-                Timing::Timestamps => "timestamps",
-                _ => "isolated",
-            }
-            .to_owned(),
+            timing: timing.to_owned(),
             settings: settings.map(|(k, v)| (k.to_owned(), v)).collect(),
-            passes: measured.passes.iter().map(row).collect(),
+        }
+    }
+}
+
+fn commit() -> String {
+    if cfg!(debug_assertions) {
+        // Its figures are not worth to be kept.
+        "a debug build".to_owned()
+    } else {
+        format!("commit {}", env!("SKYLIGHT_COMMIT"))
+    }
+}
+
+impl Report {
+    /// Sums up.
+    pub fn new(head: Head, measured: &Measured) -> Self {
+        let rows = measured.passes.iter().map(|(name, samples)| {
+            let time = samples.summary();
+            Row {
+                name: (*name).to_owned(),
+                time,
+                work: Work::of(name, &measured.work, time.median_ms),
+            }
+        });
+        Self {
+            head,
+            passes: rows.collect(),
             parts: measured.parts.summary(),
             frame: Frame::new(&measured.moving),
-            frame_new_light: Frame::new(&measured.new_light),
+            frame_anew: Frame::new(&measured.anew),
         }
     }
 
     /// The sum of the parts over the whole that they make up.
     pub fn parts_to_whole(&self) -> f64 {
-        self.parts.median_ms / self.frame_new_light.device.median_ms
+        self.parts.median_ms / self.frame_anew.device.median_ms
     }
 
-    /// As a file.
+    /// Every time that one report can be compared by with another.
+    pub fn times(&self) -> Vec<(&str, &Summary)> {
+        let passes = self.passes.iter().map(|row| (row.name.as_str(), &row.time));
+        let frames = [
+            (self.head.frame_name.as_str(), &self.frame.time),
+            ("whole frame, everything anew", &self.frame_anew.time),
+        ];
+        passes.chain(frames).collect()
+    }
+
+    /// As a JSON file.
     pub fn json(&self) -> String {
         let mut value = serde_json::json!(self);
         let ratio = self.parts_to_whole();

@@ -43,6 +43,13 @@ impl Samples {
     }
 }
 
+impl Summary {
+    /// Half of the range that holds 90 % of the samples, over the median: how restless single samples are.
+    pub fn spread(&self) -> f64 {
+        0.5 * (self.p95_ms - self.p5_ms) / self.median_ms
+    }
+}
+
 /// The value below which the share `q` of the samples lies (nearest rank). NaN without samples.
 pub fn quantile(samples: &[f64], q: f64) -> f64 {
     let mut sorted = samples.to_vec();
@@ -76,5 +83,6 @@ mod tests {
         let summary = samples.summary();
         assert_eq!(summary.cpu_median_ms, Some(7.0));
         assert_eq!((summary.p5_ms, summary.p95_ms), (2.0, 4.0));
+        assert_eq!(summary.spread(), 0.5);
     }
 }

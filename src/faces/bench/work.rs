@@ -1,0 +1,104 @@
+//! What a pass does for its time: bytes and counters, for each pixel of its target.
+
+use serde::{Deserialize, Serialize};
+
+use crate::gpu::{PassWork, PipelineStatistics, Traffic};
+
+/// The work of all passes of one name in a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Work {
+    /// Pixels of the targets, all layers.
+    pub pixels: u64,
+    /// Bytes that must be read (see [`Traffic`]), for each pixel.
+    pub bytes_read_per_pixel: f64,
+    /// Bytes that must be written, for each pixel.
+    pub bytes_written_per_pixel: f64,
+    /// Both together over the median time, 10⁹ bytes a second. None where the time is too short to be seen.
+    pub gb_per_s: Option<f64>,
+    /// Counters, where the device has them.
+    pub statistics: Option<Statistics>,
+}
+
+/// Counters of the device.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Statistics {
+    /// Vertices read.
+    pub vertices: u64,
+    /// Runs of the vertex shader.
+    pub vertex_invocations: u64,
+    /// Triangles left after clipping.
+    pub clipped_primitives: u64,
+    /// Runs of the fragment shader.
+    pub fragment_invocations: u64,
+    /// Runs of the compute shader.
+    pub compute_invocations: u64,
+}
+
+impl Work {
+    /// The work of the passes called `name`, done in `ms` milliseconds.
+    pub fn of(name: &str, passes: &[PassWork], ms: f64) -> Self {
+        let mut total = Traffic::default();
+        let mut counted: Option<Statistics> = None;
+        for pass in passes.iter().filter(|pass| pass.name == name) {
+            total.pixels += pass.traffic.pixels;
+            total.bytes_read += pass.traffic.bytes_read;
+            total.bytes_written += pass.traffic.bytes_written;
+            if let Some(statistics) = &pass.statistics {
+                counted.get_or_insert_default().add(statistics);
+            }
+        }
+        let per_pixel = |bytes: u64| bytes as f64 / total.pixels.max(1) as f64;
+        let bytes = (total.bytes_read + total.bytes_written) as f64;
+        Self {
+            pixels: total.pixels,
+            bytes_read_per_pixel: per_pixel(total.bytes_read),
+            bytes_written_per_pixel: per_pixel(total.bytes_written),
+            gb_per_s: (ms > 0.0).then(|| bytes / (ms * 1e6)),
+            statistics: counted,
+        }
+    }
+}
+
+impl Statistics {
+    fn add(&mut self, more: &PipelineStatistics) {
+        self.vertices += more.vertices;
+        self.vertex_invocations += more.vertex_invocations;
+        self.clipped_primitives += more.clipped_primitives;
+        self.fragment_invocations += more.fragment_invocations;
+        self.compute_invocations += more.compute_invocations;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn passes_of_one_name_are_summed() {
+        let pass = |name, pixels, bytes_read, bytes_written, fragment_invocations| PassWork {
+            name,
+            traffic: Traffic {
+                pixels,
+                bytes_read,
+                bytes_written,
+            },
+            statistics: Some(PipelineStatistics {
+                fragment_invocations,
+                ..PipelineStatistics::default()
+            }),
+        };
+        let passes = [
+            pass("sky", 100, 400, 800, 100),
+            pass("lighting", 7, 7, 7, 7),
+            pass("sky", 300, 400, 2400, 300),
+        ];
+        let work = Work::of("sky", &passes, 2.0);
+        assert_eq!(work.pixels, 400);
+        assert_eq!(work.bytes_read_per_pixel, 2.0);
+        assert_eq!(work.bytes_written_per_pixel, 8.0);
+        // 4000 bytes in 2 ms.
+        assert_eq!(work.gb_per_s, Some(0.002));
+        assert_eq!(work.statistics.map(|s| s.fragment_invocations), Some(400));
+        assert_eq!(Work::of("none", &passes, 0.0), Work::default());
+    }
+}

@@ -23,6 +23,14 @@ pub enum Command {
         #[command(flatten)]
         options: Box<Options>,
     },
+    /// Open a window and walk through daylight; press ? in it for the keys.
+    View {
+        /// Scene file (.toml) or model (.obj) [default: the bundled scene].
+        scene: Option<PathBuf>,
+        /// How; --samples is the number of frames averaged at rest [default: 64].
+        #[command(flatten)]
+        options: Box<Options>,
+    },
     /// Time every pass of the frame.
     Bench {
         /// What to measure.

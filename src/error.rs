@@ -25,6 +25,9 @@ pub enum Error {
     /// A moment for which the sun cannot be placed.
     #[error(transparent)]
     Sun(#[from] SunPositionError),
+    /// Nowhere to open a window.
+    #[error("no display to open a window on ({0}); skylight render writes pictures without one")]
+    NoDisplay(String),
     /// A file that cannot be written.
     #[error("cannot write {}: {reason}", path.display())]
     Write {

@@ -200,6 +200,21 @@ impl Job {
         }
     }
 
+    /// The command that makes the picture again, for a shell.
+    pub fn command(&self, scene: Option<&Path>) -> String {
+        let point = |p: glam::Vec3| format!("{},{},{}", p.x, p.y, p.z);
+        let camera = [
+            ("eye", point(self.camera.eye)),
+            ("target", point(self.camera.target)),
+            ("fov", self.camera.fov_deg.to_string()),
+        ];
+        let mut words = vec!["skylight".to_owned(), "render".to_owned()];
+        words.extend(scene.map(|p| p.display().to_string()));
+        let options = self.settings.parameters().into_iter().chain(camera);
+        words.extend(options.map(|(name, value)| format!("--{name}={value}")));
+        words.join(" ")
+    }
+
     /// What makes the picture again, and the numbers of its light.
     pub fn metadata(&self) -> Vec<(String, String)> {
         let rgb = |v: glam::DVec3| format!("{},{},{}", v.x, v.y, v.z);

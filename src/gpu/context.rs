@@ -252,6 +252,11 @@ impl Context {
         let _ = unsafe { debug.set_debug_utils_object_name(&info) };
     }
 
+    /// Bytes of device memory in use.
+    pub fn allocated_bytes(&self) -> u64 {
+        self.allocator().generate_report().total_allocated_bytes
+    }
+
     /// Waits until the device has nothing to do.
     ///
     /// # Errors

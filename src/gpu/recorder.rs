@@ -334,6 +334,22 @@ impl Recorder {
         }
     }
 
+    /// Fills a colour image with a constant.
+    pub fn clear(&mut self, image: &Image, color: [f32; 4]) {
+        self.transition([(image, Use::CopyTarget)].into_iter());
+        let value = vk::ClearColorValue { float32: color };
+        // SAFETY: the image was brought to this layout; the command buffer is recording outside of a rendering.
+        unsafe {
+            self.context.raw().cmd_clear_color_image(
+                self.command,
+                image.raw(),
+                vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+                &value,
+                &[image.whole()],
+            );
+        }
+    }
+
     /// Brings images to their next use with one barrier command.
     pub(super) fn transition<'i>(&self, uses: impl Iterator<Item = (&'i Image, Use)>) {
         let barriers: arrayvec::ArrayVec<_, 32> =

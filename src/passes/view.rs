@@ -46,6 +46,15 @@ impl View {
         Mat4::from_translation(shift.extend(0.0))
     }
 
+    /// The point of the world that is seen at `pixel` (pixels from the upper left corner), `distance` metres along the view
+    /// axis.
+    pub fn point(&self, pixel: Vec2, distance: f32) -> Vec3 {
+        let block = self.block();
+        let ndc = 2.0 * pixel / self.size.as_vec2() - 1.0;
+        let ray = (ndc * block.ray_scale + block.ray_offset).extend(-1.0);
+        block.eye + block.world_from_view * ray * distance
+    }
+
     /// What the shaders need to reconstruct positions and rays.
     pub fn block(&self) -> ViewBlock {
         let tan_y = (0.5 * self.camera.fov_deg.to_radians()).tan();
@@ -99,9 +108,8 @@ mod tests {
             let point = Vec3::new(-2.0, 1.2, -1.5);
             let clip = view.clip_from_world() * point.extend(1.0);
             let ndc = clip.truncate() / clip.w;
-            let b = view.block();
-            let ray = (ndc.truncate() * b.ray_scale + b.ray_offset).extend(-1.0);
-            let back = b.eye + b.world_from_view * ray * (b.near / ndc.z);
+            let pixel = (ndc.truncate() + 1.0) * 0.5 * view.size.as_vec2();
+            let back = view.point(pixel, view.camera.near / ndc.z);
             assert!((back - point).length() < 1e-3, "{jitter}: {back}");
         }
     }

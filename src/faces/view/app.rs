@@ -1,0 +1,279 @@
+//! The event loop: events to changes, changes to frames, nothing in between.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
+use winit::window::Fullscreen;
+
+use crate::error::{Error, Result};
+use crate::scene::{Loaded, SceneError};
+use crate::settings::{Options, Size};
+
+use super::capture;
+use super::document::Document;
+use super::input::Input;
+use super::interface::{Interface, Wish};
+use super::keys::Action;
+use super::loader::{Loader, Message};
+use super::stage::Stage;
+
+/// How soon a window that could not be drawn to is tried again.
+const RETRY: Duration = Duration::from_millis(100);
+
+/// What came of a load.
+type Opened = Box<std::result::Result<Loaded, SceneError>>;
+
+/// The program behind the window.
+pub(super) struct App {
+    pub(super) options: Options,
+    pub(super) loader: Loader,
+    /// Loaded before there was a window.
+    pub(super) waiting: Option<(Option<PathBuf>, Opened)>,
+    // Before the stage, whose device they use.
+    pub(super) document: Option<Document>,
+    pub(super) stage: Option<Stage>,
+    pub(super) interface: Interface,
+    pub(super) input: Input,
+    pub(super) started: Instant,
+    /// When the newest frame was begun, while something moves.
+    ticked: Option<Instant>,
+    /// When to draw again without an event.
+    pub(super) again_at: Option<Instant>,
+    error: Option<Error>,
+}
+
+impl App {
+    /// Starts to load `scene`; the window comes with the event loop.
+    pub(super) fn new(
+        proxy: EventLoopProxy<Message>,
+        scene: Option<PathBuf>,
+        options: Options,
+    ) -> Self {
+        let mut loader = Loader::new(proxy);
+        loader.start(scene, &options);
+        Self {
+            interface: Interface::new(options.quiet),
+            options,
+            loader,
+            waiting: None,
+            document: None,
+            stage: None,
+            input: Input::default(),
+            started: Instant::now(),
+            ticked: None,
+            again_at: None,
+            error: None,
+        }
+    }
+
+    /// What the window ended with.
+    pub(super) fn into_result(mut self) -> Result<()> {
+        self.document = None;
+        match (self.error.take(), &self.stage) {
+            (Some(error), _) => Err(error),
+            (None, Some(stage)) => Ok(stage.context.check_validation()?),
+            (None, None) => Ok(()),
+        }
+    }
+
+    pub(super) fn end(&mut self, event_loop: &ActiveEventLoop, error: Error) {
+        self.error.get_or_insert(error);
+        event_loop.exit();
+    }
+
+    pub(super) fn request_redraw(&self) {
+        if let Some(stage) = &self.stage {
+            stage.window.request_redraw();
+        }
+    }
+
+    /// Shows a scene that is loaded, or why it is not.
+    pub(super) fn opened(&mut self, path: Option<PathBuf>, result: Opened) {
+        let Some(stage) = &mut self.stage else {
+            self.waiting = Some((path, result));
+            return;
+        };
+        self.interface.loading(None);
+        let (options, size) = (&self.options, window_size(stage));
+        let opened = match *result {
+            Ok(loaded) => {
+                stage.work(|rec| Document::open(rec, path.clone(), loaded, options, size))
+            }
+            Err(error) => Err(error.into()),
+        };
+        match opened {
+            Ok(document) => {
+                for warning in document.job.warnings() {
+                    self.interface.say(warning);
+                }
+                stage
+                    .window
+                    .set_title(&format!("{} \u{2013} skylight", document.title()));
+                self.document = Some(document);
+            }
+            Err(error) => self.interface.complain(&error.to_string()),
+        }
+        stage.window.request_redraw();
+    }
+
+    /// Opens another file, in the background.
+    pub(super) fn open_file(&mut self, path: PathBuf) {
+        self.interface.loading(Some((0.0, "opening")));
+        // The command line's camera and such were meant for its own scene.
+        self.options = Options {
+            camera: None,
+            eye: None,
+            target: None,
+            ..std::mem::take(&mut self.options)
+        };
+        self.loader.start(Some(path), &self.options);
+        self.request_redraw();
+    }
+
+    pub(super) fn redraw(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
+        let now = Instant::now();
+        let seconds = self
+            .ticked
+            .map_or(0.0, |before| (now - before).as_secs_f64());
+        if let Some(document) = &mut self.document {
+            document.advance(seconds, self.input.fly_keys());
+            self.interface.play(document, seconds);
+        }
+        self.probe()?;
+        let wishes = self.lay_out_and_draw(event_loop)?;
+        for wish in wishes {
+            self.grant(wish)?;
+        }
+        self.ticked = self.is_busy().then_some(now);
+        if self.ticked.is_some() && self.again_at.is_none() {
+            self.request_redraw();
+        }
+        Ok(())
+    }
+
+    /// Whether the next frame differs from this one without any event.
+    fn is_busy(&self) -> bool {
+        let moving = self.document.as_ref().is_some_and(|document| {
+            !document.is_at_rest()
+                || document.controls.is_moving()
+                || self.interface.is_playing(document)
+        });
+        let probed = self
+            .interface
+            .is_probed(self.probed_pixel(), self.document.as_ref());
+        moving || self.input.is_flying() || !probed
+    }
+
+    fn lay_out_and_draw(&mut self, event_loop: &ActiveEventLoop) -> Result<Vec<Wish>> {
+        let (Some(stage), interface) = (&mut self.stage, &mut self.interface) else {
+            return Ok(Vec::new());
+        };
+        let mut document = self.document.as_mut();
+        let size = window_size(stage);
+        let mut wishes = Vec::new();
+        interface.observe(stage);
+        let layout = stage.lay_out(event_loop, |ui| {
+            wishes.extend(interface.show(ui, document.as_deref_mut()));
+        })?;
+        if let Some(document) = document.as_deref_mut() {
+            if size.width > 0 && size.height > 0 {
+                document.job.settings.size = size;
+            }
+            if document.is_behind()
+                && let Err(error) = stage.work(|rec| document.follow(rec))
+            {
+                interface.complain(&error.to_string());
+            }
+        }
+        let drawn = stage.draw(&layout.frame, document)?;
+        self.again_at = match layout.again_after {
+            _ if !drawn => Some(Instant::now() + RETRY),
+            // At once is the business of the next request.
+            after if after.is_zero() => {
+                stage.window.request_redraw();
+                None
+            }
+            after => Instant::now().checked_add(after),
+        };
+        Ok(wishes)
+    }
+
+    /// The pixel of the picture under the pointer, when the user wants to know about it.
+    fn probed_pixel(&self) -> Option<[u32; 2]> {
+        let (Some(stage), Some([x, y])) = (&self.stage, self.input.pointer()) else {
+            return None;
+        };
+        let size = self.document.as_ref()?.job.settings.size;
+        let inside = x >= 0.0 && y >= 0.0 && x < size.width.into() && y < size.height.into();
+        let free = !stage.ui().is_pointer_over_egui() && !self.input.is_dragging();
+        (inside && free && self.interface.is_visible()).then_some([x as u32, y as u32])
+    }
+
+    fn probe(&mut self) -> Result<()> {
+        let pixel = self.probed_pixel();
+        if self.interface.is_probed(pixel, self.document.as_ref()) {
+            return Ok(());
+        }
+        let (Some(stage), Some(document), Some(pixel)) =
+            (&mut self.stage, &mut self.document, pixel)
+        else {
+            self.interface.probed(None, None, None);
+            return Ok(());
+        };
+        stage.work(|rec| document.ask(rec, pixel))?;
+        let reading = document.reading();
+        self.interface.probed(Some(pixel), reading, Some(document));
+        Ok(())
+    }
+
+    fn grant(&mut self, wish: Wish) -> Result<()> {
+        match wish {
+            Wish::Do(action) => self.act(action)?,
+            Wish::Copy(text) => {
+                if let Some(stage) = &self.stage {
+                    stage.ui().copy_text(text);
+                }
+            }
+        }
+        self.request_redraw();
+        Ok(())
+    }
+
+    pub(super) fn act(&mut self, action: Action) -> Result<()> {
+        let (Some(stage), Some(document)) = (&mut self.stage, &mut self.document) else {
+            return Ok(());
+        };
+        match action {
+            Action::Screenshot => match capture::save(stage, document) {
+                Ok(line) => self.interface.say(&line),
+                Err(error) => self.interface.complain(&error.to_string()),
+            },
+            Action::FullScreen => {
+                let full = stage.window.fullscreen().is_none();
+                let wanted = full.then_some(Fullscreen::Borderless(None));
+                stage.window.set_fullscreen(wanted);
+            }
+            Action::ToggleTimings => {
+                let timed = self.interface.toggle_timings();
+                stage.set_timed(timed);
+                document.start_over();
+            }
+            other => {
+                for wish in self.interface.act(other, document) {
+                    self.grant(wish)?;
+                }
+            }
+        }
+        self.request_redraw();
+        Ok(())
+    }
+}
+
+fn window_size(stage: &Stage) -> Size {
+    let size = stage.window.inner_size();
+    Size {
+        width: size.width,
+        height: size.height,
+    }
+}

@@ -1,0 +1,81 @@
+//! The picture in the window to files: PNG as shown, EXR in cd/m², both with their parameters.
+
+use std::path::{Path, PathBuf};
+
+use crate::daylight::exposure::automatic;
+use crate::error::Result;
+use crate::gpu::read_back;
+use crate::output::{Channels, Encoding, Layer, Metadata, write_exr, write_png};
+use crate::settings::Exposure;
+
+use super::document::Document;
+use super::stage::Stage;
+
+/// Writes the newest frame beside where the program was started; tells where to.
+///
+/// # Errors
+/// When a file cannot be written.
+pub(super) fn save(stage: &mut Stage, document: &Document) -> Result<String> {
+    let stem = free_name(document);
+    let (png, exr) = (stem.with_extension("png"), stem.with_extension("exr"));
+    let metadata = metadata(stage, document)?;
+    save_png(stage, document, &png, &metadata)?;
+    save_exr(stage, document, &exr, &metadata)?;
+    Ok(format!("wrote {} and .exr", png.display()))
+}
+
+/// `skylight-SCENE-N`, with the first number that no file has.
+fn free_name(document: &Document) -> PathBuf {
+    let scene = document.path.as_deref().and_then(Path::file_stem);
+    let scene = scene.map_or("bundled".into(), |s| s.to_string_lossy());
+    let mut number = 1;
+    loop {
+        let stem = format!("skylight-{scene}-{number}");
+        let taken = |extension| Path::new(&format!("{stem}.{extension}")).exists();
+        if !taken("png") && !taken("exr") {
+            return stem.into();
+        }
+        number += 1;
+    }
+}
+
+fn metadata(stage: &mut Stage, document: &Document) -> Result<Metadata> {
+    let mut metadata = document.job.metadata();
+    let (averaged, _) = document.progress();
+    metadata.push(("samples drawn".into(), averaged.max(1).to_string()));
+    if document.job.settings.exposure == Exposure::Auto {
+        let average = read_back(stage.idle()?, document.frame().average_luminance())?.floats()[0];
+        let ev100 = automatic(f64::from(average) * 1e3);
+        metadata.push(("ev100 used".into(), format!("{ev100:.3}")));
+    }
+    Ok(metadata)
+}
+
+fn save_png(
+    stage: &mut Stage,
+    document: &Document,
+    path: &Path,
+    metadata: &Metadata,
+) -> Result<()> {
+    let pixels = read_back(stage.idle()?, document.display())?;
+    let gamma = document.job.settings.gamma;
+    let encoding = gamma.map_or(Encoding::Srgb, Encoding::Gamma);
+    write_png(path, pixels.size, &pixels.bytes, encoding, metadata)
+}
+
+fn save_exr(
+    stage: &mut Stage,
+    document: &Document,
+    path: &Path,
+    metadata: &Metadata,
+) -> Result<()> {
+    let pixels = read_back(stage.idle()?, document.frame().radiance())?;
+    let unit = document.job.settings.show.file_unit();
+    let texels = pixels.rgba().into_iter().map(|t| t.map(|v| v * unit));
+    let layer = Layer {
+        name: "",
+        channels: Channels::Rgb,
+        texels: texels.collect(),
+    };
+    write_exr(path, pixels.size, &[layer], metadata)
+}

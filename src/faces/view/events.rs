@@ -1,0 +1,179 @@
+//! What the event loop tells the program.
+
+use winit::application::ApplicationHandler;
+use winit::event::{ElementState, KeyEvent, StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow};
+use winit::keyboard::{Key, NamedKey};
+use winit::window::WindowId;
+
+use crate::error::Result;
+
+use super::app::App;
+use super::input::Wheel;
+use super::keys;
+use super::loader::Message;
+use super::stage::Stage;
+
+impl App {
+    fn key(&mut self, event: &KeyEvent, is_free: bool) -> Result<()> {
+        self.input.key(event, is_free);
+        if is_free && event.state == ElementState::Pressed {
+            let shift = self.input.modifiers.shift_key();
+            let control = self.input.modifiers.control_key();
+            if let Some(action) = keys::action(&event.logical_key, shift).filter(|_| !control) {
+                self.act(action)?;
+            }
+        }
+        self.request_redraw();
+        Ok(())
+    }
+
+    fn on_event(&mut self, event_loop: &ActiveEventLoop, event: WindowEvent) -> Result<()> {
+        let Some(stage) = &mut self.stage else {
+            return Ok(());
+        };
+        // Tab is ours, not a way from field to field; and egui answers every redraw with the wish for another.
+        let is_tab = is_tab(&event);
+        let (consumed, repaint) = if is_tab || event == WindowEvent::RedrawRequested {
+            (false, false)
+        } else {
+            stage.on_event(&event)
+        };
+        if repaint {
+            stage.window.request_redraw();
+        }
+        match event {
+            WindowEvent::CloseRequested => event_loop.exit(),
+            WindowEvent::RedrawRequested => self.redraw(event_loop)?,
+            WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
+                stage.resize();
+                stage.window.request_redraw();
+            }
+            WindowEvent::Occluded(false) | WindowEvent::Focused(true) => {
+                stage.window.request_redraw();
+            }
+            WindowEvent::Focused(false) => self.input.let_go(),
+            WindowEvent::DroppedFile(path) => self.open_file(path),
+            WindowEvent::ModifiersChanged(modifiers) => self.input.modifiers = modifiers.state(),
+            WindowEvent::KeyboardInput { event, .. } => {
+                let is_free = is_tab || !stage.ui().egui_wants_keyboard_input();
+                self.key(&event, is_free)?;
+            }
+            other => self.on_pointer(&other, consumed),
+        }
+        Ok(())
+    }
+
+    fn on_pointer(&mut self, event: &WindowEvent, consumed: bool) {
+        let Some(stage) = &self.stage else { return };
+        let height = f64::from(stage.window.inner_size().height);
+        match event {
+            WindowEvent::CursorMoved { position, .. } => {
+                let controls = self.document.as_mut().map(|d| &mut d.controls);
+                self.input.moved((*position).into(), height, controls);
+            }
+            WindowEvent::CursorLeft { .. } => self.input.left(),
+            WindowEvent::MouseInput { state, button, .. } => {
+                if *state == ElementState::Released {
+                    self.input.released(*button);
+                } else if !consumed {
+                    let now = self.started.elapsed().as_secs_f64();
+                    if self.input.pressed(*button, now) {
+                        self.focus();
+                    }
+                }
+            }
+            WindowEvent::MouseWheel { delta, .. } if !consumed => {
+                let about = self.interface.point_under_pointer();
+                if let Some(document) = &mut self.document {
+                    match self.input.wheel(*delta) {
+                        Wheel::Dolly(steps) => document.controls.dolly(steps, about),
+                        Wheel::Speed(steps) => document.controls.change_speed(steps),
+                    }
+                }
+            }
+            _ => return,
+        }
+        self.request_redraw();
+    }
+
+    /// Turns to what is under the pointer.
+    fn focus(&mut self) {
+        if let (Some(document), Some(point)) =
+            (&mut self.document, self.interface.point_under_pointer())
+        {
+            document.controls.focus(point);
+        }
+    }
+}
+
+fn is_tab(event: &WindowEvent) -> bool {
+    matches!(event, WindowEvent::KeyboardInput { event, .. } if event.logical_key == Key::Named(NamedKey::Tab))
+}
+
+impl ApplicationHandler<Message> for App {
+    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
+        if matches!(cause, StartCause::ResumeTimeReached { .. }) {
+            self.again_at = None;
+            self.request_redraw();
+        }
+    }
+
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        if self.stage.is_some() {
+            return;
+        }
+        match Stage::new(event_loop, &self.options) {
+            Ok(stage) => {
+                self.stage = Some(stage);
+                self.interface.loading(Some((0.0, "opening")));
+                if let Some((path, result)) = self.waiting.take() {
+                    self.opened(path, result);
+                }
+                self.request_redraw();
+            }
+            Err(error) => self.end(event_loop, error),
+        }
+    }
+
+    fn user_event(&mut self, _: &ActiveEventLoop, message: Message) {
+        match message {
+            Message::Progress {
+                ticket,
+                share,
+                stage,
+            } if self.loader.is_newest(ticket) => {
+                self.interface.loading(Some((share, stage)));
+                self.request_redraw();
+            }
+            Message::Loaded {
+                ticket,
+                path,
+                result,
+            } if self.loader.is_newest(ticket) => self.opened(path, result),
+            // Of a load that nobody waits for any more.
+            _ => {}
+        }
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        if let Err(error) = self.on_event(event_loop, event) {
+            self.end(event_loop, error);
+        }
+    }
+
+    fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
+        event_loop.set_control_flow(
+            self.again_at
+                .map_or(ControlFlow::Wait, ControlFlow::WaitUntil),
+        );
+    }
+
+    fn exiting(&mut self, _: &ActiveEventLoop) {
+        // What is in flight still uses the document. A lost device has nothing in flight.
+        if let Some(stage) = &mut self.stage {
+            let _ = stage.idle();
+        }
+        self.document = None;
+    }
+}

@@ -1,0 +1,209 @@
+//! Events of pointer and keyboard that the user interface leaves, turned into movements of the camera.
+
+use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta};
+use winit::keyboard::{KeyCode, ModifiersState, PhysicalKey};
+
+use super::controls::{Controls, Drag, FlyKeys};
+
+/// Pixels of a smooth wheel that count as one step.
+const PIXELS_A_STEP: f64 = 50.0;
+/// Longest time between two clicks of a double click, seconds.
+const DOUBLE_CLICK_S: f64 = 0.4;
+/// Farthest that the pointer moves between them, pixels.
+const DOUBLE_CLICK_PIXELS: f64 = 4.0;
+
+/// What a drag does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Gesture {
+    Orbit,
+    Pan,
+    Look,
+}
+
+/// What is held and where the pointer is.
+#[derive(Debug, Default)]
+pub(super) struct Input {
+    /// Keys that are held with others.
+    pub(super) modifiers: ModifiersState,
+    keys: FlyKeys,
+    pointer: Option<[f64; 2]>,
+    gesture: Option<(MouseButton, Gesture)>,
+    clicked: Option<(f64, [f64; 2])>,
+}
+
+impl Input {
+    /// Keys of flight, by the modifiers of this moment.
+    pub(super) fn fly_keys(&self) -> FlyKeys {
+        FlyKeys {
+            fast: self.modifiers.shift_key(),
+            slow: self.modifiers.control_key(),
+            ..self.keys
+        }
+    }
+
+    /// Whether any key of flight is held.
+    pub(super) fn is_flying(&self) -> bool {
+        self.keys != FlyKeys::default()
+    }
+
+    /// Whether the camera is in the hand.
+    pub(super) fn is_dragging(&self) -> bool {
+        self.gesture.is_some()
+    }
+
+    /// Where the pointer is, pixels; none when it is outside.
+    pub(super) fn pointer(&self) -> Option<[f64; 2]> {
+        self.pointer
+    }
+
+    /// A key went down or up; `free` when no text is being edited.
+    pub(super) fn key(&mut self, event: &KeyEvent, free: bool) {
+        let PhysicalKey::Code(code) = event.physical_key else {
+            return;
+        };
+        let held = event.state == ElementState::Pressed && free;
+        // By their places, so that they lie together on every keyboard.
+        match code {
+            KeyCode::KeyW => self.keys.forward = held,
+            KeyCode::KeyS => self.keys.back = held,
+            KeyCode::KeyA => self.keys.left = held,
+            KeyCode::KeyD => self.keys.right = held,
+            KeyCode::KeyE => self.keys.up = held,
+            KeyCode::KeyQ => self.keys.down = held,
+            _ => {}
+        }
+    }
+
+    /// The window lost the keyboard: what is held now will not be heard to be let go.
+    pub(super) fn let_go(&mut self) {
+        self.keys = FlyKeys::default();
+        self.gesture = None;
+    }
+
+    /// The pointer moved to `to`, pixels, in a window `height` pixels high.
+    pub(super) fn moved(&mut self, to: [f64; 2], height: f64, controls: Option<&mut Controls>) {
+        let from = self.pointer.replace(to).unwrap_or(to);
+        let (Some(controls), Some((_, gesture))) = (controls, self.gesture) else {
+            return;
+        };
+        let drag = Drag {
+            right: (to[0] - from[0]) / height.max(1.0),
+            down: (to[1] - from[1]) / height.max(1.0),
+        };
+        match gesture {
+            Gesture::Orbit => controls.orbit(drag),
+            Gesture::Pan => controls.pan(drag),
+            Gesture::Look => controls.look(drag),
+        }
+    }
+
+    /// The pointer left the window.
+    pub(super) fn left(&mut self) {
+        self.pointer = None;
+    }
+
+    /// A button went down over the picture. Returns whether that was the second of a double click; `now` in seconds.
+    pub(super) fn pressed(&mut self, button: MouseButton, now: f64) -> bool {
+        let gesture = match button {
+            MouseButton::Left if self.modifiers.shift_key() => Gesture::Pan,
+            MouseButton::Left => Gesture::Orbit,
+            MouseButton::Middle => Gesture::Pan,
+            MouseButton::Right => Gesture::Look,
+            _ => return false,
+        };
+        self.gesture = Some((button, gesture));
+        let (Some(at), MouseButton::Left) = (self.pointer, button) else {
+            return false;
+        };
+        let is_second = self.clicked.is_some_and(|(before, there)| {
+            let apart = (at[0] - there[0]).hypot(at[1] - there[1]);
+            now - before < DOUBLE_CLICK_S && apart < DOUBLE_CLICK_PIXELS
+        });
+        self.clicked = (!is_second).then_some((now, at));
+        is_second
+    }
+
+    /// A button came up, wherever.
+    pub(super) fn released(&mut self, button: MouseButton) {
+        if self.gesture.is_some_and(|(held, _)| held == button) {
+            self.gesture = None;
+        }
+    }
+
+    /// Steps of the wheel, positive away from the user; while looking around they set the speed of flight.
+    pub(super) fn wheel(&self, delta: MouseScrollDelta) -> Wheel {
+        let steps = match delta {
+            MouseScrollDelta::LineDelta(_, rows) => f64::from(rows),
+            MouseScrollDelta::PixelDelta(pixels) => pixels.y / PIXELS_A_STEP,
+        };
+        if self.gesture.is_some_and(|(_, g)| g == Gesture::Look) {
+            Wheel::Speed(steps)
+        } else {
+            Wheel::Dolly(steps)
+        }
+    }
+}
+
+/// What the wheel does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Wheel {
+    /// Nearer by so many steps.
+    Dolly(f64),
+    /// Faster by so many steps.
+    Speed(f64),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Bounds, Camera};
+    use glam::Vec3;
+
+    fn controls() -> Controls {
+        let bounds = Bounds {
+            min: Vec3::splat(-1.0),
+            max: Vec3::splat(1.0),
+        };
+        Controls::new(&Camera::framing(&bounds, 45.0, 1.0), &bounds)
+    }
+
+    #[test]
+    fn a_drag_begins_where_the_button_went_down() {
+        let mut input = Input::default();
+        let mut controls = controls();
+        let start = controls.camera();
+        input.moved([10.0, 10.0], 100.0, Some(&mut controls));
+        assert_eq!(controls.camera(), start);
+        input.pressed(MouseButton::Left, 0.0);
+        input.moved([20.0, 10.0], 100.0, Some(&mut controls));
+        assert_ne!(controls.camera(), start);
+        let turned = controls.camera();
+        input.released(MouseButton::Left);
+        input.moved([90.0, 10.0], 100.0, Some(&mut controls));
+        assert_eq!(controls.camera(), turned);
+    }
+
+    #[test]
+    fn two_clicks_at_one_place_are_a_double_click() {
+        let mut input = Input::default();
+        input.moved([10.0, 10.0], 100.0, None);
+        assert!(!input.pressed(MouseButton::Left, 1.0));
+        assert!(input.pressed(MouseButton::Left, 1.2));
+        // The third begins anew, a slow second is a first, and so is one elsewhere.
+        assert!(!input.pressed(MouseButton::Left, 1.3));
+        assert!(!input.pressed(MouseButton::Left, 2.0));
+        input.moved([30.0, 10.0], 100.0, None);
+        assert!(!input.pressed(MouseButton::Left, 2.1));
+    }
+
+    #[test]
+    fn the_wheel_sets_the_speed_while_looking_around() {
+        let mut input = Input::default();
+        let step = MouseScrollDelta::LineDelta(0.0, 1.0);
+        assert_eq!(input.wheel(step), Wheel::Dolly(1.0));
+        input.pressed(MouseButton::Right, 0.0);
+        assert_eq!(input.wheel(step), Wheel::Speed(1.0));
+        input.let_go();
+        assert_eq!(input.wheel(step), Wheel::Dolly(1.0));
+    }
+}

@@ -1,0 +1,42 @@
+//! How the user interface looks: dark, translucent, out of the way of the picture.
+
+use egui::{Color32, CornerRadius, FontId, Frame, Margin, Stroke, TextStyle};
+
+/// Behind panels: dark enough to read on, open enough to see the picture. (It is blended in linear light, where little
+/// transparency shows much.)
+const BACKDROP: Color32 = Color32::from_rgba_premultiplied(13, 15, 19, 246);
+/// Of text, and of text that matters less.
+const TEXT: Color32 = Color32::from_gray(222);
+const WEAK: Color32 = Color32::from_gray(168);
+/// Of what is chosen: the sun.
+pub(super) const ACCENT: Color32 = Color32::from_rgb(255, 196, 87);
+/// Of errors.
+pub(super) const ALARM: Color32 = Color32::from_rgb(255, 120, 100);
+
+/// Sets fonts, colours and spacing.
+pub(super) fn apply(context: &egui::Context) {
+    context.set_theme(egui::Theme::Dark);
+    context.all_styles_mut(|style| {
+        style.spacing.slider_width = 150.0;
+        style.spacing.item_spacing = egui::vec2(6.0, 5.0);
+        style.visuals.override_text_color = Some(TEXT);
+        style.visuals.weak_text_color = Some(WEAK);
+        style.visuals.panel_fill = BACKDROP;
+        style.visuals.window_fill = BACKDROP;
+        style.visuals.window_stroke = Stroke::new(1.0, Color32::from_white_alpha(18));
+        style.visuals.selection.bg_fill = Color32::from_rgb(122, 86, 22);
+        style.visuals.selection.stroke = Stroke::new(1.0, ACCENT);
+        style.visuals.slider_trailing_fill = true;
+        style
+            .text_styles
+            .insert(TextStyle::Heading, FontId::proportional(15.0));
+    });
+}
+
+/// A box over the picture.
+pub(super) fn backdrop() -> Frame {
+    Frame::new()
+        .fill(BACKDROP)
+        .corner_radius(CornerRadius::same(5))
+        .inner_margin(Margin::symmetric(10, 8))
+}

@@ -19,6 +19,7 @@ mod draws;
 mod error;
 mod image;
 mod instance;
+mod labels;
 mod layout;
 mod mips;
 mod pass;

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "octahedral.glsl"
+#include "facing.glsl"
 #include "gbuffer_push.glsl"
 
 layout(location = 0) in vec3 from_eye;
@@ -18,16 +19,8 @@ layout(constant_id = 1) const bool SPECULAR_MAP = true;
 layout(set = 0, binding = 0) uniform sampler2D diffuse_map;
 layout(set = 0, binding = 1) uniform sampler2D specular_map;
 
-/// The normal on the viewer's side, of any length: the octahedral map does not care. Winding and stored normals of real models disagree too often to trust either alone:
-/// the true face, from derivatives, decides the side; surfaces are two-sided.
-vec3 facing_normal() {
-    vec3 face = cross(dFdx(from_eye), dFdy(from_eye));
-    face *= dot(face, from_eye) > 0.0 ? -1.0 : 1.0;
-    return dot(shading_normal, face) < 0.0 ? -shading_normal : shading_normal;
-}
-
 void main() {
-    normal = octahedral_encode(facing_normal());
+    normal = octahedral_encode(facing_normal(shading_normal, from_eye));
     albedo = vec4(push.diffuse, 1.0);
     if (DIFFUSE_MAP) albedo.rgb *= texture(diffuse_map, surface_uv).rgb;
     if (SPECULAR_MAP) albedo.a = dot(texture(specular_map, surface_uv).rgb, vec3(1.0 / 3.0));

@@ -24,6 +24,8 @@ layout(constant_id = 8) const bool SHOW_NORMAL = false;
 layout(constant_id = 9) const bool SHOW_DEPTH = false;
 // Pixels of the picture to one of the occlusion, each way.
 layout(constant_id = 10) const int OCCLUSION_DOWNSCALE = 2;
+// Surfaces with a rho_s mirror more at grazing angles.
+layout(constant_id = 11) const bool FRESNEL = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform sampler2D normal;
@@ -61,16 +63,26 @@ float visibility(vec3 world, vec3 n, float n_dot_l) {
     vec2 at = (p.xy * 0.5 + 0.5) * vec2(last + 1);
     ivec2 centre = ivec2(floor(at));
     vec2 f = at - vec2(centre);
+    // Behind all casters, and beside them, the map is empty: depth 0.
+    float depth = max(p.z, 0.0);
     vec3 wx = vec3(1.0 - f.x, 1.0, f.x);
     vec3 wy = vec3(1.0 - f.y, 1.0, f.y);
     float lit = 0.0;
     for (int y = 0; y < 3; ++y) {
         for (int x = 0; x < 3; ++x) {
             ivec2 texel = clamp(centre + ivec2(x - 1, y - 1), ivec2(0), last);
-            lit += wx[x] * wy[y] * step(texelFetch(shadow_map, texel, 0).r, p.z);
+            lit += wx[x] * wy[y] * step(texelFetch(shadow_map, texel, 0).r, depth);
         }
     }
     return lit * 0.25;
+}
+
+/// Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering": rho_s toward grazing angles. A rough surface, by
+/// the rule that gives it its rho_s and p, mirrors no more than the share g = (1 - roughness)^2.
+vec3 grazing(vec3 rho_s, float shininess, float cosine) {
+    float smoothness = 1.0 - pow(2.0 / (shininess + 2.0), 0.25);
+    vec3 most = max(vec3(smoothness * smoothness), rho_s);
+    return mix(rho_s, most, pow(clamp(1.0 - cosine, 0.0, 1.0), 5.0));
 }
 
 /// A, upsampled without crossing depth edges.
@@ -123,7 +135,9 @@ void main() {
     if (SUN_SPECULAR || SKY_SPECULAR) {
         Material m = materials[texelFetch(material, pixel, 0).r];
         vec3 rho_s = m.specular * (surface.a * sun.specular_scale);
-        vec3 r = reflect(normalize(world_ray), n);
+        vec3 toward = normalize(world_ray);
+        if (FRESNEL && any(greaterThan(rho_s, vec3(0.0)))) rho_s = grazing(rho_s, m.shininess, -dot(toward, n));
+        vec3 r = reflect(toward, n);
         float r_dot_l = max(dot(r, sun.direction), 0.0);
         if (SUN_SPECULAR) sum += rho_s * (pow(r_dot_l, m.shininess) * V) * sun.illuminance;
         if (SKY_SPECULAR) sum += rho_s * textureLod(sky_radiance, r, 0.0).rgb;

@@ -14,7 +14,7 @@ use crate::settings::{Options, one_line};
 pub enum Command {
     /// Render one picture to a file, without a window.
     Render {
-        /// Scene file (.toml) or model (.obj) [default: the bundled scene].
+        /// Scene file (.toml) or model (.obj, .gltf, .glb) [default: the bundled scene].
         scene: Option<PathBuf>,
         /// Where to: .png is tone-mapped, .exr is scene-linear cd/m² (lux for irradiance).
         #[arg(short, long, value_name = "FILE", default_value = "skylight.png", value_parser = picture_path)]

@@ -87,11 +87,11 @@ impl Frame {
         let settings = settings.for_scene(&geometry);
         let size = settings.size.to_array();
         Ok(Self {
-            geometry,
             sky_cube: SkyCube::new(&context, settings.sky_edge)?,
             irradiance: Irradiance::new(recorder, settings.irradiance)?,
-            shadow: Shadow::new(&context, settings.shadow_resolution)?,
-            gbuffer: Gbuffer::new(&context, size)?,
+            shadow: Shadow::new(&context, &geometry, settings.shadow_resolution)?,
+            gbuffer: Gbuffer::new(&context, &geometry, size)?,
+            geometry,
             ssao: Ssao::new(&context, size, settings.ssao)?,
             lighting: Lighting::new(&context, size, settings.lighting)?,
             background: Background::new(&context, settings.lighting)?,
@@ -122,10 +122,10 @@ impl Frame {
             self.irradiance = Irradiance::new(recorder, new.irradiance)?;
         }
         if new.shadow_resolution != old.shadow_resolution {
-            self.shadow = Shadow::new(&context, new.shadow_resolution)?;
+            self.shadow = Shadow::new(&context, &self.geometry, new.shadow_resolution)?;
         }
         if resized {
-            self.gbuffer = Gbuffer::new(&context, size)?;
+            self.gbuffer = Gbuffer::new(&context, &self.geometry, size)?;
         }
         if resized || new.ssao != old.ssao {
             self.ssao = Ssao::new(&context, size, new.ssao)?;
@@ -175,8 +175,9 @@ impl Frame {
         let sky = self.sky_cube.record(rec, daylight);
         let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
 
-        let (bounds, resolution) = (self.geometry.bounds(), self.shadow.resolution());
-        let shadow_view = shadow_fit::fit(sample.sun_direction, bounds, &view, resolution);
+        let (bounds, casters) = (self.geometry.bounds(), self.geometry.casters());
+        let resolution = self.shadow.resolution();
+        let shadow_view = shadow_fit::fit(sample.sun_direction, bounds, casters, &view, resolution);
         let shadow_map = self.shadow.record(rec, &self.geometry, &shadow_view);
 
         let surfaces = self.gbuffer.record(rec, &self.geometry, &view);

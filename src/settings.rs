@@ -11,7 +11,7 @@ pub use crate::daylight::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCur
 pub(crate) use resolve::name;
 pub use resolve::{CameraParts, Exposure, Settings, SunInput};
 pub use values::{
-    AoResolution, Direction, ExposureMode, Place, Preset, Show, Size, SolarTime, Switch,
+    AoResolution, Direction, ExposureMode, Fresnel, Place, Preset, Show, Size, SolarTime, Switch,
 };
 pub(crate) use values::{exposure_factor, ratio, sun as direction};
 
@@ -71,6 +71,10 @@ pub struct Options {
     #[arg(long, value_name = "ALBEDO", value_parser = values::ground_albedo, allow_hyphen_values = true, help_heading = "Sun and sky")]
     pub ground_albedo: Option<f64>,
 
+    /// Name of a moment of the scene file: its sun, sky and exposure.
+    #[arg(long, value_name = "NAME", help_heading = "Sun and sky")]
+    pub moment: Option<String>,
+
     /// Name of a camera of the scene file.
     #[arg(long, value_name = "NAME", help_heading = "Camera")]
     pub camera: Option<String>,
@@ -118,6 +122,9 @@ pub struct Options {
     /// Multiplies every specular reflectance; 0 turns mirrors off [default: 1].
     #[arg(long, value_name = "SCALE", value_parser = values::specular, allow_hyphen_values = true, help_heading = "Light")]
     pub specular: Option<f64>,
+    /// Whether mirrors grow stronger toward grazing angles [default: off].
+    #[arg(long, value_enum, value_name = "HOW", help_heading = "Light")]
+    pub fresnel: Option<Fresnel>,
     /// Draw the sun's disc darker toward its limb, as it is (same illuminance).
     #[arg(long, help_heading = "Light")]
     pub limb_darkening: bool,
@@ -127,6 +134,22 @@ pub struct Options {
     /// Smooth models without normals below this angle between faces, degrees, 0 to 180.
     #[arg(long, value_name = "DEGREES", value_parser = values::crease, allow_hyphen_values = true, help_heading = "Light")]
     pub smooth: Option<f64>,
+
+    /// Let a model read libraries and pictures outside of its own folder tree.
+    #[arg(long, help_heading = "Limits")]
+    pub allow_outside: bool,
+    /// Most triangles of a scene, instances counted [default: 67108864].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Limits")]
+    pub max_triangles: Option<u32>,
+    /// Longest edge of a texture, texels [default: 16384].
+    #[arg(long, value_name = "TEXELS", value_parser = clap::value_parser!(u32).range(1..=65_536), help_heading = "Limits")]
+    pub max_texture_edge: Option<u32>,
+    /// Most memory of all textures together, MiB [default: 1024].
+    #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Limits")]
+    pub max_texture_mib: Option<u32>,
+    /// Largest file that is read, MiB [default: 4096].
+    #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Limits")]
+    pub max_file_mib: Option<u32>,
 
     /// Vulkan device: part of its name, or its number in `skylight info`.
     #[arg(long, value_name = "NAME|INDEX", help_heading = "Program")]
@@ -188,8 +211,8 @@ impl Options {
         first_of!(self, base;
             size samples show preset place when sun solar sun_position sky turbidity sky_illuminance refraction ground_albedo camera eye target fov
             ev100 exposure tonemap gamma scale irradiance irradiance_samples irradiance_error ao_radius ao_resolution specular shadow_size
-            smooth device;
-            layers limb_darkening quiet validate)
+            smooth device max_triangles max_texture_edge max_texture_mib max_file_mib fresnel moment;
+            layers limb_darkening quiet validate allow_outside)
     }
 }
 

@@ -22,7 +22,7 @@ use skylight::frame::FrameSettings;
 use skylight::passes::accumulate::Accumulate;
 use skylight::passes::lighting::Show;
 use skylight::passes::ssao::SsaoSettings;
-use skylight::scene::{Camera, Material, Scene, Texture};
+use skylight::scene::{Camera, Encoding, Material, Scene, Texture};
 use truth::Exr;
 
 /// A mirror without diffuse reflection.
@@ -55,6 +55,7 @@ fn glossy_scene() -> Scene {
         rgba8: (0..=255)
             .flat_map(|i: u8| shade((i ^ (i >> 4)) & 1))
             .collect(),
+        encoding: Encoding::Srgb,
     };
     scene.textures = vec![
         texture("chequers", |odd| [200 * odd + 40, 150, 90 + 100 * odd, 255]),

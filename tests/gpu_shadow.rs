@@ -47,7 +47,16 @@ fn texel(scene: &Scene, day: &Daylight, camera: &Camera) -> f64 {
         jitter: Vec2::ZERO,
     };
     let sun = day.sun_direction.as_vec3();
-    f64::from(shadow_fit::fit(sun, &scene.bounds, &view, set.shadow_resolution).texel)
+    f64::from(
+        shadow_fit::fit(
+            sun,
+            &scene.bounds,
+            &scene.casters(),
+            &view,
+            set.shadow_resolution,
+        )
+        .texel,
+    )
 }
 
 /// Points around p, moved across the light by `radius`; p first.

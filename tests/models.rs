@@ -20,13 +20,23 @@ use skylight::scene::{Camera, LoadOptions, Scene, load};
 const SIZE: UVec2 = UVec2::new(160, 90);
 
 /// Models by name, and Kenney's whole folder.
-const MODELS: [&str; 5] = [
+const MODELS: [&str; 13] = [
     "house/house.obj",
     "colonnade/colonnade.obj",
     "medieval_building/Medieval_building.obj",
     "stanford_bunny/stanford-bunny.obj",
     "spot/spot_triangulated.obj",
+    "gltf_small/2CylinderEngine-glTF-Binary/2CylinderEngine.glb",
+    "gltf_small/AlphaBlendModeTest.glb",
+    "gltf_small/BoxInterleaved.glb",
+    "gltf_small/BoxTextured-glTF/BoxTextured.gltf",
+    "gltf_small/BoxTextured-glTF-Embedded/BoxTextured.gltf",
+    "gltf_small/CesiumMilkTruck.glb",
+    "gltf_small/Duck.glb",
+    "gltf_small/no_indices_3storybuilding.glb",
 ];
+/// Small files that stress the reader: whatever loads must be drawn, however little of it is seen.
+const ODD: [&str; 2] = ["tinyobj_odd", "trimesh_odd"];
 const KENNEY: &str = "kenney_suburb/OBJ format";
 const KENNEY_COUNT: usize = 49;
 
@@ -48,6 +58,7 @@ fn settings() -> FrameSettings {
             precision: Precision::Float,
             specular_scale: 1.0,
             limb_darkening: 0.0,
+            fresnel: false,
             occlusion_downscale: SsaoSettings::default().downscale,
         },
         tone: ToneSettings {
@@ -119,18 +130,66 @@ fn wrong(scene: &Scene, [beauty, albedo, depth]: &[Vec<[f32; 4]>; 3]) -> Option<
     (textured && colours.len() < 3).then(|| format!("has {} albedos", colours.len()))
 }
 
+fn context() -> Arc<Context> {
+    Context::new(&ContextOptions {
+        device: std::env::var("SKYLIGHT_TEST_DEVICE").ok(),
+        validate: true,
+        ..ContextOptions::default()
+    })
+    .expect("a device and the validation layer")
+}
+
+#[test]
+fn odd_models_that_load_are_drawn() {
+    let Some(shared) = common::shared() else {
+        return;
+    };
+    let context = context();
+    let (mut drawn, mut refused, mut failures) = (0, 0, Vec::new());
+    for folder in ODD {
+        let entries = fs::read_dir(shared.join("scenes").join(folder)).expect("the folder");
+        let mut paths: Vec<PathBuf> = entries.map(|e| e.expect("an entry").path()).collect();
+        paths.retain(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj")));
+        paths.sort();
+        for path in paths {
+            let name = path
+                .file_name()
+                .expect("a name")
+                .to_string_lossy()
+                .into_owned();
+            let Ok(loaded) = load(&path, &LoadOptions::default()) else {
+                refused += 1;
+                continue;
+            };
+            drawn += 1;
+            let [beauty, _, depth] = pictures(&context, &loaded.scene);
+            let seen = depth.iter().filter(|texel| texel[0] > 0.0).count();
+            let sound = beauty.iter().flatten().all(|v| v.is_finite() && *v >= 0.0);
+            println!("{folder}/{name} | {seen} pixels");
+            if seen == 0 || !sound {
+                failures.push(format!("{name}: {seen} pixels seen, sound: {sound}"));
+            }
+            assert_eq!(
+                context.validation_messages(),
+                Vec::<String>::new(),
+                "{name}"
+            );
+        }
+    }
+    println!("{drawn} drawn, {refused} refused");
+    assert!(
+        failures.is_empty() && drawn >= 60,
+        "{drawn} drawn: {failures:#?}"
+    );
+}
+
 #[test]
 fn every_real_model_is_drawn() {
     let Some(shared) = common::shared() else {
         return;
     };
     let scenes = shared.join("scenes");
-    let context = Context::new(&ContextOptions {
-        device: std::env::var("SKYLIGHT_TEST_DEVICE").ok(),
-        validate: true,
-        ..ContextOptions::default()
-    })
-    .expect("a device and the validation layer");
+    let context = context();
     let named = MODELS.iter().map(|name| scenes.join(name));
     let mut failures = Vec::new();
     for path in named.chain(kenney(&scenes)) {

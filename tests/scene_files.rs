@@ -33,7 +33,11 @@ const REFUSED: [(&str, &str); 12] = [
 ];
 
 /// Triangles of INDEX.md, those without area included.
-const COUNTS: [(&str, usize); 8] = [
+const COUNTS: [(&str, usize); 12] = [
+    ("gltf_small/BoxTextured.glb", 12),
+    ("gltf_small/BoxInterleaved.glb", 12),
+    ("gltf_small/Duck.glb", 4_212),
+    ("gltf_small/CesiumMilkTruck.glb", 3_624),
     ("house/house.obj", 1_620),
     ("colonnade/colonnade.obj", 2_240),
     ("teapot/teapot_on_plane.obj", 6_322),
@@ -44,15 +48,16 @@ const COUNTS: [(&str, usize); 8] = [
     ("trimesh_odd/cube.OBJ", 12),
 ];
 
-fn obj_files(folder: &Path, found: &mut Vec<PathBuf>) {
+fn model_files(folder: &Path, found: &mut Vec<PathBuf>) {
     let entries = fs::read_dir(folder).expect("a readable folder");
     for path in entries.map(|entry| entry.expect("an entry").path()) {
         if path.is_dir() {
-            obj_files(&path, found);
-        } else if path
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("obj"))
-        {
+            model_files(&path, found);
+        } else if path.extension().is_some_and(|e| {
+            ["obj", "gltf", "glb"]
+                .iter()
+                .any(|known| e.eq_ignore_ascii_case(known))
+        }) {
             found.push(path);
         }
     }
@@ -82,6 +87,11 @@ fn assert_sound(name: &str, scene: &Scene) {
         scene.texcoords.iter().flatten().all(|v| v.is_finite()),
         "{name}"
     );
+    let streams = [scene.colours.len(), scene.tangents.len()];
+    assert!(
+        streams.iter().all(|n| [0, vertices].contains(n)),
+        "{name}: {streams:?}"
+    );
     let length = |n: &[f32; 3]| n.iter().map(|v| v * v).sum::<f32>();
     assert!(
         scene.normals.iter().all(|n| (length(n) - 1.0).abs() < 1e-3),
@@ -104,7 +114,7 @@ fn assert_sound(name: &str, scene: &Scene) {
     let textures = scene
         .materials
         .iter()
-        .flat_map(|m| [m.diffuse_texture, m.specular_texture])
+        .flat_map(|m| [m.diffuse_texture, m.specular_texture, m.normal_texture])
         .flatten();
     assert!(
         textures.max().is_none_or(|t| t < scene.textures.len()),
@@ -141,7 +151,7 @@ fn every_shared_model_loads_or_is_refused_with_one_right_line() {
     };
     let scenes = shared.join("scenes");
     let mut files = Vec::new();
-    obj_files(&scenes, &mut files);
+    model_files(&scenes, &mut files);
     files.sort();
     let (mut refused, mut wrong) = (0, Vec::new());
     for path in &files {
@@ -180,7 +190,7 @@ fn every_shared_model_loads_or_is_refused_with_one_right_line() {
         "some files that should be refused are missing"
     );
     assert!(
-        files.len() >= 120,
+        files.len() >= 130,
         "only {} files in {}",
         files.len(),
         scenes.display()

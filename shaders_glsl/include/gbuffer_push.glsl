@@ -1,6 +1,8 @@
 layout(push_constant, scalar) uniform Push {
     mat4 clip_from_world;
     vec3 eye;
-    vec3 diffuse;  // rho_d, multiplies the diffuse map
-    uint material; // index into the table of materials
+    vec3 diffuse;       // rho_d, multiplies the diffuse map
+    uint material;      // index into the table of materials
+    float cutoff;       // of a cut-out: alpha below it is a hole
+    float normal_scale; // factor on the slopes of the normal map
 } push;

@@ -21,13 +21,21 @@ use crate::passes::lighting::{LightingSettings, Precision, Show};
 use crate::passes::ssao::SsaoSettings;
 use crate::passes::tone_map::{Scale, ToneSettings};
 use crate::scene::{self, Camera, LoadOptions, Loaded, Scene};
-use crate::settings::{AoResolution, Exposure, Options, Preset, Settings};
+use crate::settings::{AoResolution, Exposure, Fresnel, Options, Preset, Settings};
 
 /// How a scene is to be loaded.
 pub fn load_options(options: &Options) -> LoadOptions {
+    let default = LoadOptions::default();
+    let bytes = |mib: Option<u32>, default| mib.map_or(default, |mib| u64::from(mib) << 20);
     LoadOptions {
         smooth_deg: options.smooth.map(|s| s as f32),
-        ..LoadOptions::default()
+        max_texture_edge: options.max_texture_edge.unwrap_or(default.max_texture_edge),
+        max_texture_bytes: bytes(options.max_texture_mib, default.max_texture_bytes),
+        max_file_bytes: bytes(options.max_file_mib, default.max_file_bytes),
+        max_triangles: options
+            .max_triangles
+            .map_or(default.max_triangles, |n| n as usize),
+        allow_outside: options.allow_outside,
     }
 }
 
@@ -148,6 +156,7 @@ impl Job {
                     0.0
                 },
                 occlusion_downscale: downscale,
+                fresnel: s.fresnel == Fresnel::Schlick,
             },
             tone: ToneSettings {
                 show,

@@ -44,6 +44,7 @@ impl Light {
             scene: Scene::default(),
             options: Vec::new(),
             cameras: Vec::new(),
+            moments: Vec::new(),
             path: std::path::PathBuf::new(),
         };
         let settings = Settings::resolve(options, &nothing)?;

@@ -346,6 +346,7 @@ fn vertex_size(format: vk::Format) -> u32 {
         vk::Format::R32G32B32_SFLOAT => 12,
         vk::Format::R32G32_SFLOAT => 8,
         vk::Format::R16G16_SNORM => 4,
+        vk::Format::R16G16B16A16_UNORM | vk::Format::R16G16B16A16_SNORM => 8,
         other => unreachable!("vertex format {other:?} has no size here"),
     }
 }

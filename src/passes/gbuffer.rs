@@ -10,6 +10,7 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
+use super::details::Details;
 use super::geometry::{Bound, Geometry};
 use super::view::View;
 
@@ -20,6 +21,22 @@ gpu_struct! {
         eye: Vec3,
         diffuse: Vec3,
         material: u32,
+        cutoff: f32,
+        normal_scale: f32,
+    }
+}
+
+impl Push {
+    /// The camera and what a draw binds.
+    pub(super) fn of(clip_from_world: [[f32; 4]; 4], eye: Vec3, bound: &Bound<'_>) -> Self {
+        Self {
+            clip_from_world,
+            eye,
+            diffuse: bound.diffuse,
+            material: bound.material,
+            cutoff: bound.cutoff,
+            normal_scale: bound.normal_scale,
+        }
     }
 }
 
@@ -54,6 +71,7 @@ pub fn decode_normal([x, y]: [f32; 2]) -> [f32; 3] {
 pub struct Gbuffer {
     /// By whether ρ_d and ρ_s have maps: a lookup that is not needed costs as much as one that is.
     pipelines: [[Pipeline; 2]; 2],
+    details: Details,
     surfaces: Surfaces,
 }
 
@@ -84,11 +102,11 @@ fn pipeline(
 }
 
 impl Gbuffer {
-    /// Images of `size` pixels.
+    /// Images of `size` pixels, and what drawing `geometry` takes.
     ///
     /// # Errors
     /// When the device refuses.
-    pub fn new(context: &Arc<Context>, size: [u32; 2]) -> Result<Self> {
+    pub fn new(context: &Arc<Context>, geometry: &Geometry, size: [u32; 2]) -> Result<Self> {
         // 16 bits a component hold a direction to 0.003°; half floats, which every device renders to, to 0.03°.
         let normal = context.supported_format(&[Format::R16G16_SNORM, Format::R16G16_SFLOAT])?;
         let formats = [normal, Format::R16G16B16A16_SFLOAT, Format::R16_UINT];
@@ -105,6 +123,7 @@ impl Gbuffer {
         };
         Ok(Self {
             pipelines,
+            details: Details::new(context, geometry, &formats)?,
             surfaces,
         })
     }
@@ -131,7 +150,7 @@ impl Gbuffer {
             .depth(&self.surfaces.depth, clear)
             .draws(|draws| {
                 let (eye, mut variant) = (view.camera.eye, [0, 0]);
-                geometry.draw_surfaces(draws, |draws, bound| {
+                geometry.draw_plain(draws, |draws, bound| {
                     let maps = [bound.diffuse_map, bound.specular_map];
                     let wanted = maps.map(|m| usize::from(m.is_some()));
                     if wanted != variant {
@@ -141,17 +160,11 @@ impl Gbuffer {
                     let [diffuse_map, specular_map] = maps.map(|m| m.unwrap_or(bound.white));
                     draws.texture("diffuse_map", diffuse_map, Sampler::Repeat);
                     draws.texture("specular_map", specular_map, Sampler::Repeat);
-                    let Bound {
-                        material, diffuse, ..
-                    } = *bound;
-                    draws.push(&Push {
-                        clip_from_world,
-                        eye,
-                        diffuse,
-                        material,
-                    });
+                    draws.push(&Push::of(clip_from_world, eye, bound));
                 });
             });
+        self.details
+            .record(recorder, geometry, &self.surfaces, view);
         &self.surfaces
     }
 }

@@ -6,7 +6,7 @@ use crate::gpu::{
     Buffer, BufferKind, Draws, Format, Image, ImageDesc, ImageKind, Recorder, Result,
     upload_buffer, upload_texture,
 };
-use crate::scene::{Bounds, Material, Scene, Texture};
+use crate::scene::{Bounds, Encoding, Material, Scene, Texture};
 
 /// What is drawn with one material.
 #[derive(Debug, Clone, Copy)]
@@ -17,6 +17,32 @@ pub struct Part {
     pub count: u32,
     /// Number of the material.
     pub material: u32,
+    /// How it is drawn.
+    pub kind: Kind,
+    /// Whether the shadow map needs it.
+    pub casts: bool,
+}
+
+/// What the shaders of a part must do besides the plain minimum; each kind has a pipeline of its own.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Kind {
+    /// Read colours at its vertices.
+    pub colours: bool,
+    /// Read a normal map.
+    pub normal_map: bool,
+    /// Leave holes.
+    pub cut_out: bool,
+    /// Read a map of ρ_d.
+    pub diffuse_map: bool,
+    /// Read a map of the factor on ρ_s.
+    pub specular_map: bool,
+}
+
+impl Kind {
+    /// Whether it needs more than maps of ρ_d and ρ_s.
+    pub fn is_detailed(&self) -> bool {
+        self.colours || self.normal_map || self.cut_out
+    }
 }
 
 /// A material as draws need it.
@@ -25,11 +51,16 @@ struct Surface {
     diffuse: Vec3,
     diffuse_map: Option<usize>,
     specular_map: Option<usize>,
+    normal_map: Option<usize>,
+    normal_scale: f32,
+    cutoff: Option<f32>,
 }
 
 /// What a draw binds: a material with its maps.
 #[derive(Clone, Copy)]
 pub struct Bound<'g> {
+    /// How it is drawn.
+    pub kind: Kind,
     /// Number of the material.
     pub material: u32,
     /// ρ_d, multiplies its map.
@@ -38,6 +69,12 @@ pub struct Bound<'g> {
     pub diffuse_map: Option<&'g Image>,
     /// Map of the factor on ρ_s.
     pub specular_map: Option<&'g Image>,
+    /// Normal map.
+    pub normal_map: Option<&'g Image>,
+    /// Factor on its slopes.
+    pub normal_scale: f32,
+    /// Alpha of the map of ρ_d below which there is a hole; 0 without holes.
+    pub cutoff: f32,
     /// Stands for a map that is not there.
     pub white: &'g Image,
 }
@@ -49,6 +86,9 @@ pub struct Geometry {
     texcoords: Buffer,
     indices: Buffer,
     index_count: u32,
+    /// Colours and tangents, if any part is detailed.
+    details: Option<[Buffer; 2]>,
+    /// Sorted by kind.
     parts: Vec<Part>,
     surfaces: Vec<Surface>,
     textures: Vec<Image>,
@@ -56,6 +96,7 @@ pub struct Geometry {
     is_specular: bool,
     materials: Buffer,
     bounds: Bounds,
+    casters: Bounds,
 }
 
 impl Geometry {
@@ -78,21 +119,22 @@ impl Geometry {
         let mut parts: Vec<Part> = scene
             .parts
             .iter()
-            .map(|p| Part {
+            .zip(scene.casting())
+            .map(|(p, casts)| Part {
                 first: p.first_index,
                 count: p.index_count,
                 material: p.material,
+                kind: surfaces[p.material as usize].kind(p.has_colours),
+                casts,
             })
             .collect();
-        // Materials with the same kinds of maps share a pipeline: as few changes as possible.
-        parts.sort_by_key(|p| {
-            let s = &surfaces[p.material as usize];
-            (
-                s.diffuse_map.is_some(),
-                s.specular_map.is_some(),
-                p.material,
-            )
-        });
+        // Parts of one kind share a pipeline: as few changes as possible.
+        parts.sort_by_key(|p| (p.kind, p.material));
+        let details = if parts.iter().any(|p| p.kind.is_detailed()) {
+            Some(upload_details(recorder, scene)?)
+        } else {
+            None
+        };
         Ok(Self {
             positions: vertex(
                 recorder,
@@ -107,6 +149,7 @@ impl Geometry {
             )?,
             indices: upload_buffer(recorder, "indices", BufferKind::Index, indices)?,
             index_count: scene.indices.len() as u32,
+            details,
             parts,
             is_specular: scene.materials.iter().any(|m| m.specular != [0.0; 3]),
             surfaces,
@@ -119,6 +162,7 @@ impl Geometry {
                 bytemuck::cast_slice(&table),
             )?,
             bounds: scene.bounds,
+            casters: scene.casters(),
         })
     }
 
@@ -127,17 +171,45 @@ impl Geometry {
         &self.bounds
     }
 
+    /// The box around everything that may cast a shadow.
+    pub fn casters(&self) -> &Bounds {
+        &self.casters
+    }
+
     /// ρ_s and p of every material.
     pub fn materials(&self) -> &Buffer {
         &self.materials
     }
 
-    /// Draws everything, positions only.
+    /// Draws everything that casts a shadow and has no holes, positions only.
     pub fn draw_positions(&self, draws: &mut Draws<'_, '_>) {
-        if self.index_count > 0 {
-            draws.geometry(&[&self.positions], &self.indices);
-            draws.indexed(0, self.index_count);
+        if self.index_count == 0 {
+            return;
         }
+        draws.geometry(&[&self.positions], &self.indices);
+        for (first, count) in self.solid_runs() {
+            draws.indexed(first, count);
+        }
+    }
+
+    /// Runs of indices of casting parts without holes that follow each other.
+    fn solid_runs(&self) -> Vec<(u32, u32)> {
+        let solid = self.parts.iter().filter(|p| p.casts && !p.kind.cut_out);
+        let mut ranges: Vec<(u32, u32)> = solid.map(|p| (p.first, p.count)).collect();
+        ranges.sort_unstable();
+        ranges.dedup_by(|next, run| {
+            let follows = next.0 == run.0 + run.1;
+            run.1 += if follows { next.1 } else { 0 };
+            follows
+        });
+        ranges
+    }
+
+    /// The kinds of its parts, in the order in which they are drawn.
+    pub fn kinds(&self) -> impl Iterator<Item = Kind> {
+        let mut kinds: Vec<Kind> = self.parts.iter().map(|p| p.kind).collect();
+        kinds.dedup();
+        kinds.into_iter()
     }
 
     /// Whether any material has a ρ_s.
@@ -145,37 +217,110 @@ impl Geometry {
         self.is_specular
     }
 
-    /// Draws part after part; `bind` is called with each new material.
-    pub fn draw_surfaces<'g, 'r>(
+    /// Draws the parts that are not detailed; `bind` is called with each new material.
+    pub fn draw_plain<'g, 'r>(
         &'g self,
         draws: &mut Draws<'_, 'r>,
-        mut bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
+        bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
     ) {
         draws.geometry(
             &[&self.positions, &self.normals, &self.texcoords],
             &self.indices,
         );
+        self.draw_parts(draws, |part| !part.kind.is_detailed(), bind);
+    }
+
+    /// Draws the detailed parts; `bind` is called with each new material.
+    pub fn draw_detailed<'g, 'r>(
+        &'g self,
+        draws: &mut Draws<'_, 'r>,
+        bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
+    ) {
+        let Some([colours, tangents]) = &self.details else {
+            return;
+        };
+        let plain = [&self.positions, &self.normals, &self.texcoords];
+        let streams = [plain[0], plain[1], plain[2], colours, tangents];
+        draws.geometry(&streams, &self.indices);
+        self.draw_parts(draws, |part| part.kind.is_detailed(), bind);
+    }
+
+    /// Draws positions and texture coordinates of the parts with holes; `bind` is called with each new material.
+    pub fn draw_cut_outs<'g, 'r>(
+        &'g self,
+        draws: &mut Draws<'_, 'r>,
+        bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
+    ) {
+        draws.geometry(&[&self.positions, &self.texcoords], &self.indices);
+        self.draw_parts(draws, |part| part.casts && part.kind.cut_out, bind);
+    }
+
+    fn draw_parts<'g, 'r>(
+        &'g self,
+        draws: &mut Draws<'_, 'r>,
+        wanted: impl Fn(&Part) -> bool,
+        mut bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
+    ) {
         let mut current = None;
-        for part in &self.parts {
-            if current != Some(part.material) {
-                bind(draws, &self.bound(part.material));
-                current = Some(part.material);
+        for part in self.parts.iter().filter(|p| wanted(p)) {
+            if current != Some((part.kind, part.material)) {
+                bind(draws, &self.bound(part));
+                current = Some((part.kind, part.material));
             }
             draws.indexed(part.first, part.count);
         }
     }
 
-    fn bound(&self, material: u32) -> Bound<'_> {
-        let s = &self.surfaces[material as usize];
+    fn bound(&self, part: &Part) -> Bound<'_> {
+        let s = &self.surfaces[part.material as usize];
         let map = |index: Option<usize>| index.map(|i| &self.textures[i]);
         Bound {
-            material,
+            kind: part.kind,
+            material: part.material,
             diffuse: s.diffuse,
             diffuse_map: map(s.diffuse_map),
             specular_map: map(s.specular_map),
+            normal_map: map(s.normal_map),
+            normal_scale: s.normal_scale,
+            cutoff: s.cutoff.unwrap_or(0.0),
             white: &self.white,
         }
     }
+}
+
+impl Surface {
+    fn kind(&self, colours: bool) -> Kind {
+        Kind {
+            colours,
+            normal_map: self.normal_map.is_some(),
+            cut_out: self.cutoff.is_some(),
+            diffuse_map: self.diffuse_map.is_some(),
+            specular_map: self.specular_map.is_some(),
+        }
+    }
+}
+
+/// Colours and tangents for every vertex: white and none where the scene has none.
+fn upload_details(recorder: &mut Recorder, scene: &Scene) -> Result<[Buffer; 2]> {
+    let vertices = scene.positions.len();
+    let (white, none) = (vec![[u16::MAX; 4]; vertices], vec![[0i16; 4]; vertices]);
+    let given = |length: usize| length == vertices;
+    let colours = if given(scene.colours.len()) {
+        &scene.colours
+    } else {
+        &white
+    };
+    let tangents = if given(scene.tangents.len()) {
+        &scene.tangents
+    } else {
+        &none
+    };
+    let colours = bytemuck::cast_slice(colours);
+    let tangents = bytemuck::cast_slice(tangents);
+    Ok([
+        upload_buffer(recorder, "colours", BufferKind::Vertex, colours)?,
+        upload_buffer(recorder, "tangents", BufferKind::Vertex, tangents)?,
+    ])
 }
 
 fn table_row(material: &Material) -> [f32; 4] {
@@ -188,6 +333,12 @@ fn surface(material: &Material) -> Surface {
         diffuse: material.diffuse.into(),
         diffuse_map: material.diffuse_texture,
         specular_map: material.specular_texture,
+        normal_map: material.normal_texture,
+        normal_scale: material.normal_scale,
+        // The opacity of the material multiplies that of the map: the same test with one factor less.
+        cutoff: material
+            .alpha_cutoff
+            .map(|c| c / material.dissolve.max(1e-6)),
     }
 }
 
@@ -197,6 +348,7 @@ fn white() -> Texture {
         width: 1,
         height: 1,
         rgba8: vec![255; 4],
+        encoding: Encoding::Srgb,
     }
 }
 
@@ -207,7 +359,10 @@ fn upload(recorder: &mut Recorder, texture: &Texture) -> Result<Image> {
         .collect();
     let desc = ImageDesc {
         name: &texture.name,
-        format: Format::R8G8B8A8_SRGB,
+        format: match texture.encoding {
+            Encoding::Srgb => Format::R8G8B8A8_SRGB,
+            Encoding::Linear => Format::R8G8B8A8_UNORM,
+        },
         size: [texture.width, texture.height],
         kind: ImageKind::Flat,
         levels: levels.len() as u32,

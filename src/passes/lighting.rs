@@ -176,6 +176,8 @@ pub struct LightingSettings {
     pub limb_darkening: f32,
     /// Pixels to a texel of the occlusion, each way.
     pub occlusion_downscale: u32,
+    /// Whether ρ_s grows toward grazing angles (Schlick's approximation of Fresnel's equations).
+    pub fresnel: bool,
 }
 
 /// What light there is: images and numbers of the moment.
@@ -217,6 +219,7 @@ impl Lighting {
             .constants(settings.specular_scale > 0.0)
             .to_vec();
         constants.push(("OCCLUSION_DOWNSCALE", settings.occlusion_downscale));
+        constants.push(("FRESNEL", settings.fresnel.into()));
         let pipeline = Pipeline::new(
             context,
             &PipelineDesc {

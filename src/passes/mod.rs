@@ -4,6 +4,7 @@
 
 pub mod accumulate;
 pub mod background;
+pub mod details;
 pub mod exposure;
 pub mod gbuffer;
 pub mod geometry;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::gpu::{
     Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
-    shaders,
+    Sampler, shaders,
 };
 use crate::gpu_struct;
 
@@ -18,40 +18,62 @@ gpu_struct! {
     }
 }
 
+gpu_struct! {
+    /// The sun's view, and where a surface has holes.
+    pub struct CutOutPush {
+        shadow_from_world: [[f32; 4]; 4],
+        cutoff: f32,
+    }
+}
+
 /// Slopes of depth, in texels, by which casters are pushed away from the sun.
 const SLOPE_BIAS: f32 = 1.5;
+
+fn pipeline(context: &Arc<Context>, name: &str, holes: bool) -> Result<Pipeline> {
+    let solid: &[_] = &[&shaders::SHADOW_VERT];
+    let cut_out: &[_] = &[&shaders::SHADOW_CUT_OUT_VERT, &shaders::SHADOW_CUT_OUT_FRAG];
+    let streams = [Format::R32G32B32_SFLOAT, Format::R32G32_SFLOAT];
+    Pipeline::new(
+        context,
+        &PipelineDesc {
+            name,
+            stages: if holes { cut_out } else { solid },
+            vertex: &streams[..if holes { 2 } else { 1 }],
+            colors: &[],
+            depth: Depth::Write {
+                format: Format::D32_SFLOAT,
+                slope_bias: SLOPE_BIAS,
+            },
+            constants: &[],
+        },
+    )
+}
 
 /// The pass and its map.
 pub struct Shadow {
     pipeline: Pipeline,
+    /// For surfaces with holes, if there are any.
+    cut_outs: Option<Pipeline>,
     depth: Image,
     drawn: Option<ShadowView>,
 }
 
 impl Shadow {
-    /// A map of `resolution` texels a side.
+    /// A map of `resolution` texels a side, and what drawing `geometry` takes.
     ///
     /// # Errors
     /// When the device refuses.
-    pub fn new(context: &Arc<Context>, resolution: u32) -> Result<Self> {
-        let format = Format::D32_SFLOAT;
-        let pipeline = Pipeline::new(
-            context,
-            &PipelineDesc {
-                name: "shadow map",
-                stages: &[&shaders::SHADOW_VERT],
-                vertex: &[Format::R32G32B32_SFLOAT],
-                colors: &[],
-                depth: Depth::Write {
-                    format,
-                    slope_bias: SLOPE_BIAS,
-                },
-                constants: &[],
-            },
-        )?;
-        let desc = ImageDesc::flat("shadow map", format, [resolution, resolution]);
+    pub fn new(context: &Arc<Context>, geometry: &Geometry, resolution: u32) -> Result<Self> {
+        let pipeline = pipeline(context, "shadow map", false)?;
+        let has_holes = geometry.kinds().any(|kind| kind.cut_out);
+        let cut_outs = has_holes
+            .then(|| self::pipeline(context, "shadow map, cut-outs", true))
+            .transpose()?;
+        let size = [resolution, resolution];
+        let desc = ImageDesc::flat("shadow map", Format::D32_SFLOAT, size);
         Ok(Self {
             pipeline,
+            cut_outs,
             depth: Image::new(context, &desc)?,
             drawn: None,
         })
@@ -77,6 +99,7 @@ impl Shadow {
                 })
                 .depth(&self.depth, Load::Clear([0.0; 4]))
                 .draws(|draws| geometry.draw_positions(draws));
+            self.record_cut_outs(recorder, geometry, view);
             self.drawn = Some(*view);
         }
         &self.depth
@@ -85,6 +108,26 @@ impl Shadow {
     /// The map as it was last drawn.
     pub fn image(&self) -> &Image {
         &self.depth
+    }
+
+    fn record_cut_outs(&self, recorder: &mut Recorder, geometry: &Geometry, view: &ShadowView) {
+        let Some(pipeline) = &self.cut_outs else {
+            return;
+        };
+        let shadow_from_world = view.shadow_from_world.to_cols_array_2d();
+        recorder
+            .pass("shadow map, cut-outs", pipeline)
+            .depth(&self.depth, Load::Keep)
+            .draws(|draws| {
+                geometry.draw_cut_outs(draws, |draws, bound| {
+                    let map = bound.diffuse_map.unwrap_or(bound.white);
+                    draws.texture("diffuse_map", map, Sampler::Repeat);
+                    draws.push(&CutOutPush {
+                        shadow_from_world,
+                        cutoff: bound.cutoff,
+                    });
+                });
+            });
     }
 
     /// Forgets what was drawn, so that the next frame draws it again.
@@ -102,5 +145,9 @@ mod tests {
     fn host_and_shader_agree() {
         let push = shaders::SHADOW_VERT.push.expect("push");
         assert_eq!(check_layout(Push::FIELDS, push), Ok(()));
+        for stage in [&shaders::SHADOW_CUT_OUT_VERT, &shaders::SHADOW_CUT_OUT_FRAG] {
+            let push = stage.push.expect("push");
+            assert_eq!(check_layout(CutOutPush::FIELDS, push), Ok(()));
+        }
     }
 }

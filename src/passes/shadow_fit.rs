@@ -29,18 +29,35 @@ fn axes(sun_direction: Vec3) -> [Vec3; 3] {
     [right, sun_direction.cross(right), sun_direction]
 }
 
-/// Fits the map of `resolution` texels a side to the part of `bounds` that `view` sees.
+/// Fits the map of `resolution` texels a side to the part of `bounds` that `view` sees and that may lie in the shadow of
+/// what is within `casters`.
 ///
 /// The centre moves in whole texels and the extent in steps, so that shadows do not swim under a moving camera.
-pub fn fit(sun_direction: Vec3, bounds: &Bounds, view: &View, resolution: u32) -> ShadowView {
+pub fn fit(
+    sun_direction: Vec3,
+    bounds: &Bounds,
+    casters: &Bounds,
+    view: &View,
+    resolution: u32,
+) -> ShadowView {
     let [right, up, toward] = axes(sun_direction);
     let to_light = |p: Vec3| Vec3::new(right.dot(p), up.dot(p), toward.dot(p));
-    let casters = Bounds::of(bounds.corners().map(to_light));
+    let casters = Bounds::of(casters.corners().map(to_light));
     let seen = visible_points(bounds, view);
-    let receivers = if seen.is_empty() {
+    // Sunlight is parallel: nothing beside the casters, seen from the sun, is in their shadow.
+    let receivers = Bounds::of(seen.into_iter().map(to_light));
+    let receivers = Bounds {
+        min: receivers
+            .min
+            .max(casters.min.truncate().extend(receivers.min.z)),
+        max: receivers
+            .max
+            .min(casters.max.truncate().extend(receivers.max.z)),
+    };
+    let receivers = if receivers.is_empty() {
         casters
     } else {
-        Bounds::of(seen.into_iter().map(to_light))
+        receivers
     };
     let extent = (receivers.max - receivers.min)
         .truncate()
@@ -259,7 +276,7 @@ mod tests {
         let view = view(Vec3::new(6.0, 3.0, 5.0), Vec3::new(-4.0, 1.0, -6.0));
         let clip_from_world = view.clip_from_world();
         for sun in suns() {
-            let map = fit(sun, &scene(), &view, 2048);
+            let map = fit(sun, &scene(), &scene(), &view, 2048);
             let mut seen = 0;
             for i in 0..4096u32 {
                 let unit = Vec3::new(
@@ -284,7 +301,7 @@ mod tests {
     fn depth_grows_toward_the_sun() {
         let view = view(Vec3::new(30.0, 10.0, 30.0), Vec3::ZERO);
         for sun in suns() {
-            let map = fit(sun, &scene(), &view, 512).shadow_from_world;
+            let map = fit(sun, &scene(), &scene(), &view, 512).shadow_from_world;
             let p = Vec3::new(1.0, 2.0, 1.0);
             let (low, high) = (map.transform_point3(p), map.transform_point3(p + sun));
             assert!(high.z > low.z);
@@ -297,7 +314,7 @@ mod tests {
         let sun = suns()[1];
         let at = |x: f32| {
             let view = view(Vec3::new(6.0 + x, 3.0, 5.0), Vec3::new(-4.0 + x, 1.0, -6.0));
-            fit(sun, &scene(), &view, 1024)
+            fit(sun, &scene(), &scene(), &view, 1024)
         };
         let (a, b) = (at(0.0), at(0.013));
         if a.texel == b.texel {
@@ -314,11 +331,13 @@ mod tests {
         let far = fit(
             suns()[1],
             &scene(),
+            &scene(),
             &view(Vec3::splat(40.0), Vec3::ZERO),
             1024,
         );
         let near = fit(
             suns()[1],
+            &scene(),
             &scene(),
             &view(Vec3::new(1.0, 0.5, 1.0), Vec3::new(0.0, 0.0, 0.5)),
             1024,

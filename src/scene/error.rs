@@ -9,7 +9,7 @@ pub enum SceneError {
     #[error("{}: no such file; check the path", .0.display())]
     Missing(PathBuf),
     /// A directory where a file is needed.
-    #[error("{} is a directory; name a .toml or .obj file in it", .0.display())]
+    #[error("{} is a directory; name a .toml, .obj, .gltf or .glb file in it", .0.display())]
     Directory(PathBuf),
     /// A pipe, a device, a socket.
     #[error("{} is not a regular file; save it to disk first", .0.display())]
@@ -23,7 +23,7 @@ pub enum SceneError {
         reason: String,
     },
     /// Larger than [`LoadOptions::max_file_bytes`](super::LoadOptions::max_file_bytes).
-    #[error("{} has {bytes} bytes, the limit is {limit}; split it", path.display())]
+    #[error("{} has {bytes} bytes, the limit is {limit}; split it or raise --max-file-mib", path.display())]
     TooLarge {
         /// The file.
         path: PathBuf,
@@ -31,6 +31,16 @@ pub enum SceneError {
         bytes: u64,
         /// The limit, bytes.
         limit: u64,
+    },
+    /// More triangles than [`LoadOptions::max_triangles`](super::LoadOptions::max_triangles) or than 32-bit numbers count.
+    #[error("{}: {triangles} triangles, the limit is {limit}; simplify it or raise --max-triangles", path.display())]
+    TooMany {
+        /// The file.
+        path: PathBuf,
+        /// Of the whole scene.
+        triangles: usize,
+        /// The limit.
+        limit: usize,
     },
     /// A kind of file that is not read (yet).
     #[error("{}: {what}", path.display())]

@@ -1,28 +1,104 @@
 //! Where files come from: the disk, or the ones that are built into the program.
 
+use std::borrow::Cow;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use super::error::SceneError;
 
 /// A source of files.
+#[derive(Debug, Clone)]
+pub(super) struct Files {
+    source: Source,
+    /// Of a model: what it names must lie in this folder tree. None: anywhere.
+    confined_to: Option<PathBuf>,
+}
+
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Files {
+enum Source {
     /// The file system; no file larger than this many bytes is read.
     Disk { max_bytes: u64 },
     /// Built-in files by name.
     Embedded(&'static [(&'static str, &'static [u8])]),
 }
 
+/// Where a file that a model names is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Place {
+    Found(PathBuf),
+    Missing(PathBuf),
+    /// It is there, but the model has no business with it.
+    Outside(PathBuf),
+}
+
 impl Files {
+    /// The file system; no file larger than this many bytes is read.
+    pub fn disk(max_bytes: u64) -> Self {
+        Self {
+            source: Source::Disk { max_bytes },
+            confined_to: None,
+        }
+    }
+
+    /// Built-in files by name.
+    pub fn embedded(files: &'static [(&'static str, &'static [u8])]) -> Self {
+        Self {
+            source: Source::Embedded(files),
+            confined_to: None,
+        }
+    }
+
+    /// From now on [`Files::find`] finds only what lies in the folder tree of `model`.
+    pub fn confine_to(&mut self, model: &Path) {
+        let folder = model.parent().unwrap_or(Path::new(""));
+        let folder = if folder.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            folder
+        };
+        self.confined_to = folder.canonicalize().ok();
+    }
+
+    /// The file that a name in a model means: beside the model as written, with back-slashes as separators, or, for the
+    /// absolute paths of somebody else's machine, its last part.
+    pub fn find(&self, folder: &Path, name: &str) -> Place {
+        let forward: Cow<str> = if name.contains('\\') {
+            name.replace('\\', "/").into()
+        } else {
+            name.into()
+        };
+        let last = forward.rsplit('/').next().unwrap_or(&forward);
+        let candidates = [folder.join(name), folder.join(&*forward), folder.join(last)];
+        let mut there = candidates.iter().filter(|path| self.has(path));
+        match there.clone().find(|path| self.is_inside(path)) {
+            Some(path) => Place::Found(path.clone()),
+            None => there
+                .next()
+                .map_or(Place::Missing(candidates[1].clone()), |path| {
+                    Place::Outside(path.clone())
+                }),
+        }
+    }
+
+    /// Links are followed: one that leads out is outside.
+    fn is_inside(&self, path: &Path) -> bool {
+        let Some(root) = &self.confined_to else {
+            return true;
+        };
+        match self.source {
+            Source::Disk { .. } => path.canonicalize().is_ok_and(|path| path.starts_with(root)),
+            Source::Embedded(_) => true,
+        }
+    }
+
     /// The whole file.
     ///
     /// # Errors
     /// One that names the file when it is missing, no regular file, too large or unreadable.
     pub fn read(&self, path: &Path) -> Result<Vec<u8>, SceneError> {
-        match self {
-            Self::Disk { max_bytes } => read_disk(path, *max_bytes),
-            Self::Embedded(files) => files
+        match self.source {
+            Source::Disk { max_bytes } => read_disk(path, max_bytes),
+            Source::Embedded(files) => files
                 .iter()
                 .find(|(name, _)| Path::new(name) == path)
                 .map(|(_, bytes)| bytes.to_vec())
@@ -33,24 +109,30 @@ impl Files {
     /// The whole file as text; bytes that are not UTF-8 (old exporters' names) become replacement characters.
     pub fn read_text(&self, path: &Path) -> Result<String, SceneError> {
         let bytes = self.read(path)?;
-        let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
-        Ok(String::from_utf8_lossy(bytes).into_owned())
+        if let Some(rest) = bytes.strip_prefix(b"\xEF\xBB\xBF") {
+            return Ok(String::from_utf8_lossy(rest).into_owned());
+        }
+        // Without a copy where it is sound: models are large.
+        Ok(String::from_utf8(bytes)
+            .unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned()))
     }
 
     /// Only whether [`Files::read`] would find a file there.
     pub fn probe(&self, path: &Path) -> Result<(), SceneError> {
         match std::fs::metadata(path) {
             Ok(meta) if meta.is_dir() => Err(SceneError::Directory(path.to_owned())),
-            Err(error) if matches!(self, Self::Disk { .. }) => Err(unreadable(path, &error)),
+            Err(error) if matches!(self.source, Source::Disk { .. }) => {
+                Err(unreadable(path, &error))
+            }
             _ => Ok(()),
         }
     }
 
     /// Whether there is such a file.
     pub fn has(&self, path: &Path) -> bool {
-        match self {
-            Self::Disk { .. } => path.is_file(),
-            Self::Embedded(files) => files.iter().any(|(name, _)| Path::new(name) == path),
+        match self.source {
+            Source::Disk { .. } => path.is_file(),
+            Source::Embedded(files) => files.iter().any(|(name, _)| Path::new(name) == path),
         }
     }
 }
@@ -74,6 +156,9 @@ fn read_disk(path: &Path, limit: u64) -> Result<Vec<u8>, SceneError> {
         return Err(too_large(meta.len()));
     }
     let mut bytes = Vec::new();
+    bytes
+        .try_reserve_exact(meta.len() as usize)
+        .map_err(|error| failed(error.into()))?;
     let file = std::fs::File::open(path).map_err(failed)?;
     // The length above is a promise that files in /proc and growing ones do not keep.
     let read = file

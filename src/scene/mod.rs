@@ -3,16 +3,27 @@
 //! [`load`] turns a scene file or a model into one [`Scene`]: every mesh in world space, in one arena of vertices and
 //! indices, ready to be uploaded. World space is right-handed, metres, +Y up, +X east, −Z north.
 
+mod arena;
 mod bounds;
 mod builder;
 mod bundled;
 mod camera;
 mod error;
 mod files;
+mod gltf;
+mod gltf_buffers;
+mod gltf_material;
+mod gltf_mesh;
+mod instance;
 mod material;
+mod mtl;
+mod mtl_map;
+mod normal_map;
 mod normals;
 mod obj;
+mod obj_lines;
 mod obj_text;
+mod picture;
 mod progress;
 mod scene_file;
 mod soup;
@@ -29,13 +40,14 @@ pub use camera::{Camera, DEFAULT_FOV_DEG};
 pub use error::SceneError;
 pub use material::Material;
 pub use progress::Progress;
-pub use scene_file::NamedCamera;
-pub use texture::Texture;
+pub use scene_file::{NamedCamera, NamedMoment, NamedOptions};
+pub use texture::{Encoding, Texture};
 
 use builder::Builder;
 use files::Files;
 use obj::{Placement, append_obj};
 use progress::Reporter;
+use scene_file::Said;
 
 /// Everything there is to see: one arena of vertices, the parts that draw them, and what they look like.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +58,11 @@ pub struct Scene {
     pub normals: Vec<[f32; 3]>,
     /// Texture coordinates, one for each position; (0, 0) is the corner of the first row and first texel.
     pub texcoords: Vec<[f32; 2]>,
+    /// Linear RGBA that multiplies ρ_d and opacity, 0..65535 for 0..1: one for each position, or none at all.
+    pub colours: Vec<[u16; 4]>,
+    /// For normal maps: unit tangent toward growing u, then the sign of the bitangent (normal x tangent x sign points
+    /// toward the upper rows of the picture), −32767..32767 for −1..1: one for each position, or none at all.
+    pub tangents: Vec<[i16; 4]>,
     /// Three for each triangle, counter-clockwise seen from the front; numbers of `positions`.
     pub indices: Vec<u32>,
     /// What is drawn with one material; together they cover `indices` without gaps.
@@ -69,6 +86,8 @@ pub struct Part {
     pub index_count: u32,
     /// Number of its material in [`Scene::materials`].
     pub material: u32,
+    /// Whether its vertices have colours of their own.
+    pub has_colours: bool,
     /// Around its triangles, metres.
     pub bounds: Bounds,
 }
@@ -79,6 +98,8 @@ impl Default for Scene {
             positions: Vec::new(),
             normals: Vec::new(),
             texcoords: Vec::new(),
+            colours: Vec::new(),
+            tangents: Vec::new(),
             indices: Vec::new(),
             parts: Vec::new(),
             materials: Vec::new(),
@@ -90,6 +111,44 @@ impl Default for Scene {
 }
 
 impl Scene {
+    /// Colours and tangents have an entry for each vertex, or none at all.
+    fn fill_streams(&mut self) {
+        let vertices = self.positions.len();
+        if !self.colours.is_empty() {
+            self.colours.resize(vertices, [u16::MAX; 4]);
+        }
+        if !self.tangents.is_empty() {
+            self.tangents.resize(vertices, [0; 4]);
+        }
+    }
+
+    /// Which parts may cast a shadow: all but a flat ground (or sea) below the middle of all else and more than four times
+    /// as wide. Drawing it would spread a shadow map over kilometres where there is nothing to shade.
+    pub fn casting(&self) -> Vec<bool> {
+        let flat = |part: &Part| {
+            let extent = part.bounds.extent();
+            extent.y <= 1e-5 * extent.x.max(extent.z)
+        };
+        let solid = self.parts.iter().filter(|part| !flat(part));
+        let solid = solid.fold(Bounds::EMPTY, |all, part| all.union(part.bounds));
+        let extent = solid.extent();
+        let is_ground = |part: &Part| {
+            let wide = part.bounds.extent();
+            flat(part)
+                && wide.x.min(wide.z) > 4.0 * extent.x.max(extent.z)
+                && part.bounds.max.y <= solid.centre().y
+        };
+        let casts = |part| solid.is_empty() || !is_ground(part);
+        self.parts.iter().map(casts).collect()
+    }
+
+    /// Around all parts that may cast a shadow.
+    pub fn casters(&self) -> Bounds {
+        let parts = self.parts.iter().zip(self.casting());
+        let casting = parts.filter(|(_, casts)| *casts);
+        casting.fold(Bounds::EMPTY, |all, (part, _)| all.union(part.bounds))
+    }
+
     /// Number of triangles.
     pub fn triangles(&self) -> usize {
         self.indices.len() / 3
@@ -108,6 +167,11 @@ pub struct LoadOptions {
     pub max_texture_bytes: u64,
     /// Larger files are not read, bytes. 4 GiB by default.
     pub max_file_bytes: u64,
+    /// Most triangles of a scene, instances counted. 64 million by default.
+    pub max_triangles: usize,
+    /// Whether a model may name libraries, pictures and buffers outside of its own folder tree. False by default: a
+    /// downloaded model has no business with other files.
+    pub allow_outside: bool,
 }
 
 impl Default for LoadOptions {
@@ -117,6 +181,8 @@ impl Default for LoadOptions {
             max_texture_edge: 16_384,
             max_texture_bytes: 1 << 30,
             max_file_bytes: 1 << 32,
+            max_triangles: 64 << 20,
+            allow_outside: false,
         }
     }
 }
@@ -129,13 +195,15 @@ pub struct Loaded {
     /// What is seen.
     pub scene: Scene,
     /// Options of the scene file as the command line would have them, without dashes: `("turbidity", "3")`. The
-    /// nameless `[camera]` is among them. Empty for a model.
+    /// nameless `[camera]` is among them. For a model: its first camera, if it has any.
     pub options: Vec<(String, String)>,
     /// The named cameras, in the order of the file.
     pub cameras: Vec<NamedCamera>,
+    /// The named moments, in the order of the file.
+    pub moments: Vec<NamedMoment>,
 }
 
-/// Reads a scene file (`.toml`) or a model (`.obj`).
+/// Reads a scene file (`.toml`) or a model (`.obj`, `.gltf`, `.glb`).
 ///
 /// # Errors
 /// One line that names the file, for whatever keeps the scene from being shown. A missing material library or texture is
@@ -154,9 +222,7 @@ pub fn load_telling(
     options: &LoadOptions,
     progress: Progress<'_>,
 ) -> Result<Loaded, SceneError> {
-    let disk = Files::Disk {
-        max_bytes: options.max_file_bytes,
-    };
+    let disk = Files::disk(options.max_file_bytes);
     match path {
         Some(path) => load_from(disk, path, options, progress),
         None => bundled::load_bundled(options, progress),
@@ -173,32 +239,40 @@ fn load_from(
     let extension = path
         .extension()
         .map(|e| e.to_string_lossy().to_ascii_lowercase());
-    let (options, cameras) = match extension.as_deref() {
+    let said = match extension.as_deref() {
         Some("toml") => scene_file::append_scene(&mut builder, path, options)?,
         _ => {
             let placement = Placement {
                 world_from_mesh: Affine3A::IDENTITY,
                 smooth_deg: options.smooth_deg,
             };
-            append_model(&mut builder, path, &placement)?;
-            (Vec::new(), Vec::new())
+            let cameras = append_model(&mut builder, path, &placement)?;
+            let first = cameras.first().map(|c| c.options.clone());
+            Said {
+                options: first.unwrap_or_default(),
+                cameras,
+                moments: Vec::new(),
+            }
         }
     };
+    builder.scene.fill_streams();
     progress(1.0, "loaded");
     Ok(Loaded {
         path: path.to_owned(),
         scene: builder.scene,
-        options,
-        cameras,
+        options: said.options,
+        cameras: said.cameras,
+        moments: said.moments,
     })
 }
 
-/// Adds a model of any known format.
+/// Adds a model of any known format; returns its cameras.
 fn append_model(
     builder: &mut Builder<'_>,
     path: &Path,
     placement: &Placement,
-) -> Result<(), SceneError> {
+) -> Result<Vec<NamedCamera>, SceneError> {
+    builder.begin_model(path);
     let unsupported = |what: String| {
         Err(SceneError::Unsupported {
             path: path.to_owned(),
@@ -209,16 +283,49 @@ fn append_model(
         .extension()
         .map(|e| e.to_string_lossy().to_ascii_lowercase());
     match extension.as_deref() {
-        Some("obj") => append_obj(builder, path, placement),
-        Some("gltf" | "glb") => {
-            unsupported("glTF is not supported yet; convert it to OBJ".to_owned())
-        }
+        Some("obj") => append_obj(builder, path, placement).map(|()| Vec::new()),
+        Some("gltf" | "glb") => gltf::append_gltf(builder, path, placement),
         // A missing file or a directory is the better news than its extension.
         _ => match builder.files.probe(path) {
             Err(error @ (SceneError::Missing(_) | SceneError::Directory(_))) => Err(error),
             _ => unsupported(
-                "is no scene file (.toml) and no model (.obj); convert it to OBJ".to_owned(),
+                "is no scene file (.toml) and no model (.obj, .gltf, .glb); convert it".to_owned(),
             ),
         },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    fn part(min: [f32; 3], max: [f32; 3]) -> Part {
+        Part {
+            first_index: 0,
+            index_count: 3,
+            material: 0,
+            has_colours: false,
+            bounds: Bounds {
+                min: min.into(),
+                max: max.into(),
+            },
+        }
+    }
+
+    #[test]
+    fn a_wide_ground_casts_nothing_but_a_roof_does() {
+        let house = part([-5.0, 0.0, -5.0], [5.0, 6.0, 5.0]);
+        let sea = part([-900.0, 0.1, -900.0], [900.0, 0.1, 900.0]);
+        let lawn = part([-9.0, 0.0, -9.0], [9.0, 0.0, 9.0]);
+        let sail = part([-900.0, 9.0, -900.0], [900.0, 9.0, 900.0]);
+        let scene = |parts: &[Part]| Scene {
+            parts: parts.to_vec(),
+            ..Scene::default()
+        };
+        assert_eq!(scene(&[house, sea, lawn]).casting(), [true, false, true]);
+        assert_eq!(scene(&[house, sail]).casting(), [true, true]);
+        assert_eq!(scene(&[sea]).casting(), [true], "nothing else is there");
+        assert_eq!(scene(&[house, sea]).casters().max, Vec3::new(5.0, 6.0, 5.0));
     }
 }

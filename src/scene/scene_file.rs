@@ -13,7 +13,7 @@ use super::obj::Placement;
 use super::{LoadOptions, append_model};
 
 /// The option tables and the options that each may hold.
-const TABLES: [(&str, &[&str]); 4] = [
+const TABLES: [(&str, &[&str]); 5] = [
     ("place", &["place", "when", "solar", "sun-position"]),
     ("sun", &["sun", "place", "when", "solar", "sun-position"]),
     (
@@ -33,31 +33,56 @@ const TABLES: [(&str, &[&str]); 4] = [
         "exposure",
         &["ev100", "exposure", "tonemap", "gamma", "scale"],
     ),
+    (
+        "light",
+        &[
+            "fresnel",
+            "specular",
+            "ao-radius",
+            "ao-resolution",
+            "shadow-size",
+        ],
+    ),
 ];
 const CAMERA_KEYS: &[&str] = &["name", "eye", "target", "fov"];
 const MESH_KEYS: &[&str] = &["file", "translate", "rotate", "scale", "up", "smooth"];
-const TOP_KEYS: &[&str] = &["mesh", "place", "sun", "sky", "camera", "exposure"];
+const TOP_KEYS: &[&str] = &[
+    "mesh", "place", "sun", "sky", "camera", "exposure", "light", "moment",
+];
 
 /// Pairs of option name and value, as on the command line.
 type Pairs = Vec<(String, String)>;
 
-/// A camera of a scene file that `--camera NAME` chooses.
+/// Options of a scene file that a name chooses.
 #[derive(Debug, Clone, PartialEq)]
-pub struct NamedCamera {
-    /// Its name.
+pub struct NamedOptions {
+    /// The name.
     pub name: String,
-    /// Its options, for instance `("eye", "1,2,3")`.
+    /// The options, for instance `("eye", "1,2,3")`.
     pub options: Vec<(String, String)>,
 }
 
-/// Adds the meshes of a scene file to the scene; returns its options and named cameras.
+/// A camera that `--camera NAME` chooses.
+pub type NamedCamera = NamedOptions;
+/// Sun, sky and exposure that `--moment NAME` chooses.
+pub type NamedMoment = NamedOptions;
+
+/// What a scene file says besides its meshes.
+#[derive(Debug, Default)]
+pub(super) struct Said {
+    pub options: Pairs,
+    pub cameras: Vec<NamedCamera>,
+    pub moments: Vec<NamedMoment>,
+}
+
+/// Adds the meshes of a scene file to the scene; returns what else it says.
 ///
 /// Without a nameless `[camera]` the first named one is the camera of the options.
 pub(super) fn append_scene(
     builder: &mut Builder,
     path: &Path,
     defaults: &LoadOptions,
-) -> Result<(Pairs, Vec<NamedCamera>), SceneError> {
+) -> Result<Said, SceneError> {
     let text = builder.files.read_text(path)?;
     let wrong = |what: String| SceneError::SceneFile {
         path: path.to_owned(),
@@ -67,6 +92,7 @@ pub(super) fn append_scene(
     let meshes = meshes(&table, defaults).map_err(wrong)?;
     let mut options = options(&table).map_err(wrong)?;
     let (camera, cameras) = cameras(&table).map_err(wrong)?;
+    let moments = moments(&table).map_err(wrong)?;
     options.extend(
         camera
             .or_else(|| cameras.first().map(|c| c.options.clone()))
@@ -78,7 +104,11 @@ pub(super) fn append_scene(
         builder.progress = whole.part(i, meshes.len());
         append_model(builder, &folder.join(&mesh.file), &mesh.placement)?;
     }
-    Ok((options, cameras))
+    Ok(Said {
+        options,
+        cameras,
+        moments,
+    })
 }
 
 fn parse(text: &str) -> Result<Table, String> {
@@ -264,6 +294,39 @@ fn bad_value(key: &str) -> String {
     format!("{key} must be a number, a text or a list of numbers")
 }
 
+/// The moments: any keys of the option tables but `[light]`, and a name.
+fn moments(table: &Table) -> Result<Vec<NamedMoment>, String> {
+    let list = match table.get("moment") {
+        None => return Ok(Vec::new()),
+        Some(Value::Array(list)) => list,
+        Some(_) => return Err("moment must be a list of tables; write [[moment]]".to_owned()),
+    };
+    let mut keys: Vec<&str> = TABLES[..4]
+        .iter()
+        .flat_map(|(_, keys)| *keys)
+        .copied()
+        .collect();
+    keys.push("name");
+    let mut named: Vec<NamedMoment> = Vec::new();
+    for entry in list {
+        let table = entry
+            .as_table()
+            .ok_or("moment must be a list of tables; write [[moment]]")?;
+        let (name, options) = split_name(table_pairs(table, "[[moment]]", &keys)?);
+        let name = name.ok_or("a [[moment]] needs name = \"..\"")?;
+        if named.iter().any(|m| m.name == name) {
+            return Err(format!("two moments are named \"{name}\"; rename one"));
+        }
+        named.push(NamedMoment { name, options });
+    }
+    Ok(named)
+}
+
+fn split_name(pairs: Pairs) -> (Option<String>, Pairs) {
+    let (name, options): (Pairs, Pairs) = pairs.into_iter().partition(|(key, _)| key == "name");
+    (name.into_iter().next().map(|(_, name)| name), options)
+}
+
 /// The pairs of the nameless camera, if there is one, and the named cameras.
 fn cameras(table: &Table) -> Result<(Option<Pairs>, Vec<NamedCamera>), String> {
     let entries: Vec<&Value> = match table.get("camera") {
@@ -277,13 +340,12 @@ fn cameras(table: &Table) -> Result<(Option<Pairs>, Vec<NamedCamera>), String> {
         let table = entry
             .as_table()
             .ok_or("camera must be a table; write [camera]")?;
-        let pairs = table_pairs(table, "[camera]", CAMERA_KEYS)?;
-        let (name, options): (Pairs, Pairs) = pairs.into_iter().partition(|(key, _)| key == "name");
-        match name.into_iter().next() {
-            Some((_, name)) if named.iter().any(|c| c.name == name) => {
+        let (name, options) = split_name(table_pairs(table, "[camera]", CAMERA_KEYS)?);
+        match name {
+            Some(name) if named.iter().any(|c| c.name == name) => {
                 return Err(format!("two cameras are named \"{name}\"; rename one"));
             }
-            Some((_, name)) => named.push(NamedCamera { name, options }),
+            Some(name) => named.push(NamedCamera { name, options }),
             None if nameless.is_some() => {
                 return Err("two cameras have no name; add name = \"..\"".to_owned());
             }

@@ -8,7 +8,7 @@ fn load(toml: &str) -> Result<Loaded, String> {
     let toml: &'static [u8] = toml.to_owned().into_bytes().leak();
     let files: Vec<(&'static str, &'static [u8])> = vec![("dir/s.toml", toml), ("dir/m.obj", OBJ)];
     load_from(
-        Files::Embedded(files.leak()),
+        Files::embedded(files.leak()),
         Path::new("dir/s.toml"),
         &LoadOptions::default(),
         &|_, _| (),
@@ -83,7 +83,6 @@ fn nonsense_is_named() {
             "[[mesh]]\nfile = \"n.obj\"".to_owned(),
             "n.obj: no such file",
         ),
-        ("[[mesh]]\nfile = \"m.glb\"".to_owned(), "not supported yet"),
         (
             "[[mesh]]\nfil = \"m.obj\"".to_owned(),
             "unknown key \"fil\" in [[mesh]]; known are file",

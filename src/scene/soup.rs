@@ -1,13 +1,8 @@
-//! Triangles of one mesh between the file and the arena: world space, separate numbers for position, texture and normal.
+//! Triangles of one mesh between the file and the arena: separate numbers for position, texture and normal.
 
-use std::collections::BTreeMap;
-use std::collections::HashMap;
+use glam::{Affine2, Affine3A, Mat3, Vec2, Vec3};
 
-use glam::{Affine3A, Mat3, Vec2, Vec3};
-
-use super::bounds::Bounds;
-use super::normals::corner_normals;
-use super::{Part, Scene};
+use super::triangulate::Triangulator;
 
 /// "No such number" of a [`Corner`].
 pub(super) const NONE: u32 = u32::MAX;
@@ -16,29 +11,71 @@ pub(super) const NONE: u32 = u32::MAX;
 const MAX_COORDINATE: f32 = 1e9;
 
 /// One corner of a triangle: numbers into the lists of [`Soup`], or [`NONE`].
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Corner {
     pub position: u32,
     pub texcoord: u32,
     pub normal: u32,
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Triangle {
     pub corners: [Corner; 3],
-    /// Number of the material in the scene.
+    /// Number of the material in the mesh.
     pub material: u32,
     /// The smoothing group; 0 is none.
     pub smoothing: u32,
+}
+
+/// More than three corners in a plane, or nearly so.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Polygon {
+    /// Where its corners end in [`Polygons::corners`]; they start where those of the one before end.
+    end: usize,
+    material: u32,
+    smoothing: u32,
+}
+
+#[derive(Debug, Default, Clone, PartialEq)]
+pub(super) struct Polygons {
+    corners: Vec<Corner>,
+    list: Vec<Polygon>,
+}
+
+/// A material of the scene as a mesh uses it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Use {
+    /// Its number in the scene.
+    pub number: u32,
+    /// From the texture coordinates of the mesh (v upward) to those of the pictures.
+    pub texture_from_mesh: Affine2,
+    /// Whether it has a normal map.
+    pub tangents: bool,
+}
+
+impl Use {
+    /// A material that takes texture coordinates as they are and has no normal map.
+    #[cfg(test)]
+    pub fn plain(number: u32) -> Self {
+        Self {
+            number,
+            texture_from_mesh: Affine2::IDENTITY,
+            tangents: false,
+        }
+    }
 }
 
 /// The triangles of one mesh.
 #[derive(Debug, Default)]
 pub(super) struct Soup {
     pub positions: Vec<Vec3>,
+    /// RGBA that multiplies ρ_d and the opacity, one for each position; positions beyond its end have none (white).
+    pub colours: Vec<[f32; 4]>,
     pub texcoords: Vec<Vec2>,
     pub normals: Vec<Vec3>,
     pub triangles: Vec<Triangle>,
+    /// Until [`Soup::triangulate`].
+    pub polygons: Polygons,
 }
 
 /// How many triangles [`Soup::sweep`] dropped.
@@ -59,9 +96,91 @@ impl Soup {
         normal.is_finite().then(|| normal.try_normalize()).flatten()
     }
 
+    /// The file's texture coordinate of a corner, (0, 0) without a sound one.
+    pub fn texcoord(&self, corner: Corner) -> Vec2 {
+        let texcoord = self.texcoords.get(corner.texcoord as usize).copied();
+        texcoord.filter(|t| t.is_finite()).unwrap_or(Vec2::ZERO)
+    }
+
+    /// The colour of a position; white without one.
+    pub fn colour_of(&self, position: u32) -> [f32; 4] {
+        let colour = self.colours.get(position as usize).copied();
+        colour.unwrap_or([1.0; 4])
+    }
+
+    /// Adds a face of more than three corners.
+    pub fn push_polygon(
+        &mut self,
+        corners: impl Iterator<Item = Corner>,
+        material: u32,
+        smoothing: u32,
+    ) {
+        self.polygons.corners.extend(corners);
+        self.polygons.list.push(Polygon {
+            end: self.polygons.corners.len(),
+            material,
+            smoothing,
+        });
+    }
+
+    /// Adds the triangles and polygons of the next stretch of the same file, with new numbers of materials. Numbers of
+    /// corners are those of the whole file already.
+    pub fn append(&mut self, mut next: Self, material: impl Fn(u32) -> u32) {
+        if !next.colours.is_empty() {
+            self.colours.resize(self.positions.len(), [1.0; 4]);
+            self.colours.append(&mut next.colours);
+        }
+        for m in next.triangles.iter_mut().map(|t| &mut t.material) {
+            *m = material(*m);
+        }
+        if self.positions.is_empty() && self.triangles.is_empty() {
+            // The first stretch needs no copy.
+            (self.positions, self.triangles) = (next.positions, next.triangles);
+            (self.texcoords, self.normals) = (next.texcoords, next.normals);
+        } else {
+            self.positions.append(&mut next.positions);
+            self.triangles.append(&mut next.triangles);
+            self.texcoords.append(&mut next.texcoords);
+            self.normals.append(&mut next.normals);
+        }
+        let before = self.polygons.corners.len();
+        self.polygons.corners.append(&mut next.polygons.corners);
+        let list = next.polygons.list.into_iter();
+        self.polygons.list.extend(list.map(|p| Polygon {
+            end: before + p.end,
+            material: material(p.material),
+            smoothing: p.smoothing,
+        }));
+    }
+
+    /// Splits the polygons into triangles.
+    pub fn triangulate(&mut self) {
+        let polygons = std::mem::take(&mut self.polygons);
+        let mut triangulator = Triangulator::for_corners(polygons.corners.len());
+        let mut start = 0;
+        for polygon in &polygons.list {
+            let corners = &polygons.corners[start..polygon.end];
+            start = polygon.end;
+            let points: Vec<_> = corners
+                .iter()
+                .map(|c| self.position(*c).as_dvec3())
+                .collect();
+            let triangles = triangulator.triangulate(&points);
+            self.triangles
+                .extend(triangles.into_iter().map(|t| Triangle {
+                    corners: t.map(|i| corners[i]),
+                    material: polygon.material,
+                    smoothing: polygon.smoothing,
+                }));
+        }
+    }
+
     /// Moves everything to world space. A mirroring transform also turns the triangles round, so that their winding and
     /// their normals keep agreeing.
     pub fn transform(&mut self, world_from_mesh: &Affine3A) {
+        if *world_from_mesh == Affine3A::IDENTITY {
+            return;
+        }
         let linear = Mat3::from(world_from_mesh.matrix3);
         let normals = linear.inverse().transpose();
         for p in &mut self.positions {
@@ -79,95 +198,29 @@ impl Soup {
     pub fn sweep(&mut self) -> (Dropped, Vec<Vec3>) {
         let mut dropped = Dropped::default();
         let mut faces = Vec::with_capacity(self.triangles.len());
-        let triangles = std::mem::take(&mut self.triangles);
-        let usable = |p: Vec3| p.is_finite() && p.abs().max_element() <= MAX_COORDINATE;
-        self.triangles = triangles
-            .into_iter()
-            .filter(|triangle| {
-                let corners = triangle.corners.map(|c| self.position(c));
-                if !corners.into_iter().all(usable) {
-                    dropped.not_finite += 1;
-                    return false;
-                }
-                let face = face_normal(corners);
-                dropped.degenerate += usize::from(face.is_none());
-                faces.extend(face);
-                face.is_some()
-            })
-            .collect();
+        let positions = &self.positions;
+        self.triangles.retain(|triangle| {
+            let corners = triangle.corners.map(|c| positions[c.position as usize]);
+            match sound_face(corners, &mut dropped) {
+                Some(face) => faces.push(face),
+                None => return false,
+            }
+            true
+        });
         (dropped, faces)
     }
+}
 
-    /// Appends the triangles to the scene: corners that agree in everything become one vertex, triangles of one material
-    /// one part. Returns false when the scene has no numbers left for so many vertices.
-    pub fn append_to(&self, scene: &mut Scene, faces: &[Vec3], smooth_deg: Option<f32>) -> bool {
-        let normals = corner_normals(self, faces, smooth_deg);
-        let mut by_material: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-        for (i, triangle) in self.triangles.iter().enumerate() {
-            by_material.entry(triangle.material).or_default().push(i);
-        }
-        let worst = scene.positions.len() + 3 * self.triangles.len();
-        if worst.max(scene.indices.len() + 3 * self.triangles.len()) > u32::MAX as usize {
-            return false;
-        }
-        for (material, triangles) in by_material {
-            self.append_part(scene, material, &triangles, &normals);
-        }
-        true
+/// The unit normal of a usable triangle; others are counted.
+pub(super) fn sound_face(corners: [Vec3; 3], dropped: &mut Dropped) -> Option<Vec3> {
+    let usable = |p: Vec3| p.is_finite() && p.abs().max_element() <= MAX_COORDINATE;
+    if !corners.into_iter().all(usable) {
+        dropped.not_finite += 1;
+        return None;
     }
-
-    fn append_part(
-        &self,
-        scene: &mut Scene,
-        material: u32,
-        triangles: &[usize],
-        normals: &[[Vec3; 3]],
-    ) {
-        let first_index = scene.indices.len() as u32;
-        let mut known: HashMap<(u32, u32, [u32; 3]), u32> = HashMap::with_capacity(triangles.len());
-        let mut bounds = Bounds::EMPTY;
-        for &i in triangles {
-            for (corner, normal) in self.triangles[i].corners.iter().zip(normals[i]) {
-                let key = (
-                    corner.position,
-                    corner.texcoord,
-                    normal.to_array().map(f32::to_bits),
-                );
-                let index = *known.entry(key).or_insert_with(|| {
-                    let position = self.position(*corner);
-                    bounds = bounds.with(position);
-                    self.push_vertex(scene, *corner, position, normal)
-                });
-                scene.indices.push(index);
-            }
-        }
-        let index_count = scene.indices.len() as u32 - first_index;
-        scene.bounds = scene.bounds.union(bounds);
-        scene.parts.push(Part {
-            first_index,
-            index_count,
-            material,
-            bounds,
-        });
-    }
-
-    fn push_vertex(&self, scene: &mut Scene, corner: Corner, position: Vec3, normal: Vec3) -> u32 {
-        let texcoord = self
-            .texcoords
-            .get(corner.texcoord as usize)
-            .copied()
-            .unwrap_or(Vec2::ZERO);
-        let texcoord = if texcoord.is_finite() {
-            texcoord
-        } else {
-            Vec2::ZERO
-        };
-        scene.positions.push(position.to_array());
-        scene.normals.push(normal.to_array());
-        // OBJ counts v upward from the lowest row of the picture, Vulkan downward from the highest.
-        scene.texcoords.push([texcoord.x, 1.0 - texcoord.y]);
-        (scene.positions.len() - 1) as u32
-    }
+    let face = face_normal(corners);
+    dropped.degenerate += usize::from(face.is_none());
+    face
 }
 
 /// Unit normal of a counter-clockwise triangle, or none if it has no area to speak of.
@@ -244,28 +297,5 @@ mod tests {
                 "{points:?}"
             );
         }
-    }
-
-    #[test]
-    fn equal_corners_become_one_vertex() {
-        let mut soup = one([Vec3::ZERO, Vec3::X, Vec3::Y], Vec3::ZERO);
-        soup.triangles.push(soup.triangles[0]);
-        let (_, faces) = soup.sweep();
-        let mut scene = Scene::default();
-        assert!(soup.append_to(&mut scene, &faces, None));
-        assert_eq!(
-            (
-                scene.positions.len(),
-                scene.indices.len(),
-                scene.parts.len()
-            ),
-            (3, 6, 1)
-        );
-        assert_eq!(
-            scene.normals[0],
-            [0.0, 0.0, 1.0],
-            "a zero normal is replaced by the face's"
-        );
-        assert_eq!(scene.texcoords[0], [0.0, 1.0]);
     }
 }

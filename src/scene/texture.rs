@@ -1,16 +1,17 @@
-//! Textures: pictures of any common format as sRGB bytes, and their mip levels filtered in linear light.
+//! Textures: sRGB colours or plain numbers as bytes, and their mip levels filtered in linear light.
 
-use std::collections::HashMap;
-use std::io::Cursor;
-use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
+/// What the bytes of a [`Texture`] mean; alpha is always linear.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Encoding {
+    /// Red, green and blue are sRGB-encoded colours.
+    Srgb,
+    /// They are numbers as they stand: normals of a normal map, 0..255 for −1..1.
+    Linear,
+}
 
-use super::LoadOptions;
-use super::files::Files;
-
-/// A picture, or one mip level of it: sRGB-encoded RGBA, rows from the top, no padding.
+/// A picture, or one mip level of it: RGBA, rows from the top, no padding.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Texture {
     /// File name, for messages and debug labels.
@@ -19,8 +20,10 @@ pub struct Texture {
     pub width: u32,
     /// Rows, at least 1.
     pub height: u32,
-    /// `4 * width * height` bytes; red, green and blue are sRGB-encoded, alpha is linear.
+    /// `4 * width * height` bytes.
     pub rgba8: Vec<u8>,
+    /// What they mean.
+    pub encoding: Encoding,
 }
 
 impl Texture {
@@ -41,8 +44,12 @@ impl Texture {
     fn linear(&self, x: u32, y: u32) -> [f32; 4] {
         let at = 4 * (y as usize * self.width as usize + x as usize);
         let [r, g, b, a] = [0, 1, 2, 3].map(|i| self.rgba8[at + i]);
-        let light = |v: u8| CODEC.linear[usize::from(v)];
-        [light(r), light(g), light(b), f32::from(a) / 255.0]
+        let plain = |v: u8| f32::from(v) / 255.0;
+        let light = |v: u8| match self.encoding {
+            Encoding::Srgb => CODEC.linear[usize::from(v)],
+            Encoding::Linear => plain(v),
+        };
+        [light(r), light(g), light(b), plain(a)]
     }
 }
 
@@ -66,7 +73,12 @@ fn halve(above: &Texture) -> Texture {
                 }
             }
             let [r, g, b, a] = sum;
-            rgba8.extend([encode(r), encode(g), encode(b), (a * 255.0).round() as u8]);
+            let plain = |v: f32| (v * 255.0).round() as u8;
+            let byte = |v: f32| match above.encoding {
+                Encoding::Srgb => encode(v),
+                Encoding::Linear => plain(v),
+            };
+            rgba8.extend([byte(r), byte(g), byte(b), plain(a)]);
         }
     }
     Texture {
@@ -74,6 +86,7 @@ fn halve(above: &Texture) -> Texture {
         width,
         height,
         rgba8,
+        encoding: above.encoding,
     }
 }
 
@@ -115,137 +128,16 @@ fn decode(signal: f64) -> f64 {
     }
 }
 
+/// Linear light, 0..1, of an sRGB-encoded value, 0..1.
+pub(super) fn light(signal: f32) -> f32 {
+    decode(f64::from(signal)) as f32
+}
+
 /// The byte whose light is nearest in the signal, for light 0..1.
-fn encode(light: f32) -> u8 {
+pub(super) fn encode(light: f32) -> u8 {
     CODEC
         .threshold
         .partition_point(|threshold| *threshold < light) as u8
-}
-
-/// Decodes each picture once and bounds what all of them may take.
-#[derive(Debug)]
-pub(super) struct TextureStore {
-    max_edge: u32,
-    bytes_left: u64,
-    known: HashMap<PathBuf, Option<usize>>,
-}
-
-impl TextureStore {
-    pub fn new(options: &LoadOptions) -> Self {
-        Self {
-            max_edge: options.max_texture_edge,
-            bytes_left: options.max_texture_bytes,
-            known: HashMap::new(),
-        }
-    }
-
-    /// The number of the picture in `textures`. None if it failed before; an error says why the first time.
-    pub fn get(
-        &mut self,
-        files: &Files,
-        path: &Path,
-        textures: &mut Vec<Texture>,
-    ) -> Result<Option<usize>, String> {
-        if let Some(known) = self.known.get(path) {
-            return Ok(*known);
-        }
-        let decoded = self.decode(files, path);
-        let number = decoded.as_ref().ok().map(|_| textures.len());
-        self.known.insert(path.to_owned(), number);
-        textures.push(decoded?);
-        Ok(number)
-    }
-
-    fn decode(&mut self, files: &Files, path: &Path) -> Result<Texture, String> {
-        let plain = "; drawn in its plain colour";
-        if !files.has(path) {
-            return Err(format!("texture {} is missing{plain}", path.display()));
-        }
-        let bytes = files
-            .read(path)
-            .map_err(|error| format!("texture {error}{plain}"))?;
-        let name = path
-            .file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
-        let image = self
-            .decode_bytes(path, &bytes)
-            .map_err(|what| format!("texture {name} {what}{plain}"))?;
-        let (width, height) = (image.width(), image.height());
-        Ok(Texture {
-            name,
-            width,
-            height,
-            rgba8: to_srgb8(image),
-        })
-    }
-
-    /// Refuses by the header alone what is too large.
-    fn decode_bytes(&mut self, path: &Path, bytes: &[u8]) -> Result<DynamicImage, String> {
-        let unreadable = |error: image::ImageError| {
-            format!("cannot be decoded ({})", one_line(&error.to_string()))
-        };
-        let mut reader = ImageReader::new(Cursor::new(bytes));
-        // The content decides; TGA alone has no signature, so there the name does.
-        match image::guess_format(bytes)
-            .ok()
-            .or_else(|| ImageFormat::from_path(path).ok())
-        {
-            Some(format) => reader.set_format(format),
-            None => return Err("is in no known format (use PNG or JPEG)".to_owned()),
-        }
-        let mut limits = image::Limits::default();
-        limits.max_image_width = Some(self.max_edge);
-        limits.max_image_height = Some(self.max_edge);
-        // Decoders of 16 and 32 bit a channel need more than the result does.
-        limits.max_alloc = Some(self.bytes_left.saturating_mul(4));
-        reader.limits(limits);
-        let decoder = reader.into_decoder().map_err(unreadable)?;
-        let (width, height) = decoder.dimensions();
-        let size = 4 * u64::from(width) * u64::from(height);
-        if width == 0 || height == 0 {
-            return Err("has no texels".to_owned());
-        }
-        if width.max(height) > self.max_edge {
-            return Err(format!(
-                "has {width}x{height} texels, the limit is {0}x{0}",
-                self.max_edge
-            ));
-        }
-        if size > self.bytes_left {
-            return Err(format!(
-                "needs {size} bytes, {} are left for textures",
-                self.bytes_left
-            ));
-        }
-        let image = DynamicImage::from_decoder(decoder).map_err(unreadable)?;
-        self.bytes_left -= size;
-        Ok(image)
-    }
-}
-
-/// Eight bits a channel, sRGB. Float pictures (HDR) hold linear light and are encoded; all others are sRGB already.
-fn to_srgb8(image: DynamicImage) -> Vec<u8> {
-    match image {
-        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
-            let texels = image.into_rgba32f();
-            let byte = |v: &[f32; 4]| {
-                [
-                    encode(v[0]),
-                    encode(v[1]),
-                    encode(v[2]),
-                    (v[3].clamp(0.0, 1.0) * 255.0).round() as u8,
-                ]
-            };
-            texels.pixels().flat_map(|p| byte(&p.0)).collect()
-        }
-        other => other.into_rgba8().into_raw(),
-    }
-}
-
-fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]
@@ -262,6 +154,7 @@ mod tests {
             width,
             height,
             rgba8,
+            encoding: Encoding::Srgb,
         }
     }
 

@@ -2,25 +2,61 @@
 
 use glam::{DVec2, DVec3};
 
-/// Ear clipping looks at every pair of corners; beyond this many a polygon is fanned, so that no file takes for ever.
+/// Beyond this many corners a polygon is fanned.
 const MAX_CLIPPED: usize = 512;
+/// Comparisons of ear clipping for each corner of a model: real outlines need a few hundred.
+const EFFORT: usize = 2_000;
 
-/// Splits a polygon of `points` into triangles of point numbers with the same winding, `n - 2` of them.
-///
-/// Fewer than three points give nothing. A polygon without a plane (all points on a line) gives degenerate triangles.
-pub(super) fn triangulate(points: &[DVec3]) -> Vec<[usize; 3]> {
-    let n = points.len();
-    if n < 3 {
-        return Vec::new();
+/// Splits polygons with bounded effort: ear clipping is cubic at worst, and no file may take for ever.
+#[derive(Debug)]
+pub(super) struct Triangulator {
+    /// Comparisons left; then every polygon is fanned.
+    effort: usize,
+}
+
+impl Triangulator {
+    /// For the polygons of one model with this many corners together.
+    pub fn for_corners(corners: usize) -> Self {
+        let effort = corners.saturating_mul(EFFORT).max(10_000_000);
+        Self { effort }
     }
-    if n == 3 {
-        return vec![[0, 1, 2]];
+
+    /// Splits a polygon of `points` into triangles of point numbers with the same winding, `n - 2` of them.
+    ///
+    /// Fewer than three points give nothing. A polygon without a plane (all points on a line) gives degenerate triangles.
+    pub fn triangulate(&mut self, points: &[DVec3]) -> Vec<[usize; 3]> {
+        let n = points.len();
+        if n < 3 {
+            return Vec::new();
+        }
+        if n == 3 {
+            return vec![[0, 1, 2]];
+        }
+        let flat = project(points);
+        if n > MAX_CLIPPED || is_convex(&flat) {
+            return fan(&(0..n).collect::<Vec<_>>());
+        }
+        self.clip_ears(&flat)
     }
-    let flat = project(points);
-    if n > MAX_CLIPPED || is_convex(&flat) {
-        return fan(&(0..n).collect::<Vec<_>>());
+
+    fn clip_ears(&mut self, flat: &[DVec2]) -> Vec<[usize; 3]> {
+        let mut left: Vec<usize> = (0..flat.len()).collect();
+        let mut triangles = Vec::with_capacity(flat.len() - 2);
+        while left.len() > 3 {
+            let ear = (0..left.len()).find(|&i| {
+                self.effort = self.effort.saturating_sub(left.len());
+                self.effort == 0 || is_ear(flat, &left, i)
+            });
+            // The outline crosses itself: there is no right answer, and a fan keeps the corners.
+            let Some(ear) = ear.filter(|_| self.effort > 0) else {
+                break;
+            };
+            triangles.push(around(&left, ear));
+            left.remove(ear);
+        }
+        triangles.extend(fan(&left));
+        triangles
     }
-    clip_ears(&flat)
 }
 
 fn fan(corners: &[usize]) -> Vec<[usize; 3]> {
@@ -62,21 +98,6 @@ fn is_convex(flat: &[DVec2]) -> bool {
         && (1..n - 1).all(|i| turn(flat[0], flat[i], flat[i + 1]) >= 0.0)
 }
 
-fn clip_ears(flat: &[DVec2]) -> Vec<[usize; 3]> {
-    let mut left: Vec<usize> = (0..flat.len()).collect();
-    let mut triangles = Vec::with_capacity(flat.len() - 2);
-    while left.len() > 3 {
-        let Some(ear) = (0..left.len()).find(|&i| is_ear(flat, &left, i)) else {
-            // The outline crosses itself: there is no right answer, and a fan keeps the corners.
-            break;
-        };
-        triangles.push(around(&left, ear));
-        left.remove(ear);
-    }
-    triangles.extend(fan(&left));
-    triangles
-}
-
 fn around(left: &[usize], i: usize) -> [usize; 3] {
     let n = left.len();
     [left[(i + n - 1) % n], left[i], left[(i + 1) % n]]
@@ -102,6 +123,10 @@ fn is_ear(flat: &[DVec2], left: &[usize], i: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn triangulate(points: &[DVec3]) -> Vec<[usize; 3]> {
+        Triangulator::for_corners(points.len()).triangulate(points)
+    }
 
     fn area(points: &[DVec3]) -> f64 {
         triangulate(points)

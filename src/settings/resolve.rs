@@ -5,11 +5,11 @@ use clap::ValueEnum;
 use glam::Vec3;
 
 use super::{
-    AoResolution, Direction, IrradianceMethod, Options, Place, Preset, SettingsError, Show, Size,
-    SkyModel, SolarTime, SunPositionMethod, Switch, ToneCurve, values,
+    AoResolution, Direction, Fresnel, IrradianceMethod, Options, Place, Preset, SettingsError,
+    Show, Size, SkyModel, SolarTime, SunPositionMethod, Switch, ToneCurve, values,
 };
 use crate::error::Error;
-use crate::scene::{Bounds, Camera, Loaded, SceneError};
+use crate::scene::{Bounds, Camera, Loaded, NamedOptions, SceneError};
 
 /// The default place: the lecture's university, degrees.
 const DEFAULT_PLACE: Place = Place {
@@ -138,6 +138,8 @@ pub struct Settings {
     pub specular: f64,
     /// Where the defaults came from.
     pub preset: Option<Preset>,
+    /// Whether ρ_s grows toward grazing angles.
+    pub fresnel: Fresnel,
     /// Whether the sun's disc is darker toward its limb.
     pub limb_darkening: bool,
     /// Whether all addends are written (EXR).
@@ -165,8 +167,18 @@ impl Settings {
             what: e.0,
         };
         let mut file = Options::from_pairs(&loaded.options).map_err(scene_file)?;
+        if let Some(name) = &user.moment {
+            let named = find_named("moment", &loaded.moments, name, "--when and --place")?;
+            file = Options::from_pairs(named).map_err(scene_file)?.over(file);
+        }
         if let Some(name) = &user.camera {
-            let named = Options::from_pairs(camera_named(loaded, name)?).map_err(scene_file)?;
+            let named = Options::from_pairs(find_named(
+                "camera",
+                &loaded.cameras,
+                name,
+                "--eye and --target",
+            )?)
+            .map_err(scene_file)?;
             // Not a mixture of two cameras: what the named one leaves open is open.
             (file.eye, file.target, file.fov) = (named.eye, named.target, named.fov);
         }
@@ -226,6 +238,7 @@ impl Settings {
             ao_resolution: o.ao_resolution.unwrap_or_default(),
             specular: o.specular.unwrap_or(1.0),
             preset: o.preset,
+            fresnel: o.fresnel.unwrap_or_default(),
             limb_darkening: o.limb_darkening,
             layers: o.layers,
             smooth: o.smooth,
@@ -267,6 +280,7 @@ impl Settings {
             ("irradiance-error", self.irradiance_error.to_string()),
             ("ao-radius", self.ao_radius.to_string()),
             ("ao-resolution", name(self.ao_resolution)),
+            ("fresnel", name(self.fresnel)),
             ("specular", self.specular.to_string()),
             ("shadow-size", self.shadow_size.to_string()),
             ("tonemap", name(self.tone_curve)),
@@ -319,18 +333,21 @@ fn sun_parameters(sun: &SunInput) -> Vec<(&'static str, String)> {
     }
 }
 
-fn camera_named<'a>(
-    loaded: &'a Loaded,
+/// The options of the camera or moment of this name.
+fn find_named<'a>(
+    what: &str,
+    list: &'a [NamedOptions],
     name: &str,
+    instead: &str,
 ) -> Result<&'a [(String, String)], SettingsError> {
-    let known: Vec<&str> = loaded.cameras.iter().map(|c| c.name.as_str()).collect();
-    match loaded.cameras.iter().find(|c| c.name == name) {
-        Some(camera) => Ok(&camera.options),
+    let known: Vec<&str> = list.iter().map(|named| named.name.as_str()).collect();
+    match list.iter().find(|named| named.name == name) {
+        Some(named) => Ok(&named.options),
         None if known.is_empty() => Err(SettingsError(format!(
-            "no camera \"{name}\": the scene names no cameras; use --eye and --target"
+            "no {what} \"{name}\": the scene names no {what}s; use {instead}"
         ))),
         None => Err(SettingsError(format!(
-            "no camera \"{name}\"; the scene has {}",
+            "no {what} \"{name}\"; the scene has {}",
             known.join(", ")
         ))),
     }

@@ -17,6 +17,7 @@ fn resolve(user: &[(&str, &str)], file: &[(&str, &str)]) -> Result<Settings, Str
         scene: Scene::default(),
         options: pairs(file),
         cameras: vec![porch],
+        moments: Vec::new(),
     };
     let user = Options::from_pairs(&pairs(user)).map_err(|e| e.to_string())?;
     Settings::resolve(user, &loaded).map_err(|e| e.to_string())
@@ -183,6 +184,7 @@ fn parameters_can_be_given_back() {
         scene: Scene::default(),
         options: Vec::new(),
         cameras: Vec::new(),
+        moments: Vec::new(),
     };
     let again =
         Settings::resolve(Options::from_pairs(&list).expect("options"), &loaded).expect("good");

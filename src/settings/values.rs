@@ -68,6 +68,16 @@ pub enum Switch {
     Off,
 }
 
+/// How mirrors depend on the angle.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Fresnel {
+    /// Not at all: the lecture's ρ_s.
+    #[default]
+    Off,
+    /// Schlick's approximation of Fresnel's equations.
+    Schlick,
+}
+
 /// How finely ambient occlusion is computed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum AoResolution {

@@ -215,6 +215,7 @@ pub fn settings(width: u32, height: u32) -> FrameSettings {
             precision: Precision::Float,
             specular_scale: 1.0,
             limb_darkening: 0.0,
+            fresnel: false,
             occlusion_downscale: 1,
         },
         tone: ToneSettings {
@@ -304,6 +305,7 @@ impl Model {
         let points = self.0.positions[vertex..].iter().map(|p| Vec3::from(*p));
         let bounds = Bounds::of(points);
         self.0.parts.push(Part {
+            has_colours: false,
             first_index: index as u32,
             index_count: (self.0.indices.len() - index) as u32,
             material: self.0.materials.len() as u32,

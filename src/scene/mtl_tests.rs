@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::scene::LoadOptions;
+use crate::scene::files::Files;
 use crate::scene::progress::Reporter;
 
 static FILES: &[(&str, &[u8])] = &[
@@ -10,41 +11,31 @@ static FILES: &[(&str, &[u8])] = &[
     ("tex/wood.png", b"no picture"),
 ];
 
-fn read(mtl: &str) -> Vec<Material> {
+fn with_builder<T>(act: impl FnOnce(&mut Builder<'_>) -> T) -> T {
     let progress = Reporter::new(&|_, _| ());
-    let mut builder = Builder::new(Files::Embedded(FILES), &LoadOptions::default(), progress);
-    let mut libraries = Libraries::default();
-    libraries.add(&mut builder, Path::new("m.mtl"), mtl);
-    let (materials, _) = tobj::load_mtl_buf(&mut libraries.text.as_bytes()).expect("clean text");
-    materials
-        .iter()
-        .map(|m| libraries.material(&mut builder, Path::new("m.obj"), m))
-        .collect()
+    act(&mut Builder::new(
+        Files::embedded(FILES),
+        &LoadOptions::default(),
+        progress,
+    ))
 }
 
-#[test]
-fn texture_options_are_left_out() {
-    for (line, name) in [
-        ("wood.png", "wood.png"),
-        ("texture 01.png", "texture 01.png"),
-        ("-s 0.1 0.2 specular.jpg", "specular.jpg"),
-        ("-o 0.1 diffuse.jpg", "diffuse.jpg"),
-        ("-t 0.1 0.2 0.3 a b.jpg", "a b.jpg"),
-        ("-colorspace sRGB -o 0.1 d.jpg", "d.jpg"),
-        ("-imfchan r bump.jpg -bm 1.5", "bump.jpg"),
-        ("-mm 0.1 0.3 s.jpg", "s.jpg"),
-        ("-type cube_top s.jpg", "s.jpg"),
-        ("-s 1 1 1 2", "2"),
-        ("\"quoted name.png\"", "quoted name.png"),
-        ("-bm", "-bm"),
-    ] {
-        assert_eq!(texture_name(line), name, "{line}");
-    }
+fn read(mtl: &str) -> Vec<Material> {
+    with_builder(|builder| {
+        let mut libraries = Libraries::default();
+        libraries.add(builder, Path::new("m.mtl"), mtl);
+        let entries = libraries.entries.iter();
+        entries
+            .map(|entry| entry.place(builder, Path::new("m.obj")).material)
+            .collect()
+    })
 }
 
 #[test]
 fn libraries_are_found_by_any_spelling() {
-    let find = |rest| find_libraries(&Files::Embedded(FILES), Path::new(""), rest);
+    let find = |rest| {
+        with_builder(|builder| find_libraries(builder, Path::new("m.obj"), Path::new(""), rest))
+    };
     assert_eq!(find("a b.mtl"), [Path::new("a b.mtl")]);
     assert_eq!(
         find("none.mtl a\\ b.mtl  c.mtl"),
@@ -52,8 +43,8 @@ fn libraries_are_found_by_any_spelling() {
     );
     assert_eq!(find("C:\\models\\c.mtl"), [Path::new("c.mtl")]);
     assert!(find("none.mtl").is_empty());
-    let picture = super::find(&Files::Embedded(FILES), Path::new(""), "tex\\wood.png");
-    assert_eq!(picture, Path::new("tex/wood.png"));
+    let picture = Files::embedded(FILES).find(Path::new(""), "tex\\wood.png");
+    assert_eq!(picture, Place::Found("tex/wood.png".into()));
 }
 
 #[test]
@@ -91,17 +82,21 @@ fn a_texture_that_fails_leaves_the_plain_colour() {
 
 #[test]
 fn illumination_models_without_highlights_have_no_gloss() {
-    let source = |illumination_model| tobj::Material {
-        specular: Some([0.45; 3]),
-        illumination_model,
-        ..tobj::Material::default()
-    };
-    for (model, glossy) in [
-        (None, true),
-        (Some(0), false),
-        (Some(1), false),
-        (Some(2), true),
+    for (line, glossy) in [
+        ("", true),
+        ("illum 0", false),
+        ("illum 1", false),
+        ("illum 2", true),
     ] {
-        assert_eq!(has_highlights(&source(model)), glossy, "{model:?}");
+        let material = &read(&format!("newmtl a\nKs 0.45\n{line}\n"))[0];
+        assert_eq!(material.specular[0] > 0.0, glossy, "{line}");
     }
+}
+
+#[test]
+fn pbr_keys_rule_over_phong() {
+    let material = &read("newmtl a\nKd 0.8 0.8 0.8\nKs 1 1 1\nNs 10\nPm 1\nPr 0.5\n")[0];
+    assert!((material.specular[0] - 0.2).abs() < 1e-6, "{material:?}");
+    assert!((material.diffuse[0] - 0.6).abs() < 1e-6, "{material:?}");
+    assert!((material.shininess - 30.0).abs() < 1e-3, "{material:?}");
 }

@@ -1,0 +1,48 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "octahedral.glsl"
+#include "facing.glsl"
+#include "gbuffer_push.glsl"
+
+// As gbuffer.frag, for surfaces with holes, normal maps or colours at their vertices.
+
+layout(location = 0) in vec3 from_eye;
+layout(location = 1) in vec3 shading_normal;
+layout(location = 2) in vec2 surface_uv;
+layout(location = 3) in vec4 surface_colour;  // linear RGBA
+layout(location = 4) in vec4 surface_tangent; // w: sign of the bitangent
+
+layout(location = 0) out vec2 normal;        // world, octahedral
+layout(location = 1) out vec4 albedo;        // rgb: rho_d; a: factor on rho_s
+layout(location = 2) out uint material;      // index into the table of materials
+
+layout(constant_id = 0) const bool DIFFUSE_MAP = true;
+layout(constant_id = 1) const bool SPECULAR_MAP = true;
+layout(constant_id = 2) const bool NORMAL_MAP = true;
+layout(constant_id = 3) const bool CUT_OUT = true;
+
+layout(set = 0, binding = 0) uniform sampler2D diffuse_map;
+layout(set = 0, binding = 1) uniform sampler2D specular_map;
+layout(set = 0, binding = 2) uniform sampler2D normal_map;
+
+/// The normal of the map in the frame of the surface (Mikkelsen 2008: interpolated, not normalised).
+vec3 mapped_normal(vec3 n) {
+    vec3 slope = texture(normal_map, surface_uv).xyz * 2.0 - 1.0;
+    slope.xy *= push.normal_scale;
+    vec3 bitangent = cross(shading_normal, surface_tangent.xyz) * surface_tangent.w;
+    return slope.x * surface_tangent.xyz + slope.y * bitangent + slope.z * n;
+}
+
+void main() {
+    vec3 n = facing_normal(shading_normal, from_eye);
+    vec4 surface = vec4(push.diffuse, 1.0) * surface_colour;
+    if (DIFFUSE_MAP) surface *= texture(diffuse_map, surface_uv);
+    if (NORMAL_MAP) n = mapped_normal(n);
+    float gloss = 1.0;
+    if (SPECULAR_MAP) gloss = dot(texture(specular_map, surface_uv).rgb, vec3(1.0 / 3.0));
+    if (CUT_OUT && surface.a < push.cutoff) discard;
+    normal = octahedral_encode(n);
+    albedo = vec4(surface.rgb, gloss);
+    material = push.material;
+}

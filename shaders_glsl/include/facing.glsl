@@ -1,0 +1,7 @@
+/// The normal on the viewer's side, of any length: the octahedral map does not care. Winding and stored normals of real models disagree too often to trust either alone:
+/// the true face, from derivatives, decides the side; surfaces are two-sided.
+vec3 facing_normal(vec3 shading_normal, vec3 from_eye) {
+    vec3 face = cross(dFdx(from_eye), dFdy(from_eye));
+    face *= dot(face, from_eye) > 0.0 ? -1.0 : 1.0;
+    return dot(shading_normal, face) < 0.0 ? -shading_normal : shading_normal;
+}

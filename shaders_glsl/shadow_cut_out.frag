@@ -1,0 +1,13 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+
+layout(location = 0) in vec2 surface_uv;
+
+layout(set = 0, binding = 0) uniform sampler2D diffuse_map;
+
+#include "shadow_cut_out_push.glsl"
+
+void main() {
+    if (texture(diffuse_map, surface_uv).a < push.cutoff) discard;
+}

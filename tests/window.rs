@@ -1,124 +1,18 @@
 //! The real window on a display of its own: what it shows, what it takes, what it survives. No display server is a failure.
 
+#[path = "common/running.rs"]
+mod running;
 #[path = "common/x.rs"]
 mod x;
 
 use std::fs;
 use std::path::Path;
-use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use skylight::compare::{Picture, flip, read};
-use x::{Display, PATIENCE, keysym, until};
-use x11rb::protocol::xproto::Window;
-
-/// The program with its window open.
-struct Running {
-    display: Display,
-    child: Option<Child>,
-    window: Window,
-    folder: tempfile::TempDir,
-}
-
-fn program(folder: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_skylight"));
-    command
-        .current_dir(folder)
-        .env_remove("WAYLAND_DISPLAY")
-        .env("XDG_STATE_HOME", folder)
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
-    command
-}
-
-impl Running {
-    fn new(words: &[&str]) -> Self {
-        let display = Display::new();
-        let folder = tempfile::tempdir().expect("a scratch folder");
-        let child = program(folder.path())
-            .arg("view")
-            .args(words)
-            .env("DISPLAY", &display.name)
-            .spawn()
-            .expect("the program starts");
-        let window = display.window();
-        display.focus(window);
-        let running = Self {
-            display,
-            child: Some(child),
-            window,
-            folder,
-        };
-        // In the middle of nothing: outside of the window.
-        running.display.point(1590, 1190);
-        running
-    }
-
-    /// Without panel and read-outs: the picture alone.
-    fn bare(words: &[&str]) -> Self {
-        let running = Self::new(words);
-        until("the scene", || {
-            let title = running.display.title(running.window);
-            (title != "skylight").then_some(())
-        });
-        running.display.key(keysym::TAB, false);
-        running
-    }
-
-    fn picture(&self) -> Picture {
-        self.display.still_picture(self.window)
-    }
-
-    /// Does something that changes the picture, and gives the new one at rest.
-    fn after(&self, act: impl FnOnce(&Display)) -> Picture {
-        let before = self.picture();
-        act(&self.display);
-        self.display.wait_for_change(self.window, &before);
-        self.picture()
-    }
-
-    fn pid(&self) -> u32 {
-        self.child.as_ref().expect("it runs").id()
-    }
-
-    /// Closes the window as a user does, and gives what the program said.
-    fn close(mut self) -> Output {
-        self.display.close(self.window);
-        let mut child = self.child.take().expect("it runs");
-        let started = Instant::now();
-        while child.try_wait().expect("a state").is_none() {
-            if started.elapsed() > PATIENCE {
-                child.kill().expect("it runs");
-                panic!("the window does not close");
-            }
-            sleep(Duration::from_millis(20));
-        }
-        child.wait_with_output().expect("what it said")
-    }
-
-    /// Closes the window; the program must have nothing to complain of.
-    fn close_well(self) {
-        let output = self.close();
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.success(), "{:?}: {said}", output.status);
-        assert_eq!(said, "");
-    }
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        if let Some(child) = &mut self.child {
-            let _ = child.kill();
-            let _ = child.wait();
-        }
-    }
-}
-
-fn difference(a: &Picture, b: &Picture) -> f64 {
-    flip::mean(&flip::ldr(a, b))
-}
+use running::{Running, difference, program};
+use skylight::compare::{Picture, read};
+use x::{Display, keysym, until};
 
 fn rendered(folder: &Path, words: &[&str]) -> Picture {
     let file = folder.join("rendered.png");

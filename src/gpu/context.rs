@@ -65,6 +65,8 @@ pub struct Context {
     pub(super) physical: vk::PhysicalDevice,
     pub(super) limits: vk::PhysicalDeviceLimits,
     summary: DeviceSummary,
+    #[cfg(feature = "hot-reload")]
+    pub(super) reloaded: super::hot_reload::Reloaded,
     messenger: Option<Messenger>,
     instance: InstanceGuard,
     entry: ash::Entry,
@@ -145,6 +147,8 @@ impl Context {
             physical: chosen.handle,
             limits,
             summary: chosen.summary,
+            #[cfg(feature = "hot-reload")]
+            reloaded: Default::default(),
             messenger,
             instance,
             entry,

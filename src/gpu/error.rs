@@ -61,6 +61,9 @@ pub enum GpuError {
         /// The allocator's words.
         reason: String,
     },
+    /// Shaders that cannot be reloaded, a line each.
+    #[error("{0}")]
+    Shaders(String),
     /// The window's surface is of no use.
     #[error("the window cannot be drawn to: {0}")]
     Window(String),

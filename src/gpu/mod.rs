@@ -17,6 +17,8 @@ mod buffer;
 mod context;
 mod draws;
 mod error;
+#[cfg(feature = "hot-reload")]
+mod hot_reload;
 mod image;
 mod instance;
 mod labels;
@@ -29,6 +31,8 @@ mod read_back;
 mod recorder;
 mod select;
 mod shader;
+#[cfg(feature = "hot-reload")]
+mod shader_build;
 mod stages;
 mod surface;
 mod swapchain;

@@ -89,6 +89,9 @@ pub struct Shader {
     pub constants: &'static [(&'static str, u32)],
     /// SPIR-V.
     pub words: &'static [u32],
+    /// The declarations as build.rs wrote them, to compare those of a reloaded stage with.
+    #[cfg(feature = "hot-reload")]
+    pub declared: &'static str,
 }
 
 /// The stages compiled from `shaders_glsl/` by build.rs.

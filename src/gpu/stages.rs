@@ -21,7 +21,13 @@ impl Modules {
             raw: Vec::new(),
         };
         for shader in stages {
-            let info = vk::ShaderModuleCreateInfo::default().code(shader.words);
+            #[cfg(feature = "hot-reload")]
+            let reloaded = context.reloaded.words(shader);
+            #[cfg(feature = "hot-reload")]
+            let words = reloaded.as_deref().unwrap_or(shader.words);
+            #[cfg(not(feature = "hot-reload"))]
+            let words = shader.words;
+            let info = vk::ShaderModuleCreateInfo::default().code(words);
             // SAFETY: the words come from shaderc.
             let module = unsafe { context.raw().create_shader_module(&info, None) }
                 .during("load a shader")?;

@@ -259,6 +259,10 @@ impl App {
                 stage.set_timed(timed);
                 document.start_over();
             }
+            Action::ReloadShaders => match reload(stage, document) {
+                Ok(line) => self.interface.say(&line),
+                Err(error) => self.interface.complain(&error.to_string()),
+            },
             other => {
                 for wish in self.interface.act(other, document) {
                     self.grant(wish)?;
@@ -268,6 +272,19 @@ impl App {
         self.request_redraw();
         Ok(())
     }
+}
+
+/// Draws with the shaders as they are on disk from now on; tells what changed.
+#[cfg(feature = "hot-reload")]
+fn reload(stage: &mut Stage, document: &mut Document) -> Result<String> {
+    let changed = stage.context.reload_shaders()?;
+    stage.work(|rec| document.rebuild(rec))?;
+    Ok(format!("reloaded the shaders: {changed} changed"))
+}
+
+#[cfg(not(feature = "hot-reload"))]
+fn reload(_: &mut Stage, _: &mut Document) -> Result<String> {
+    Ok("this build does not reload shaders; build with --features hot-reload".to_owned())
 }
 
 fn window_size(stage: &Stage) -> Size {

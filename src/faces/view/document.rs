@@ -159,6 +159,17 @@ impl Document {
         Ok(())
     }
 
+    /// Makes everything that the device holds anew: after its shaders changed. `recorder` must be recording.
+    ///
+    /// # Errors
+    /// When the device refuses; the old frame stays.
+    #[cfg(feature = "hot-reload")]
+    pub(super) fn rebuild(&mut self, recorder: &mut Recorder) -> Result<()> {
+        self.frame = Frame::new(recorder, &self.job.scene, frame_settings(&self.job))?;
+        self.start_over();
+        Ok(())
+    }
+
     /// Begins the average anew.
     pub(super) fn start_over(&mut self) {
         self.drawn = None;

@@ -1,0 +1,68 @@
+//! GLSL to SPIR-V for Vulkan 1.3, by shaderc.
+
+use std::fs;
+use std::path::Path;
+
+use shaderc::{
+    CompileOptions, Compiler, EnvVersion, OptimizationLevel, ResolvedInclude, ShaderKind,
+    SpirvVersion, TargetEnv,
+};
+
+fn stage_kind(path: &Path) -> Option<ShaderKind> {
+    match path.extension()?.to_str()? {
+        "vert" => Some(ShaderKind::Vertex),
+        "geom" => Some(ShaderKind::Geometry),
+        "frag" => Some(ShaderKind::Fragment),
+        "comp" => Some(ShaderKind::Compute),
+        _ => None,
+    }
+}
+
+/// Compiles a stage; its includes lie in the folder `include` beside it. With `debug` it keeps names and lines, unoptimised.
+///
+/// # Errors
+/// The compiler's lines, `file:line: message`.
+pub fn compile(compiler: &Compiler, path: &Path, debug: bool) -> Result<Vec<u32>, String> {
+    let source = fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
+    let kind = stage_kind(path).ok_or_else(|| format!("{}: no stage", path.display()))?;
+    let folder = path.parent().unwrap_or(Path::new("")).join("include");
+    let mut options = CompileOptions::new().map_err(|e| format!("shaderc: {e}"))?;
+    options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_3 as u32);
+    options.set_target_spirv(SpirvVersion::V1_6);
+    options.set_warnings_as_errors();
+    if debug {
+        options.set_generate_debug_info();
+        options.set_optimization_level(OptimizationLevel::Zero);
+    } else {
+        options.set_optimization_level(OptimizationLevel::Performance);
+    }
+    options.set_include_callback(|name, _, from, _| include(&folder, name, from));
+    compiler
+        .compile_into_spirv(
+            &source,
+            kind,
+            &path.to_string_lossy(),
+            "main",
+            Some(&options),
+        )
+        .map(|artifact| artifact.as_binary().to_vec())
+        .map_err(|e| compiler_message(&e))
+}
+
+fn include(folder: &Path, name: &str, from: &str) -> Result<ResolvedInclude, String> {
+    let path = folder.join(name);
+    let content = fs::read_to_string(&path)
+        .map_err(|e| format!("{from} includes {}: {e}", path.display()))?;
+    Ok(ResolvedInclude {
+        resolved_name: path.to_string_lossy().into_owned(),
+        content,
+    })
+}
+
+/// shaderc prefixes its `file:line: message` lines with a summary of its own, which would hide them.
+fn compiler_message(error: &shaderc::Error) -> String {
+    match error {
+        shaderc::Error::CompilationError(_, text) => text.clone(),
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,130 @@
+//! The program with its window open on a display of its own.
+#![allow(dead_code)]
+
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use skylight::compare::{Picture, flip};
+use x11rb::protocol::xproto::Window;
+
+use crate::x::{Display, PATIENCE, keysym, until};
+
+/// The program with its window open.
+pub struct Running {
+    pub display: Display,
+    child: Option<Child>,
+    pub window: Window,
+    pub folder: tempfile::TempDir,
+}
+
+pub fn program(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_skylight"));
+    command
+        .current_dir(folder)
+        .env_remove("WAYLAND_DISPLAY")
+        .env("XDG_STATE_HOME", folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command
+}
+
+impl Running {
+    pub fn new(words: &[&str]) -> Self {
+        Self::with(words, &[])
+    }
+
+    /// With these variables in its environment.
+    pub fn with(words: &[&str], variables: &[(&str, &Path)]) -> Self {
+        let display = Display::new();
+        let folder = tempfile::tempdir().expect("a scratch folder");
+        let child = program(folder.path())
+            .arg("view")
+            .args(words)
+            .env("DISPLAY", &display.name)
+            .envs(variables.iter().copied())
+            .spawn()
+            .expect("the program starts");
+        let window = display.window();
+        display.focus(window);
+        let running = Self {
+            display,
+            child: Some(child),
+            window,
+            folder,
+        };
+        // In the middle of nothing: outside of the window.
+        running.display.point(1590, 1190);
+        running
+    }
+
+    /// Without panel and read-outs: the picture alone.
+    pub fn bare(words: &[&str]) -> Self {
+        Self::bare_with(words, &[])
+    }
+
+    /// Without panel and read-outs, with these variables in its environment.
+    pub fn bare_with(words: &[&str], variables: &[(&str, &Path)]) -> Self {
+        let running = Self::with(words, variables);
+        until("the scene", || {
+            let title = running.display.title(running.window);
+            (title != "skylight").then_some(())
+        });
+        running.display.key(keysym::TAB, false);
+        running
+    }
+
+    pub fn picture(&self) -> Picture {
+        self.display.still_picture(self.window)
+    }
+
+    /// Does something that changes the picture, and gives the new one at rest.
+    pub fn after(&self, act: impl FnOnce(&Display)) -> Picture {
+        let before = self.picture();
+        act(&self.display);
+        self.display.wait_for_change(self.window, &before);
+        self.picture()
+    }
+
+    pub fn pid(&self) -> u32 {
+        self.child.as_ref().expect("it runs").id()
+    }
+
+    /// Closes the window as a user does, and gives what the program said.
+    pub fn close(mut self) -> Output {
+        self.display.close(self.window);
+        let mut child = self.child.take().expect("it runs");
+        let started = Instant::now();
+        while child.try_wait().expect("a state").is_none() {
+            if started.elapsed() > PATIENCE {
+                child.kill().expect("it runs");
+                panic!("the window does not close");
+            }
+            sleep(Duration::from_millis(20));
+        }
+        child.wait_with_output().expect("what it said")
+    }
+
+    /// Closes the window; the program must have nothing to complain of.
+    pub fn close_well(self) {
+        let output = self.close();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{:?}: {said}", output.status);
+        assert_eq!(said, "");
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        if let Some(child) = &mut self.child {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
+pub fn difference(a: &Picture, b: &Picture) -> f64 {
+    flip::mean(&flip::ldr(a, b))
+}

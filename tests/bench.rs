@@ -210,6 +210,32 @@ fn what_differs_from_the_earlier_run_is_said() {
 }
 
 #[test]
+fn a_sweep_shows_how_cost_grows() {
+    let folder = place();
+    let output = bench(
+        folder.path(),
+        "--sweep shadow --json s.json --csv s.csv --svg s.svg",
+    );
+    let table = succeeded(&output);
+    for part in ["exponent", "256²", "4096²", "shadow map", "whole frame"] {
+        assert!(table.contains(part), "no {part}: {table}");
+    }
+    let report: Value = serde_json::from_str(&read(folder.path(), "s.json")).expect("JSON");
+    let sizes = report["sizes"].as_array().expect("sizes").len();
+    assert_eq!(sizes, 5);
+    let rows = report["rows"].as_array().expect("rows");
+    for row in rows {
+        assert_eq!(row["times"].as_array().map(Vec::len), Some(sizes), "{row}");
+        assert!(row["exponent"].is_f64(), "{row}");
+    }
+    let mut sheet = csv::Reader::from_path(folder.path().join("s.csv")).expect("a file");
+    assert_eq!(sheet.records().count(), sizes * rows.len());
+    let svg = read(folder.path(), "s.svg");
+    roxmltree::Document::parse(&svg).expect("well-formed");
+    assert!(svg.contains("shadow map: size^"), "{svg}");
+}
+
+#[test]
 fn bad_yardsticks_are_named() {
     let folder = place();
     fs::write(folder.path().join("bad.json"), "{\"passes\": 3}").expect("written");
@@ -219,6 +245,8 @@ fn bad_yardsticks_are_named() {
         ("--compare .", 1, "cannot read ."),
         ("--fail-above 2", 2, "--compare"),
         ("--compare bad.json --fail-above -1", 2, "--fail-above"),
+        ("--sweep everything", 2, "resolution"),
+        ("--sweep ssao --compare bad.json", 2, "--compare"),
         ("--svg a.png", 2, ".svg"),
         ("--csv no/such/a.csv", 1, "no/such"),
     ] {

@@ -27,6 +27,7 @@ mod picture;
 mod progress;
 mod scene_file;
 mod soup;
+mod subdivide;
 mod texture;
 mod triangulate;
 

@@ -6,9 +6,10 @@ use super::statistics::Samples;
 use crate::error::Result;
 use crate::faces::job::Job;
 use crate::faces::motion::Motion;
-use crate::frame::Frame;
+use crate::frame::{Frame, FrameSettings};
 use crate::gpu::{Context, DeviceSummary, PassTime, PassWork, Recorder, Stopwatch, Timing};
 use crate::passes::lighting::Precision;
+use crate::scene::Scene;
 
 /// Frames that are drawn and forgotten: shaders are compiled at their first use.
 const WARM_UP: u32 = 3;
@@ -48,6 +49,27 @@ pub fn trustworthy(device: &DeviceSummary) -> Timing {
     }
 }
 
+/// What is drawn.
+pub struct Subject<'j> {
+    /// Camera, light and scene.
+    pub job: &'j Job,
+    /// How.
+    pub settings: FrameSettings,
+    /// Edges of triangles are cut into so many pieces.
+    pub finer: u32,
+}
+
+impl<'j> Subject<'j> {
+    /// As the user wants it.
+    pub fn new(job: &'j Job) -> Self {
+        Self {
+            job,
+            settings: job.frame_settings(job.settings.show, Precision::Half),
+            finer: 1,
+        }
+    }
+}
+
 /// A frame and the recorders that draw it: one that times passes, one that leaves the frame whole.
 pub struct Bench<'j> {
     job: &'j Job,
@@ -62,14 +84,18 @@ impl<'j> Bench<'j> {
     ///
     /// # Errors
     /// When the device refuses.
-    pub fn new(job: &'j Job, context: &Arc<Context>, motion: Motion) -> Result<Self> {
-        let settings = job.frame_settings(job.settings.show, Precision::Half);
+    pub fn new(
+        subject: &Subject<'j>,
+        scene: &Scene,
+        context: &Arc<Context>,
+        motion: Motion,
+    ) -> Result<Self> {
         let mut whole = Recorder::new(context, Timing::Off)?;
         whole.begin()?;
-        let frame = Frame::new(&mut whole, &job.scene, settings)?;
+        let frame = Frame::new(&mut whole, scene, subject.settings)?;
         whole.finish()?;
         Ok(Self {
-            job,
+            job: subject.job,
             motion,
             frame,
             parts: Recorder::new(context, trustworthy(context.summary()))?,

@@ -9,6 +9,8 @@ mod measure;
 mod report;
 mod sheet;
 mod statistics;
+mod sweep;
+mod sweep_chart;
 mod table;
 mod work;
 
@@ -23,8 +25,9 @@ use crate::error::Result;
 use crate::output::{check_writable, print, write_text};
 use crate::settings::Options;
 use baseline::Baseline;
-use measure::Bench;
+use measure::{Bench, Subject};
 use report::{Head, Report};
+use sweep::{Sweep, SweepReport};
 
 /// What to measure, and where to put it.
 #[derive(Debug, Clone, Default, PartialEq, Args)]
@@ -40,12 +43,15 @@ pub struct BenchWishes {
     /// Draw the table as a chart too.
     #[arg(long, value_name = "FILE.svg", value_parser = svg_path)]
     pub svg: Option<PathBuf>,
-    /// Frames to measure [default: 100].
+    /// Frames to measure [default: 100; 10 at each step of a sweep].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub frames: Option<u32>,
     /// What moves from frame to frame while whole frames are timed.
     #[arg(long, value_name = "WHAT", value_enum, default_value_t)]
     pub motion: Motion,
+    /// Measure again and again with more of one thing: cost against size, with the exponent of the growth.
+    #[arg(long, value_name = "WHAT", value_enum, conflicts_with = "compare")]
+    pub sweep: Option<Sweep>,
     /// Compare with an earlier run's --json: the ratio of every time, and how far noise alone would move it.
     #[arg(long, value_name = "OLD.json")]
     pub compare: Option<PathBuf>,
@@ -56,7 +62,8 @@ pub struct BenchWishes {
 
 impl BenchWishes {
     fn frames(&self) -> u32 {
-        self.frames.unwrap_or(100)
+        let usual = if self.sweep.is_some() { 10 } else { 100 };
+        self.frames.unwrap_or(usual)
     }
 
     fn files(&self) -> impl Iterator<Item = &Path> {
@@ -75,9 +82,17 @@ pub fn run(wishes: &BenchWishes, mut options: Options) -> Result<()> {
     options.samples = Some(1);
     let job = Job::new(wishes.scene.as_deref(), options)?;
     let context = job.context()?;
-    let measured = Bench::new(&job, &context, wishes.motion)?.run(wishes.frames())?;
+    let head = Head::new(&job, &context, wishes);
+    if let Some(sweep) = wishes.sweep {
+        let report = sweep::run(sweep, &job, &context, wishes.motion, head)?;
+        context.check_validation()?;
+        write_sweep(wishes, &report)?;
+        return print(&report.to_string());
+    }
+    let subject = Subject::new(&job);
+    let mut bench = Bench::new(&subject, &job.scene, &context, wishes.motion)?;
+    let report = Report::new(head, &bench.run(wishes.frames())?);
     context.check_validation()?;
-    let report = Report::new(Head::new(&job, &context, wishes), &measured);
     write_files(wishes, &report)?;
     print(&report.to_string())?;
     let Some(baseline) = baseline else {
@@ -90,14 +105,21 @@ pub fn run(wishes: &BenchWishes, mut options: Options) -> Result<()> {
 }
 
 fn write_files(wishes: &BenchWishes, report: &Report) -> Result<()> {
-    if let Some(path) = &wishes.json {
-        write_text(path, &report.json())?;
+    write(&wishes.json, || report.json())?;
+    write(&wishes.csv, || sheet::csv(report))?;
+    write(&wishes.svg, || chart::draw(report))
+}
+
+fn write_sweep(wishes: &BenchWishes, report: &SweepReport) -> Result<()> {
+    write(&wishes.json, || report.json())?;
+    write(&wishes.csv, || report.csv())?;
+    write(&wishes.svg, || sweep_chart::draw(report))
+}
+
+/// Writes a file that is wanted.
+fn write(path: &Option<PathBuf>, text: impl FnOnce() -> String) -> Result<()> {
+    match path {
+        Some(path) => write_text(path, &text()),
+        None => Ok(()),
     }
-    if let Some(path) = &wishes.csv {
-        write_text(path, &sheet::csv(report))?;
-    }
-    if let Some(path) = &wishes.svg {
-        write_text(path, &chart::draw(report))?;
-    }
-    Ok(())
 }

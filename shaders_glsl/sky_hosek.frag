@@ -1,30 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "sky.glsl"
+#include "sky_hosek.glsl"
+#include "cube_fragment.glsl"
 
-// Hosek and Wilkie 2012, eq. 8, the published RGB fit.
-
-layout(set = 0, binding = 0, scalar) uniform Model {
-    float coefficients[27]; // nine of R, of G, of B in the authors' order A B C D E F G I H
-    vec3 mean_radiance;     // kcd/m^2
-} model;
-
-float distribution(int channel, float cos_theta, float gamma) {
-    int k = 9 * channel;
-    float h = model.coefficients[k + 8];
-    float cos_gamma = cos(gamma);
-    float chi = (1.0 + cos_gamma * cos_gamma) / pow(1.0 + h * h - 2.0 * h * cos_gamma, 1.5);
-    return (1.0 + model.coefficients[k] * exp(model.coefficients[k + 1] / (cos_theta + 0.01)))
-         * (model.coefficients[k + 2] + model.coefficients[k + 3] * exp(model.coefficients[k + 4] * gamma)
-            + model.coefficients[k + 5] * cos_gamma * cos_gamma + model.coefficients[k + 6] * chi
-            + model.coefficients[k + 7] * sqrt(cos_theta));
-}
+layout(location = 0) out vec4 sky_radiance; // kcd/m^2
 
 void main() {
-    vec3 direction = normalize(cube_direction(face, face_st));
-    float cos_theta = max(direction.y, 0.0);
-    float gamma = angle_between(direction, push.sun_direction);
-    vec3 f = vec3(distribution(0, cos_theta, gamma), distribution(1, cos_theta, gamma), distribution(2, cos_theta, gamma));
-    WRITE_SKY(direction, model.mean_radiance * f);
+    sky_radiance = sky(texel_direction());
 }

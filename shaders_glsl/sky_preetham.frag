@@ -1,39 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "sky.glsl"
-#include "colour.glsl"
+#include "sky_preetham.glsl"
+#include "cube_fragment.glsl"
 
-// Preetham et al. 1999, A.2. The CIE clear sky has the same form and is drawn by this shader too.
-
-struct Perez {
-    float a, b, c, d, e;
-};
-
-layout(set = 0, binding = 0, scalar) uniform Model {
-    Perez luminance;      // of Y
-    Perez chromaticity_x; // of x
-    Perez chromaticity_y; // of y
-    vec3 zenith_over_f;   // Y (kcd/m^2), x, y at the zenith, each divided by its F(0, theta_s)
-} model;
-
-/// F(theta, gamma) = (1 + A e^(B / cos theta)) (1 + C e^(D gamma) + E cos^2 gamma).
-float perez(Perez p, float cos_theta, float gamma, float cos_gamma) {
-    return (1.0 + p.a * exp(p.b / cos_theta))
-         * (1.0 + p.c * exp(p.d * gamma) + p.e * cos_gamma * cos_gamma);
-}
-
-vec3 preetham(vec3 direction) {
-    float cos_theta = max(direction.y, MIN_COS_THETA);
-    float gamma = angle_between(direction, push.sun_direction);
-    float cos_gamma = cos(gamma);
-    float Y = model.zenith_over_f.x * perez(model.luminance, cos_theta, gamma, cos_gamma);
-    float x = model.zenith_over_f.y * perez(model.chromaticity_x, cos_theta, gamma, cos_gamma);
-    float y = model.zenith_over_f.z * perez(model.chromaticity_y, cos_theta, gamma, cos_gamma);
-    return RGB_FROM_XYZ * (vec3(x, y, 1.0 - x - y) * (Y / y));
-}
+layout(location = 0) out vec4 sky_radiance; // kcd/m^2
 
 void main() {
-    vec3 direction = normalize(cube_direction(face, face_st));
-    WRITE_SKY(direction, preetham(direction));
+    sky_radiance = sky(texel_direction());
 }

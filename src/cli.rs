@@ -7,7 +7,7 @@ use clap::error::ErrorKind;
 use clap::{Arg, Parser, Subcommand};
 
 use crate::faces::{BakeWishes, BenchWishes, CompareWishes, SkyWishes};
-use crate::settings::{Options, one_line};
+use crate::settings::{Optional, Options, one_line};
 
 /// What the user wants done.
 #[derive(Debug, Clone, PartialEq, Subcommand)]
@@ -72,7 +72,11 @@ pub enum Command {
         wishes: CompareWishes,
     },
     /// List the Vulkan devices and what each lacks.
-    Info,
+    Info {
+        /// Do without something that the devices have, as on devices that lack it.
+        #[arg(long, value_enum, value_name = "FEATURE")]
+        without: Vec<Optional>,
+    },
 }
 
 /// How the program ends before it starts.
@@ -229,7 +233,12 @@ mod tests {
         assert_eq!(output, Path::new("b.EXR"));
         assert!(options.layers && options.when.is_some());
         assert_eq!(render("render").1, Path::new("skylight.png"));
-        assert_eq!(parse(words("info")), Ok(Command::Info));
+        assert_eq!(
+            parse(words("info")),
+            Ok(Command::Info {
+                without: Vec::new()
+            })
+        );
         assert!(matches!(
             parse(words("bench --frames 3 --json t.json")),
             Ok(Command::Bench { wishes, .. }) if wishes.frames == Some(3)

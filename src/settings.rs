@@ -8,6 +8,7 @@ use chrono::{DateTime, FixedOffset};
 use clap::{Args, Command, FromArgMatches};
 
 pub use crate::daylight::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCurve};
+pub use crate::gpu::Optional;
 pub(crate) use resolve::name;
 pub use resolve::{CameraParts, Exposure, Settings, SunInput};
 pub use values::{
@@ -160,6 +161,9 @@ pub struct Options {
     /// Check every Vulkan call with the validation layers; slow.
     #[arg(long, help_heading = "Program")]
     pub validate: bool,
+    /// Do without something that the device has, as on a device that lacks it.
+    #[arg(long, value_enum, value_name = "FEATURE", help_heading = "Program")]
+    pub without: Option<Optional>,
 }
 
 /// Takes each named field from the first that has it.
@@ -211,7 +215,7 @@ impl Options {
         first_of!(self, base;
             size samples show preset place when sun solar sun_position sky turbidity sky_illuminance refraction ground_albedo camera eye target fov
             ev100 exposure tonemap gamma scale irradiance irradiance_samples irradiance_error ao_radius ao_resolution specular shadow_size
-            smooth device max_triangles max_texture_edge max_texture_mib max_file_mib fresnel moment;
+            smooth device without max_triangles max_texture_edge max_texture_mib max_file_mib fresnel moment;
             layers limb_darkening quiet validate allow_outside)
     }
 }

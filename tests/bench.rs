@@ -21,7 +21,12 @@ fn bench(folder: &Path, words: &str) -> Output {
     Command::new(env!("CARGO_BIN_EXE_skylight"))
         .current_dir(folder)
         .args(["bench", "m.obj", "--frames", "2", "--size", "64x36"])
-        .args(["--irradiance-samples", "64", "--quiet"])
+        .args(if words.contains("--irradiance-samples") {
+            &[][..]
+        } else {
+            &["--irradiance-samples", "64"]
+        })
+        .arg("--quiet")
         .args(words.split_whitespace())
         .output()
         .expect("the program starts")
@@ -176,6 +181,53 @@ fn csv_and_svg_hold_every_pass_and_frame() {
         let name = &line[column("name")];
         assert!(words.contains(name), "no {name} in the chart");
     }
+}
+
+#[test]
+fn irradiance_is_timed_by_three_routes_side_by_side() {
+    let folder = place();
+    let words = "--json t.json --irradiance-samples 1024";
+    let table = succeeded(&bench(folder.path(), words));
+    for part in ["geometry shader", "compute shader", "exact sum", "rms %"] {
+        assert!(table.contains(part), "no {part}: {table}");
+    }
+    let report: Value = serde_json::from_str(&read(folder.path(), "t.json")).expect("JSON");
+    let routes = report["irradiance_routes"].as_array().expect("routes");
+    assert_eq!(routes.len(), 3);
+    for route in routes {
+        println!("{route}");
+        let rms = route["rms"].as_f64().expect("a number");
+        assert!(rms <= 2e-3, "{route}");
+        assert!(route["median_ms"].as_f64() > Some(0.0), "{route}");
+    }
+}
+
+#[test]
+fn a_device_without_geometry_shaders_is_enough_and_says_so() {
+    let folder = place();
+    let run = |words: &str| {
+        Command::new(env!("CARGO_BIN_EXE_skylight"))
+            .current_dir(folder.path())
+            .args(words.split_whitespace())
+            .output()
+            .expect("the program starts")
+    };
+    let render = "render m.obj --size 64x36 --irradiance-samples 16 -o a.png";
+    let output = run(&format!("{render} --without geometry-shader"));
+    succeeded(&output);
+    let said = text(&output.stderr);
+    assert!(
+        said.starts_with("notice: ") && said.contains("compute shaders"),
+        "{said}"
+    );
+    let output = run(&format!("{render} --without geometry-shader --quiet"));
+    succeeded(&output);
+    assert_eq!(text(&output.stderr), "");
+    let told = succeeded(&run("info --without geometry-shader"));
+    assert!(told.contains("geometryShader: no"), "{told}");
+    assert!(told.contains("nothing that skylight needs"), "{told}");
+    let table = succeeded(&bench(folder.path(), "--without geometry-shader"));
+    assert!(!table.contains("geometry shader  ") && table.contains("compute shader"));
 }
 
 #[test]

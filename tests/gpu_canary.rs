@@ -145,6 +145,24 @@ fn descriptor_pools_draw_what_push_descriptors_draw() {
 }
 
 #[test]
+fn a_picture_needs_no_geometry_shader() {
+    let mut with = Device::new();
+    let mut without = Device::with(&ContextOptions {
+        without: vec![Optional::GeometryShader],
+        ..ContextOptions::default()
+    });
+    let (a, b) = (draw_everything(&mut with), draw_everything(&mut without));
+    // Display values first, a byte each: at most one step apart. Then half floats, compared as their bits.
+    let shown = a.len() / 3;
+    let far = a[..shown]
+        .iter()
+        .zip(&b)
+        .filter(|(a, b)| a.abs_diff(**b) > 1);
+    assert_eq!((a.len(), far.count()), (b.len(), 0));
+    assert!(a.iter().any(|byte| *byte != a[0]), "an empty picture");
+}
+
+#[test]
 fn an_unknown_device_is_named_with_those_that_exist() {
     let options = ContextOptions {
         device: Some("no such card".into()),

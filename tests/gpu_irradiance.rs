@@ -15,7 +15,9 @@ use skylight::daylight::frame::to_world;
 use skylight::daylight::irradiance::IrradianceMethod;
 use skylight::daylight::preetham::Preetham;
 use skylight::daylight::sampling::{cosine_hemisphere, rnd, tea};
-use skylight::daylight::sky::{Daylight, Sky};
+use skylight::daylight::sky::{Conditions, Daylight, Sky, SkyModel};
+use skylight::gpu::{ContextOptions, Optional};
+use skylight::passes::cube_route::CubeRoute;
 use skylight::passes::irradiance::{Irradiance, IrradianceSettings};
 use skylight::passes::sky_cube::SkyCube;
 
@@ -35,12 +37,19 @@ impl Light {
         samples: u32,
         samples_per_pass: u32,
     ) -> Self {
-        let settings = IrradianceSettings {
-            edge: EDGE,
-            method,
-            samples,
-            samples_per_pass,
-        };
+        Self::by(
+            device,
+            IrradianceSettings {
+                edge: EDGE,
+                method,
+                samples,
+                samples_per_pass,
+                route: None,
+            },
+        )
+    }
+
+    fn by(device: &mut Device, settings: IrradianceSettings) -> Self {
         Self {
             sky: SkyCube::new(&device.context, 256).expect("a sky cube"),
             irradiance: device
@@ -331,4 +340,100 @@ fn a_changed_sky_starts_anew() {
     let different = a.texels.iter().zip(&b.texels).filter(|(a, b)| a != b);
     assert_eq!(different.count(), 0, "something of the old sky is left");
     println!("{} texels are the same", a.texels.len());
+}
+
+#[test]
+fn three_routes_make_the_same_map() {
+    let mut device = Device::new();
+    let day = clear_day(150.0, 40.0);
+    let mut map = |method, route| {
+        let settings = IrradianceSettings {
+            method,
+            samples: 4096,
+            samples_per_pass: 4096,
+            route: Some(route),
+            ..IrradianceSettings::default()
+        };
+        let mut light = Light::by(&mut device, settings);
+        light.refine(&mut device, &day);
+        let sums = device.read(light.irradiance.sums()).into_iter();
+        sums.map(|t| DVec3::from_array(gpu::rgb(t)) / f64::from(t[3]))
+            .collect::<Vec<_>>()
+    };
+    let layered = map(IrradianceMethod::Quasi, CubeRoute::Geometry);
+    let computed = map(IrradianceMethod::Quasi, CubeRoute::Compute);
+    let exact = map(IrradianceMethod::Exact, CubeRoute::Geometry);
+    let exact_computed = map(IrradianceMethod::Exact, CubeRoute::Compute);
+    let up = exact.iter().map(|e| e.max_element()).fold(0.0, f64::max);
+    let compare = |what, tolerance, a: &[DVec3], b: &[DVec3]| {
+        let mut worst = Worst::new(what, tolerance);
+        for (i, (a, b)) in a.iter().zip(b).enumerate() {
+            worst.see((*a - *b).abs().max_element() / up, i);
+        }
+        worst.finish();
+    };
+    // The same additions of the same lookups; directions differ by roundings, and lookups by a 256th of what that moves.
+    compare(
+        "compute against gl_Layer, of E_max",
+        1e-4,
+        &computed,
+        &layered,
+    );
+    compare("the exact sums, of E_max", 1e-6, &exact_computed, &exact);
+    compare(
+        "gl_Layer against the exact sum, of E_max",
+        2e-3,
+        &layered,
+        &exact,
+    );
+    compare(
+        "compute against the exact sum, of E_max",
+        2e-3,
+        &computed,
+        &exact,
+    );
+}
+
+#[test]
+fn a_device_without_geometry_shaders_draws_the_same_maps() {
+    let mut with = Device::new();
+    let mut without = Device::with(&ContextOptions {
+        without: vec![Optional::GeometryShader],
+        ..ContextOptions::default()
+    });
+    assert_eq!(CubeRoute::of(&with.context), CubeRoute::Geometry);
+    assert_eq!(CubeRoute::of(&without.context), CubeRoute::Compute);
+    for model in [SkyModel::Preetham, SkyModel::Hosek] {
+        // Low enough for a ground, a glow and, of Preetham, dark corners.
+        let day = sky_of(model, 3.0);
+        let [a, b] = [&mut with, &mut without].map(|device| {
+            let mut light = Light::new(device, IrradianceMethod::Quasi, 256, 128);
+            light.refine(device, &day);
+            let sky = device.read_cube(light.sky.image());
+            let map = light.exact(device);
+            (sky.texels, map.texels)
+        });
+        let mut worst = Worst::new("sky by compute against gl_Layer", 2.0 * HALF_ROUNDOFF);
+        for (i, (a, b)) in a.0.iter().zip(&b.0).enumerate() {
+            worst.see(
+                ((*a - *b) / a.max(DVec3::splat(1e-9))).abs().max_element(),
+                i,
+            );
+        }
+        worst.finish();
+        let up = a.1.iter().map(|e| e.max_element()).fold(0.0, f64::max);
+        let mut worst = Worst::new("E by compute against gl_Layer, of E_max", 5e-4);
+        for (i, (a, b)) in a.1.iter().zip(&b.1).enumerate() {
+            worst.see((*a - *b).abs().max_element() / up, i);
+        }
+        worst.finish();
+    }
+}
+
+fn sky_of(model: SkyModel, sun_elevation_deg: f64) -> Daylight {
+    Daylight::new(&Conditions {
+        model,
+        sun_elevation_deg,
+        ..Conditions::default()
+    })
 }

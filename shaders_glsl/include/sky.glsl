@@ -2,10 +2,6 @@
 #include "constants.glsl"
 #include "cube.glsl"
 
-layout(location = 0) in vec2 face_st;
-layout(location = 1) flat in int face;
-layout(location = 0) out vec4 sky_radiance; // kcd/m^2
-
 layout(push_constant, scalar) uniform Push {
     vec3 sun_direction; // unit, toward the sun that the model is evaluated for
     float scale;        // fade through twilight
@@ -30,6 +26,7 @@ vec3 clip_negative(vec3 rgb) {
     return target > 0.0 && l > 0.0 ? clamped * (target / l) : vec3(0.0);
 }
 
-/// Writes the sky, or the ground below it. `model` is the model's own radiance in kcd/m^2.
-#define WRITE_SKY(direction, model) \
-    sky_radiance = vec4((direction).y > 0.0 ? clip_negative(model) * push.scale + push.night : push.ground, 1.0)
+/// The sky, or the ground below it, kcd/m^2. `model` is the model's own radiance.
+vec4 guarded(vec3 direction, vec3 model) {
+    return vec4(direction.y > 0.0 ? clip_negative(model) * push.scale + push.night : push.ground, 1.0);
+}

@@ -1,15 +1,15 @@
 //! `skylight info`: the devices, and what each lacks.
 
 use crate::error::Result;
-use crate::gpu::{DeviceSummary, GpuError, devices};
+use crate::gpu::{DeviceSummary, GpuError, Optional, devices};
 use crate::output::print;
 
 /// Prints one block a device.
 ///
 /// # Errors
 /// When there is no Vulkan, or no device.
-pub fn run() -> Result<()> {
-    let devices = devices(&[])?;
+pub fn run(without: &[Optional]) -> Result<()> {
+    let devices = devices(without)?;
     if devices.is_empty() {
         return Err(GpuError::NoDevice.into());
     }

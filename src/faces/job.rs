@@ -15,7 +15,8 @@ use crate::daylight::sunlight::LIMB_DARKENING;
 use crate::daylight::tone_curve::REINHARD_WHITE;
 use crate::error::Result;
 use crate::frame::FrameSettings;
-use crate::gpu::{Context, ContextOptions};
+use crate::gpu::{Context, ContextOptions, Optional};
+use crate::passes::cube_route::CubeRoute;
 use crate::passes::irradiance::IrradianceSettings;
 use crate::passes::lighting::{LightingSettings, Precision, Show};
 use crate::passes::ssao::SsaoSettings;
@@ -40,11 +41,26 @@ pub fn load_options(options: &Options) -> LoadOptions {
 }
 
 /// How a device is to be opened.
-pub fn context_options(device: Option<String>, validate: bool) -> ContextOptions {
+pub fn context_options(
+    device: Option<String>,
+    validate: bool,
+    without: Option<Optional>,
+) -> ContextOptions {
     ContextOptions {
         device,
         validate,
-        ..ContextOptions::default()
+        without: without.into_iter().collect(),
+    }
+}
+
+/// Says on stderr what a device has to go a long way round for.
+pub fn notice(context: &Context) {
+    let device = context.summary();
+    if CubeRoute::of(context) == CubeRoute::Compute {
+        eprintln!(
+            "notice: \"{}\" has no geometry shaders; compute shaders draw the cubes of sky and irradiance",
+            device.name
+        );
     }
 }
 
@@ -122,10 +138,12 @@ impl Job {
     /// When there is none.
     pub fn context(&self) -> Result<Arc<Context>> {
         let s = &self.settings;
-        Ok(Context::new(&context_options(
-            s.device.clone(),
-            s.validate,
-        ))?)
+        let options = context_options(s.device.clone(), s.validate, s.without);
+        let context = Context::new(&options)?;
+        if !s.quiet {
+            notice(&context);
+        }
+        Ok(context)
     }
 
     /// The settings of the frame.

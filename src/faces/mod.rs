@@ -45,7 +45,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Sky { wishes, options } => sky::run(&wishes, *options),
         Command::Bake { wishes, options } => bake::run(&wishes, *options),
         Command::Compare { wishes } => compare::run(&wishes),
-        Command::Info => info::run(),
+        Command::Info { without } => info::run(&without),
     }
 }
 

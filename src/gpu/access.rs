@@ -15,6 +15,8 @@ pub enum Use {
     Sampled,
     /// A depth image read through a sampler, and perhaps tested against without being written.
     SampledDepth,
+    /// Written by a compute shader, every texel.
+    StorageWrite,
     /// Source of a copy or blit.
     CopySource,
     /// Target of a copy or blit.
@@ -82,6 +84,12 @@ const fn row(of: Use) -> (Stage, Access, Access, Layout) {
             Access::NONE,
             Layout::DEPTH_READ_ONLY_OPTIMAL,
         ),
+        Use::StorageWrite => (
+            Stage::COMPUTE_SHADER,
+            Access::NONE,
+            Access::SHADER_STORAGE_WRITE,
+            Layout::GENERAL,
+        ),
         Use::CopySource => (
             Stage::TRANSFER,
             Access::TRANSFER_READ,
@@ -146,12 +154,13 @@ pub const fn barrier(previous: Use, next: Use) -> Option<Barrier> {
 mod tests {
     use super::*;
 
-    const ALL: [Use; 10] = [
+    const ALL: [Use; 11] = [
         Use::Undefined,
         Use::ColorAttachment,
         Use::DepthAttachment,
         Use::Sampled,
         Use::SampledDepth,
+        Use::StorageWrite,
         Use::CopySource,
         Use::CopyTarget,
         Use::HostRead,
@@ -258,6 +267,23 @@ mod tests {
                 Access::NONE,
                 Access::DEPTH_STENCIL_ATTACHMENT_READ | Access::DEPTH_STENCIL_ATTACHMENT_WRITE,
             ),
+        );
+    }
+
+    #[test]
+    fn stored_by_compute_then_sampled_and_back() {
+        let reads = Stage::FRAGMENT_SHADER | Stage::COMPUTE_SHADER;
+        expect(
+            Use::StorageWrite,
+            Use::Sampled,
+            (Stage::COMPUTE_SHADER, reads),
+            (Access::SHADER_STORAGE_WRITE, Access::SHADER_SAMPLED_READ),
+        );
+        expect(
+            Use::Sampled,
+            Use::StorageWrite,
+            (reads, Stage::COMPUTE_SHADER),
+            (Access::NONE, Access::SHADER_STORAGE_WRITE),
         );
     }
 

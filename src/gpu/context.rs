@@ -301,7 +301,8 @@ fn create_device(
         extensions.push(khr::swapchain::NAME.as_ptr());
     }
     let core = vk::PhysicalDeviceFeatures::default()
-        .geometry_shader(true)
+        .geometry_shader(chosen.summary.has(Optional::GeometryShader))
+        .shader_storage_image_write_without_format(chosen.stores_without_format)
         .pipeline_statistics_query(chosen.summary.has(Optional::PipelineStatistics));
     let mut v12 = vk::PhysicalDeviceVulkan12Features::default()
         .scalar_block_layout(true)

@@ -103,7 +103,8 @@ fn is_block_or_srgb_texture(format: vk::Format) -> bool {
     format == vk::Format::R8G8B8A8_SRGB
 }
 
-fn usage(format: vk::Format, levels: u32) -> vk::ImageUsageFlags {
+fn usage(desc: &ImageDesc<'_>) -> vk::ImageUsageFlags {
+    let (format, levels) = (desc.format, desc.levels);
     let common = vk::ImageUsageFlags::SAMPLED
         | vk::ImageUsageFlags::TRANSFER_SRC
         | vk::ImageUsageFlags::TRANSFER_DST;
@@ -111,6 +112,9 @@ fn usage(format: vk::Format, levels: u32) -> vk::ImageUsageFlags {
         common | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT
     } else if levels > 1 && is_block_or_srgb_texture(format) {
         common
+    } else if desc.kind == ImageKind::Cube {
+        // Compute shaders write cubes where there are no geometry shaders.
+        common | vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE
     } else {
         common | vk::ImageUsageFlags::COLOR_ATTACHMENT
     }
@@ -149,7 +153,7 @@ impl Image {
             .mip_levels(desc.levels)
             .array_layers(desc.layers())
             .samples(vk::SampleCountFlags::TYPE_1)
-            .usage(usage(desc.format, desc.levels));
+            .usage(usage(desc));
         // SAFETY: the info has no pointers; the handle goes into its owner at once.
         let raw = unsafe { context.raw().create_image(&info, None) }.during("create an image")?;
         let mut image = Self {

@@ -14,6 +14,7 @@
 
 pub mod access;
 mod buffer;
+mod compute;
 mod context;
 mod draws;
 mod error;

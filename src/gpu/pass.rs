@@ -51,6 +51,11 @@ fn sampled_use(image: &Image) -> Use {
     }
 }
 
+/// The images that are sampled, with how.
+pub(super) fn sampled_uses<'r>(reads: &[&'r Image]) -> impl Iterator<Item = (&'r Image, Use)> {
+    reads.iter().map(|image| (*image, sampled_use(image)))
+}
+
 /// A pass being described. Nothing is recorded before `draw` or `draws`.
 ///
 /// # Panics
@@ -62,7 +67,8 @@ pub struct Pass<'r> {
     pub(super) name: &'static str,
     bound: ArrayVec<Bound, MAX_BINDINGS>,
     pub(super) changed: bool,
-    reads: ArrayVec<&'r Image, MAX_BINDINGS>,
+    pub(super) reads: ArrayVec<&'r Image, MAX_BINDINGS>,
+    pub(super) stores: ArrayVec<&'r Image, MAX_COLORS>,
     colors: ArrayVec<(&'r Image, Load), MAX_COLORS>,
     depth: Option<(&'r Image, Load)>,
     push: ArrayVec<u8, MAX_PUSH>,
@@ -85,6 +91,7 @@ impl<'r> Pass<'r> {
             bound: ArrayVec::new(),
             changed: true,
             reads: ArrayVec::new(),
+            stores: ArrayVec::new(),
             colors: ArrayVec::new(),
             depth: None,
             push: ArrayVec::new(),
@@ -169,10 +176,7 @@ impl<'r> Pass<'r> {
     pub fn draws(mut self, record: impl FnOnce(&mut Draws<'_, 'r>)) {
         self.check_attachments();
         let depth_use = self.depth_use();
-        let uses = self
-            .reads
-            .iter()
-            .map(|i| (*i, sampled_use(i)))
+        let uses = sampled_uses(&self.reads)
             .chain(self.colors.iter().map(|(i, _)| (*i, Use::ColorAttachment)))
             .chain(self.depth.iter().map(|(i, _)| (*i, depth_use)));
         self.recorder.label(self.name);
@@ -249,12 +253,21 @@ impl<'r> Pass<'r> {
     }
 
     pub(super) fn bind_image(&mut self, name: &str, image: &Image, sampler: Sampler) {
-        let binding = self.declared(name, BindingKind::SampledImage);
         let info = vk::DescriptorImageInfo {
             sampler: self.recorder.context.sampler(sampler),
             image_view: image.sampled_view(),
             image_layout: access::layout(sampled_use(image)),
         };
+        self.bind_view(name, BindingKind::SampledImage, info);
+    }
+
+    pub(super) fn bind_view(
+        &mut self,
+        name: &str,
+        kind: BindingKind,
+        info: vk::DescriptorImageInfo,
+    ) {
+        let binding = self.declared(name, kind);
         self.bind(binding, Resource::Image(info));
     }
 
@@ -442,7 +455,7 @@ impl<'r> Pass<'r> {
             })
             .collect();
         let (context, command) = (&self.recorder.context, self.recorder.command);
-        let point = vk::PipelineBindPoint::GRAPHICS;
+        let point = self.pipeline.bind_point();
         let layout = self.pipeline.layout();
         // SAFETY: the infos outlive the calls; images were brought to the sampled layout by `transition`.
         unsafe {

@@ -1,9 +1,10 @@
-//! Graphics pipelines with dynamic rendering, their layouts derived from what the stages declare.
+//! Pipelines (graphics with dynamic rendering, or compute), their layouts derived from what the stages declare.
 
 use std::sync::Arc;
 
 use ash::vk;
 
+use super::compute;
 use super::context::Context;
 use super::error::{During, Result};
 use super::shader::{Binding, Field, Shader};
@@ -33,7 +34,7 @@ pub enum Depth {
 pub struct PipelineDesc<'a> {
     /// Name in messages and captures.
     pub name: &'a str,
-    /// Vertex, perhaps geometry, perhaps fragment stage.
+    /// Vertex, perhaps geometry, perhaps fragment stage; or a compute stage alone.
     pub stages: &'a [&'static Shader],
     /// One tightly packed vertex stream for each location.
     pub vertex: &'a [vk::Format],
@@ -64,6 +65,8 @@ pub struct Pipeline {
     pub(super) depth: Option<vk::Format>,
     pub(super) streams: usize,
     pub(super) writes_depth: bool,
+    /// Invocations of a work group, of a compute pipeline.
+    pub(super) local_size: Option<[u32; 3]>,
     name: String,
 }
 
@@ -155,6 +158,7 @@ impl Pipeline {
             },
             streams: desc.vertex.len(),
             writes_depth: matches!(desc.depth, Depth::Write { .. }),
+            local_size: desc.stages.iter().find_map(|s| s.local_size),
             name: desc.name.to_owned(),
         };
         pipeline.set_layout = pipeline.create_set_layout()?;
@@ -229,6 +233,9 @@ impl Pipeline {
                     .specialization_info(specialization)
             })
             .collect();
+        if let ([stage], Some(_)) = (stages.as_slice(), self.local_size) {
+            return compute::create(&self.context, self.layout, *stage);
+        }
         let (vertex_bindings, vertex_attributes) = vertex_streams(desc.vertex);
         let vertex = vk::PipelineVertexInputStateCreateInfo::default()
             .vertex_binding_descriptions(&vertex_bindings)
@@ -287,6 +294,13 @@ impl Pipeline {
     /// Name, as given.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    pub(super) fn bind_point(&self) -> vk::PipelineBindPoint {
+        match self.local_size {
+            Some(_) => vk::PipelineBindPoint::COMPUTE,
+            None => vk::PipelineBindPoint::GRAPHICS,
+        }
     }
 
     pub(super) fn raw(&self) -> vk::Pipeline {

@@ -34,6 +34,8 @@ pub struct DeviceSummary {
 pub enum Optional {
     /// The extension VK_KHR_push_descriptor; descriptor pools otherwise.
     PushDescriptor,
+    /// The feature geometryShader; compute shaders write the cubes of sky and irradiance otherwise.
+    GeometryShader,
     /// The feature pipelineStatisticsQuery; the benchmark has no such columns otherwise.
     PipelineStatistics,
 }
@@ -43,6 +45,7 @@ impl Optional {
     pub fn name(self) -> &'static str {
         match self {
             Self::PushDescriptor => "VK_KHR_push_descriptor",
+            Self::GeometryShader => "geometryShader",
             Self::PipelineStatistics => "pipelineStatisticsQuery",
         }
     }
@@ -60,6 +63,8 @@ pub(super) struct Candidate {
     pub(super) handle: vk::PhysicalDevice,
     pub(super) summary: DeviceSummary,
     pub(super) queue_family: u32,
+    /// Whether compute shaders can write images of any format.
+    pub(super) stores_without_format: bool,
     rank: u32,
 }
 
@@ -150,9 +155,12 @@ fn candidate(
         optional: optional(instance, handle, &extensions, without),
         max_image_edge: properties.limits.max_image_dimension2_d,
     };
+    // SAFETY: `handle` comes from this instance.
+    let core = unsafe { instance.get_physical_device_features(handle) };
     Ok(Candidate {
         handle,
         summary,
+        stores_without_format: core.shader_storage_image_write_without_format == vk::TRUE,
         queue_family: queue_family.unwrap_or(0),
         rank,
     })
@@ -168,6 +176,7 @@ fn optional(
     let core = unsafe { instance.get_physical_device_features(handle) };
     let present = |optional: &Optional| match optional {
         Optional::PushDescriptor => extensions.iter().any(|e| e == optional.name()),
+        Optional::GeometryShader => core.geometry_shader == vk::TRUE,
         Optional::PipelineStatistics => core.pipeline_statistics_query == vk::TRUE,
     };
     Optional::value_variants()
@@ -208,8 +217,13 @@ fn missing_features(instance: &ash::Instance, handle: vk::PhysicalDevice) -> Vec
     // SAFETY: `handle` comes from this instance; the chain lives on this stack.
     unsafe { instance.get_physical_device_features2(handle, &mut features) };
     let core = features.features;
+    // Cubes are written by geometry shaders, or else by compute shaders.
+    let cubes = core.geometry_shader | core.shader_storage_image_write_without_format;
     [
-        ("geometryShader", core.geometry_shader),
+        (
+            "geometryShader or shaderStorageImageWriteWithoutFormat",
+            cubes,
+        ),
         ("scalarBlockLayout", v12.scalar_block_layout),
         ("hostQueryReset", v12.host_query_reset),
         ("dynamicRendering", v13.dynamic_rendering),
@@ -312,6 +326,7 @@ mod tests {
         Candidate {
             handle: vk::PhysicalDevice::null(),
             queue_family: 0,
+            stores_without_format: true,
             rank,
             summary: DeviceSummary {
                 index,

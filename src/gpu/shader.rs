@@ -87,6 +87,8 @@ pub struct Shader {
     pub push: Option<&'static [Field]>,
     /// Specialization constants: name and id.
     pub constants: &'static [(&'static str, u32)],
+    /// Invocations of a work group in x, y and z, of a compute shader.
+    pub local_size: Option<[u32; 3]>,
     /// SPIR-V.
     pub words: &'static [u32],
     /// The declarations as build.rs wrote them, to compare those of a reloaded stage with.

@@ -14,11 +14,12 @@ use crate::daylight::irradiance::{IrradianceMethod, SphericalHarmonics};
 use crate::daylight::refinement::shares;
 use crate::daylight::sky::Daylight;
 use crate::gpu::{
-    Buffer, BufferKind, Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc,
-    Recorder, Result, Sampler, Shader, shaders, upload_buffer,
+    Buffer, BufferKind, Context, Format, Image, ImageDesc, Recorder, Result, Sampler, shaders,
+    upload_buffer,
 };
 use crate::gpu_struct;
 
+use super::cube_route::{CubePipeline, CubeRoute, CubeShaders};
 use super::kilo;
 use super::sky_cube::{COARSE_EDGE, SMOOTH_EDGE, SkyImages};
 
@@ -55,6 +56,8 @@ pub struct IrradianceSettings {
     pub samples: u32,
     /// Samples added by one pass.
     pub samples_per_pass: u32,
+    /// How the texels are written; None: as the device can.
+    pub route: Option<CubeRoute>,
 }
 
 impl Default for IrradianceSettings {
@@ -64,6 +67,7 @@ impl Default for IrradianceSettings {
             method: IrradianceMethod::Quasi,
             samples: 1024,
             samples_per_pass: 256,
+            route: None,
         }
     }
 }
@@ -71,7 +75,7 @@ impl Default for IrradianceSettings {
 /// The pass, its running sums and the map.
 pub struct Irradiance {
     settings: IrradianceSettings,
-    pipeline: Pipeline,
+    pipeline: CubePipeline,
     /// Directions of the low-discrepancy sequence, or the texels of the exact sum.
     table: Buffer,
     sums: [Image; 2],
@@ -81,33 +85,32 @@ pub struct Irradiance {
 
 const COLORS: [Format; 2] = [Format::R32G32B32A32_SFLOAT, Format::R16G16B16A16_SFLOAT];
 
-fn pipeline(context: &Arc<Context>, method: IrradianceMethod) -> Result<Pipeline> {
+const SAMPLED: CubeShaders = CubeShaders {
+    fragment: &shaders::IRRADIANCE_FRAG,
+    compute: &shaders::IRRADIANCE_COMP,
+};
+const EXACT: CubeShaders = CubeShaders {
+    fragment: &shaders::IRRADIANCE_EXACT_FRAG,
+    compute: &shaders::IRRADIANCE_EXACT_COMP,
+};
+const SH: CubeShaders = CubeShaders {
+    fragment: &shaders::IRRADIANCE_SH_FRAG,
+    compute: &shaders::IRRADIANCE_SH_COMP,
+};
+
+fn pipeline(context: &Arc<Context>, settings: &IrradianceSettings) -> Result<CubePipeline> {
+    let method = settings.method;
     let random = [(
         "MONTE_CARLO",
         u32::from(method == IrradianceMethod::MonteCarlo),
     )];
-    let (fragment, constants): (&'static Shader, &[(&str, u32)]) = match method {
-        IrradianceMethod::MonteCarlo | IrradianceMethod::Quasi => {
-            (&shaders::IRRADIANCE_FRAG, &random)
-        }
-        IrradianceMethod::Exact => (&shaders::IRRADIANCE_EXACT_FRAG, &[]),
-        IrradianceMethod::Sh => (&shaders::IRRADIANCE_SH_FRAG, &[]),
+    let (shaders, constants): (_, &[(&str, u32)]) = match method {
+        IrradianceMethod::MonteCarlo | IrradianceMethod::Quasi => (SAMPLED, &random),
+        IrradianceMethod::Exact => (EXACT, &[]),
+        IrradianceMethod::Sh => (SH, &[]),
     };
-    Pipeline::new(
-        context,
-        &PipelineDesc {
-            name: "irradiance",
-            stages: &[
-                &shaders::FULLSCREEN_VERT,
-                &shaders::CUBE_FACES_GEOM,
-                fragment,
-            ],
-            vertex: &[],
-            colors: &COLORS,
-            depth: Depth::Off,
-            constants,
-        },
-    )
+    let route = settings.route.unwrap_or_else(|| CubeRoute::of(context));
+    CubePipeline::new(context, route, "irradiance", shaders, &COLORS, constants)
 }
 
 impl Irradiance {
@@ -120,7 +123,7 @@ impl Irradiance {
         let cube =
             |name, format| Image::new(&context, &ImageDesc::cube(name, format, settings.edge));
         Ok(Self {
-            pipeline: pipeline(&context, settings.method)?,
+            pipeline: pipeline(&context, &settings)?,
             table: upload_table(recorder, &settings)?,
             sums: [
                 cube("irradiance sum 0", COLORS[0])?,
@@ -183,6 +186,11 @@ impl Irradiance {
         &self.sums[0]
     }
 
+    /// What is written, by the names of the shaders.
+    fn cubes(&self) -> [(&'static str, &Image); 2] {
+        [("sum", &self.sums[0]), ("sky_irradiance", &self.irradiance)]
+    }
+
     fn refine(&mut self, recorder: &mut Recorder, sky_radiance: &Image) {
         let left = self.settings.samples - self.done;
         let push = Push {
@@ -191,42 +199,37 @@ impl Irradiance {
         };
         // The newest sums are always number 0: it becomes what is read.
         self.sums.swap(0, 1);
-        let [new, old] = &self.sums;
-        recorder
-            .pass("irradiance", &self.pipeline)
+        let old = &self.sums[1];
+        let pass = self
+            .pipeline
+            .pass(recorder, "irradiance")
             .sample("sky_radiance", sky_radiance, Sampler::Linear)
             .sample("previous_sum", old, Sampler::Nearest)
             .storage("Samples", &self.table)
-            .push(&push)
-            .color(new, Load::Discard)
-            .color(&self.irradiance, Load::Discard)
-            .draw();
+            .push(&push);
+        self.pipeline.fill(pass, &self.cubes());
         self.done += push.count;
     }
 
     fn sum_texels(&mut self, recorder: &mut Recorder, coarse_radiance: &Image) {
-        recorder
-            .pass("irradiance", &self.pipeline)
+        let pass = self
+            .pipeline
+            .pass(recorder, "irradiance")
             .sample("coarse_radiance", coarse_radiance, Sampler::Nearest)
             .storage("Texels", &self.table)
             .push(&ExactPush {
                 count: 6 * COARSE_EDGE * COARSE_EDGE,
-            })
-            .color(&self.sums[0], Load::Discard)
-            .color(&self.irradiance, Load::Discard)
-            .draw();
+            });
+        self.pipeline.fill(pass, &self.cubes());
         self.done = 1;
     }
 
     fn evaluate_harmonics(&mut self, recorder: &mut Recorder, daylight: &Daylight) {
         let projected = SphericalHarmonics::project(|direction| daylight.radiance(direction));
         let coefficients = projected.radiance.map(|c| kilo(c).to_array());
-        recorder
-            .pass("irradiance", &self.pipeline)
-            .push(&ShPush { coefficients })
-            .color(&self.sums[0], Load::Discard)
-            .color(&self.irradiance, Load::Discard)
-            .draw();
+        let pass = self.pipeline.pass(recorder, "irradiance");
+        self.pipeline
+            .fill(pass.push(&ShPush { coefficients }), &self.cubes());
         self.done = 1;
     }
 }
@@ -268,15 +271,19 @@ fn filtered_samples(count: u32) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::{Field, GpuStruct, check_layout};
+    use crate::gpu::{GpuStruct, check_layout};
 
     #[test]
     fn host_and_shader_agree() {
-        let check = |host: &[Field], stage: &Shader| {
-            assert_eq!(check_layout(host, stage.push.expect("push")), Ok(()));
-        };
-        check(Push::FIELDS, &shaders::IRRADIANCE_FRAG);
-        check(ExactPush::FIELDS, &shaders::IRRADIANCE_EXACT_FRAG);
-        check(ShPush::FIELDS, &shaders::IRRADIANCE_SH_FRAG);
+        for (host, stages) in [
+            (Push::FIELDS, SAMPLED),
+            (ExactPush::FIELDS, EXACT),
+            (ShPush::FIELDS, SH),
+        ] {
+            for stage in [stages.fragment, stages.compute] {
+                let push = stage.push.expect("push");
+                assert_eq!(check_layout(host, push), Ok(()), "{}", stage.name);
+            }
+        }
     }
 }

@@ -4,6 +4,7 @@
 
 pub mod accumulate;
 pub mod background;
+pub mod cube_route;
 pub mod details;
 pub mod exposure;
 pub mod gbuffer;

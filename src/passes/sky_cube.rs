@@ -7,12 +7,10 @@ use glam::Vec3;
 use crate::daylight::hosek::Hosek;
 use crate::daylight::preetham::PerezSky;
 use crate::daylight::sky::{Daylight, Sky};
-use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
-    Shader, shaders,
-};
+use crate::gpu::{Context, Format, Image, ImageDesc, Recorder, Result, shaders};
 use crate::gpu_struct;
 
+use super::cube_route::{CubePipeline, CubeRoute, CubeShaders};
 use super::kilo;
 
 gpu_struct! {
@@ -72,34 +70,33 @@ pub struct SkyImages<'s> {
 
 /// The pipelines of the models, for targets of one format.
 struct Painter {
-    preetham: Pipeline,
-    hosek: Pipeline,
-    overcast: Pipeline,
+    preetham: CubePipeline,
+    hosek: CubePipeline,
+    overcast: CubePipeline,
 }
+
+const PREETHAM: CubeShaders = CubeShaders {
+    fragment: &shaders::SKY_PREETHAM_FRAG,
+    compute: &shaders::SKY_PREETHAM_COMP,
+};
+const HOSEK: CubeShaders = CubeShaders {
+    fragment: &shaders::SKY_HOSEK_FRAG,
+    compute: &shaders::SKY_HOSEK_COMP,
+};
+const OVERCAST: CubeShaders = CubeShaders {
+    fragment: &shaders::SKY_OVERCAST_FRAG,
+    compute: &shaders::SKY_OVERCAST_COMP,
+};
 
 impl Painter {
     fn new(context: &Arc<Context>, format: Format) -> Result<Self> {
-        let pipeline = |name, fragment: &'static Shader| {
-            Pipeline::new(
-                context,
-                &PipelineDesc {
-                    name,
-                    stages: &[
-                        &shaders::FULLSCREEN_VERT,
-                        &shaders::CUBE_FACES_GEOM,
-                        fragment,
-                    ],
-                    vertex: &[],
-                    colors: &[format],
-                    depth: Depth::Off,
-                    constants: &[],
-                },
-            )
-        };
+        let route = CubeRoute::of(context);
+        let pipeline =
+            |name, shaders| CubePipeline::new(context, route, name, shaders, &[format], &[]);
         Ok(Self {
-            preetham: pipeline("sky: Preetham", &shaders::SKY_PREETHAM_FRAG)?,
-            hosek: pipeline("sky: Hosek", &shaders::SKY_HOSEK_FRAG)?,
-            overcast: pipeline("sky: overcast", &shaders::SKY_OVERCAST_FRAG)?,
+            preetham: pipeline("sky: Preetham", PREETHAM)?,
+            hosek: pipeline("sky: Hosek", HOSEK)?,
+            overcast: pipeline("sky: overcast", OVERCAST)?,
         })
     }
 
@@ -110,24 +107,22 @@ impl Painter {
             night: kilo(daylight.guard.night),
             ground: kilo(daylight.ground_luminance),
         };
+        let pipeline = match &daylight.sky {
+            Sky::Preetham(_) | Sky::CieClear(_) => &self.preetham,
+            Sky::Hosek(_) => &self.hosek,
+            Sky::Overcast(_) => &self.overcast,
+        };
+        let pass = pipeline.pass(recorder, "sky cube");
         let pass = match &daylight.sky {
-            Sky::Preetham(sky) => recorder
-                .pass("sky cube", &self.preetham)
-                .uniform("model", &preetham_model(&sky.perez())),
-            Sky::CieClear(sky) => recorder
-                .pass("sky cube", &self.preetham)
-                .uniform("model", &preetham_model(&sky.perez())),
-            Sky::Hosek(sky) => recorder
-                .pass("sky cube", &self.hosek)
-                .uniform("model", &hosek_model(sky)),
+            Sky::Preetham(sky) => pass.uniform("model", &preetham_model(&sky.perez())),
+            Sky::CieClear(sky) => pass.uniform("model", &preetham_model(&sky.perez())),
+            Sky::Hosek(sky) => pass.uniform("model", &hosek_model(sky)),
             Sky::Overcast(sky) => {
                 let zenith_luminance = (sky.zenith_luminance * 1e-3) as f32;
-                recorder
-                    .pass("sky cube", &self.overcast)
-                    .uniform("model", &OvercastModel { zenith_luminance })
+                pass.uniform("model", &OvercastModel { zenith_luminance })
             }
         };
-        pass.push(&push).color(target, Load::Discard).draw();
+        pipeline.fill(pass.push(&push), &[("sky_radiance", target)]);
     }
 }
 
@@ -211,24 +206,21 @@ fn preetham_model(perez: &PerezSky) -> PreethamModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::{GpuStruct, check_layout};
+    use crate::gpu::{GpuStruct, Shader, check_layout};
 
     #[test]
     fn host_and_shader_agree() {
-        for stage in [
-            &shaders::SKY_PREETHAM_FRAG,
-            &shaders::SKY_HOSEK_FRAG,
-            &shaders::SKY_OVERCAST_FRAG,
-        ] {
-            assert_eq!(
-                check_layout(Push::FIELDS, stage.push.expect("push")),
-                Ok(())
-            );
-        }
         let model = |stage: &Shader| stage.bindings[0].fields;
-        let check = |host, stage| assert_eq!(check_layout(host, model(stage)), Ok(()));
-        check(PreethamModel::FIELDS, &shaders::SKY_PREETHAM_FRAG);
-        check(HosekModel::FIELDS, &shaders::SKY_HOSEK_FRAG);
-        check(OvercastModel::FIELDS, &shaders::SKY_OVERCAST_FRAG);
+        for (host, stages) in [
+            (PreethamModel::FIELDS, PREETHAM),
+            (HosekModel::FIELDS, HOSEK),
+            (OvercastModel::FIELDS, OVERCAST),
+        ] {
+            for stage in [stages.fragment, stages.compute] {
+                let push = stage.push.expect("push");
+                assert_eq!(check_layout(Push::FIELDS, push), Ok(()), "{}", stage.name);
+                assert_eq!(check_layout(host, model(stage)), Ok(()), "{}", stage.name);
+            }
+        }
     }
 }

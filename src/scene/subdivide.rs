@@ -111,13 +111,13 @@ mod tests {
     use super::*;
     use crate::scene::{LoadOptions, bundled};
 
-    fn area(scene: &Scene) -> f32 {
+    fn area(scene: &Scene) -> f64 {
         let corner = |i: u32| Vec3::from(scene.positions[i as usize]);
         let triangles = scene.indices.chunks_exact(3);
         triangles
             .map(|t| {
                 let [a, b, c] = [corner(t[0]), corner(t[1]), corner(t[2])];
-                0.5 * (b - a).cross(c - a).length()
+                f64::from(0.5 * (b - a).cross(c - a).length())
             })
             .sum()
     }

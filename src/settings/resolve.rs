@@ -9,6 +9,7 @@ use super::{
     Show, Size, SkyModel, SolarTime, SunPositionMethod, Switch, ToneCurve, values,
 };
 use crate::error::Error;
+use crate::gpu::Optional;
 use crate::scene::{Bounds, Camera, Loaded, NamedOptions, SceneError};
 
 /// The default place: the lecture's university, degrees.
@@ -154,6 +155,8 @@ pub struct Settings {
     pub quiet: bool,
     /// Validation layers on.
     pub validate: bool,
+    /// What to do without although the device has it.
+    pub without: Option<Optional>,
 }
 
 impl Settings {
@@ -246,6 +249,7 @@ impl Settings {
             device: o.device,
             quiet: o.quiet,
             validate: o.validate,
+            without: o.without,
         })
     }
 

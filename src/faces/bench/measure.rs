@@ -12,7 +12,7 @@ use crate::passes::lighting::Precision;
 use crate::scene::Scene;
 
 /// Frames that are drawn and forgotten: shaders are compiled at their first use.
-const WARM_UP: u32 = 3;
+pub const WARM_UP: u32 = 3;
 
 /// Times of whole frames, each one submission.
 #[derive(Debug, Clone, Default)]

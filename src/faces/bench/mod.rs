@@ -7,6 +7,7 @@ mod baseline;
 mod chart;
 mod measure;
 mod report;
+mod routes;
 mod sheet;
 mod statistics;
 mod sweep;
@@ -91,7 +92,9 @@ pub fn run(wishes: &BenchWishes, mut options: Options) -> Result<()> {
     }
     let subject = Subject::new(&job);
     let mut bench = Bench::new(&subject, &job.scene, &context, wishes.motion)?;
-    let report = Report::new(head, &bench.run(wishes.frames())?);
+    let measured = bench.run(wishes.frames())?;
+    let routes = routes::measure(&job, &context, wishes.frames())?;
+    let report = Report::new(head, &measured, routes);
     context.check_validation()?;
     write_files(wishes, &report)?;
     print(&report.to_string())?;

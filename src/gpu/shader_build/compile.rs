@@ -28,7 +28,12 @@ pub fn compile(compiler: &Compiler, path: &Path, debug: bool) -> Result<Vec<u32>
     let folder = path.parent().unwrap_or(Path::new("")).join("include");
     let mut options = CompileOptions::new().map_err(|e| format!("shaderc: {e}"))?;
     options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_3 as u32);
-    options.set_target_spirv(SpirvVersion::V1_6);
+    // In SPIR-V 1.6 the size of a work group may be a constant of its own (LocalSizeId), which takes the feature
+    // maintenance4 and which rspirv does not read.
+    options.set_target_spirv(match kind {
+        ShaderKind::Compute => SpirvVersion::V1_5,
+        _ => SpirvVersion::V1_6,
+    });
     options.set_warnings_as_errors();
     if debug {
         options.set_generate_debug_info();

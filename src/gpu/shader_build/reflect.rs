@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use rspirv::dr::{Instruction, Module, Operand};
-use rspirv::spirv::{Decoration, Op, StorageClass, Word};
+use rspirv::spirv::{Decoration, ExecutionMode, Op, StorageClass, Word};
 
-/// The fields `bindings`, `push` and `constants` of a `Shader`, as Rust source; `words` must have been compiled with names.
+/// The fields `bindings`, `push`, `constants` and `local_size` of a `Shader`, as Rust source; `words` must have been compiled with names.
 ///
 /// # Errors
 /// Words that are no SPIR-V, or a descriptor without a binding.
@@ -48,9 +48,24 @@ pub fn declarations(name: &str, words: &[u32]) -> Result<String, String> {
         .map(|((id, _), value)| (reflection.names.get(id).copied().unwrap_or(""), *value))
         .collect();
     constants.sort_unstable();
+    let local_size = module.execution_modes.iter().find_map(local_size);
     Ok(format!(
-        "bindings: &[{bindings}], push: {push}, constants: &{constants:?}"
+        "bindings: &[{bindings}], push: {push}, constants: &{constants:?}, local_size: {local_size:?}"
     ))
+}
+
+/// Size of a work group, of the instruction that states it.
+fn local_size(mode: &Instruction) -> Option<[u32; 3]> {
+    match mode.operands.as_slice() {
+        [
+            _,
+            Operand::ExecutionMode(ExecutionMode::LocalSize),
+            Operand::LiteralBit32(x),
+            Operand::LiteralBit32(y),
+            Operand::LiteralBit32(z),
+        ] => Some([*x, *y, *z]),
+        _ => None,
+    }
 }
 
 /// What one stage declares, looked up by result id.

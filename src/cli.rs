@@ -73,9 +73,15 @@ pub enum Command {
     },
     /// List the Vulkan devices and what each lacks.
     Info {
+        /// Instead: draw the bundled scene, and tell where the time goes before its first picture is there.
+        #[arg(long)]
+        startup: bool,
+        /// With --startup: part of a device's name, or its number.
+        #[arg(long, value_name = "NAME|INDEX", requires = "startup")]
+        device: Option<String>,
         /// Do without something that the devices have, as on devices that lack it.
         #[arg(long, value_enum, value_name = "FEATURE")]
-        without: Vec<Optional>,
+        without: Option<Optional>,
     },
 }
 
@@ -236,7 +242,9 @@ mod tests {
         assert_eq!(
             parse(words("info")),
             Ok(Command::Info {
-                without: Vec::new()
+                startup: false,
+                device: None,
+                without: None
             })
         );
         assert!(matches!(

@@ -2,7 +2,9 @@
 
 mod sample;
 
+use std::panic::resume_unwind;
 use std::sync::Arc;
+use std::thread::{self, ScopedJoinHandle};
 
 use glam::{UVec2, Vec3};
 
@@ -83,25 +85,34 @@ impl Frame {
     /// When the device refuses or has no memory left.
     pub fn new(recorder: &mut Recorder, scene: &Scene, settings: FrameSettings) -> Result<Self> {
         let context = recorder.context().clone();
-        let geometry = Geometry::new(recorder, scene)?;
-        let settings = settings.for_scene(&geometry);
-        let size = settings.size.to_array();
-        Ok(Self {
-            sky_cube: SkyCube::new(&context, settings.sky_edge)?,
-            irradiance: Irradiance::new(recorder, settings.irradiance)?,
-            shadow: Shadow::new(&context, &geometry, settings.shadow_resolution)?,
-            gbuffer: Gbuffer::new(&context, &geometry, size)?,
-            geometry,
-            ssao: Ssao::new(&context, size, settings.ssao)?,
-            lighting: Lighting::new(&context, size, settings.lighting)?,
-            background: Background::new(&context, settings.lighting)?,
-            accumulate: accumulate(&context, &settings)?,
-            exposure: Exposure::new(&context)?,
-            tone_map: ToneMap::new(&context, size, settings.tone)?,
-            probe: None,
-            drawn: None,
-            settings,
-            context,
+        let (device, asked, size) = (&context, settings, settings.size.to_array());
+        // Drivers take their time to make pipelines: passes are made at the same time, while the scene is uploaded.
+        thread::scope(|scope| {
+            let sky_cube = scope.spawn(move || SkyCube::new(device, asked.sky_edge));
+            let ssao = scope.spawn(move || Ssao::new(device, size, asked.ssao));
+            let tone_map = scope.spawn(move || ToneMap::new(device, size, asked.tone));
+            let exposure = scope.spawn(move || Exposure::new(device));
+            let geometry = Geometry::new(recorder, scene)?;
+            let settings = asked.for_scene(&geometry);
+            let lighting = scope.spawn(move || Lighting::new(device, size, settings.lighting));
+            let background = scope.spawn(move || Background::new(device, settings.lighting));
+            Ok(Self {
+                shadow: Shadow::new(device, &geometry, settings.shadow_resolution)?,
+                gbuffer: Gbuffer::new(device, &geometry, size)?,
+                geometry,
+                irradiance: Irradiance::new(recorder, settings.irradiance)?,
+                accumulate: accumulate(device, &settings)?,
+                sky_cube: made(sky_cube)?,
+                ssao: made(ssao)?,
+                lighting: made(lighting)?,
+                background: made(background)?,
+                exposure: made(exposure)?,
+                tone_map: made(tone_map)?,
+                probe: None,
+                drawn: None,
+                settings,
+                context: context.clone(),
+            })
         })
     }
 
@@ -346,6 +357,12 @@ impl FrameSettings {
         }
         self
     }
+}
+
+/// What a thread made.
+fn made<T>(thread: ScopedJoinHandle<'_, Result<T>>) -> Result<T> {
+    // A fault of this program is one on this thread too.
+    thread.join().unwrap_or_else(|fault| resume_unwind(fault))
 }
 
 /// The mean over frames, where more than one is asked for.

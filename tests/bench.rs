@@ -231,6 +231,40 @@ fn a_device_without_geometry_shaders_is_enough_and_says_so() {
 }
 
 #[test]
+fn start_up_is_told_step_by_step_and_the_cache_is_kept() {
+    let folder = place();
+    let run = || {
+        let output = Command::new(env!("CARGO_BIN_EXE_skylight"))
+            .args(["info", "--startup"])
+            .env("XDG_CACHE_HOME", folder.path())
+            .output()
+            .expect("the program starts");
+        succeeded(&output)
+    };
+    let told = run();
+    let parts = [
+        "instance",
+        "device",
+        "pipelines",
+        "first frame",
+        "together",
+        "shader modules",
+    ];
+    for part in parts {
+        assert!(told.contains(part), "no {part}: {told}");
+    }
+    assert!(told.contains("pipeline cache: none yet"), "{told}");
+    let cache = folder.path().join("skylight");
+    let files: Vec<_> = fs::read_dir(&cache).expect("a folder").collect();
+    assert_eq!(files.len(), 1, "{files:?}");
+    assert!(run().contains("pipeline cache: read"));
+    // A folder that cannot be made is no reason to fail.
+    fs::remove_dir_all(&cache).expect("gone");
+    fs::write(&cache, "a file").expect("written");
+    run();
+}
+
+#[test]
 fn an_earlier_run_is_a_yardstick() {
     let folder = place();
     succeeded(&bench(folder.path(), "--json old.json"));

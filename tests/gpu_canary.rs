@@ -8,8 +8,8 @@ use std::process::{Command, Output};
 
 use gpu::{Device, Model, camera, clear_day, matt, settings};
 use skylight::gpu::{
-    Context, ContextOptions, Depth, Format, GpuError, Image, ImageDesc, Load, Optional, Pipeline,
-    PipelineDesc, Recorder, Sampler, Timing, read_back, shaders,
+    CacheState, Context, ContextOptions, Depth, Format, GpuError, Image, ImageDesc, Load, Optional,
+    Pipeline, PipelineDesc, Recorder, Sampler, Timing, read_back, shaders,
 };
 use skylight::passes::accumulate::Push;
 use skylight::passes::ssao::SsaoSettings;
@@ -160,6 +160,33 @@ fn a_picture_needs_no_geometry_shader() {
         .filter(|(a, b)| a.abs_diff(**b) > 1);
     assert_eq!((a.len(), far.count()), (b.len(), 0));
     assert!(a.iter().any(|byte| *byte != a[0]), "an empty picture");
+}
+
+#[test]
+fn a_damaged_pipeline_cache_is_refused_and_made_anew() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let options = ContextOptions {
+        cache_folder: Some(folder.path().join("cache")),
+        ..ContextOptions::default()
+    };
+    let state = || {
+        let mut device = Device::with(&options);
+        draw_everything(&mut device);
+        device.context.cache_state()
+    };
+    assert_eq!(state(), CacheState::New);
+    let mut files = std::fs::read_dir(folder.path().join("cache")).expect("a folder");
+    let path = files.next().expect("one file").expect("an entry").path();
+    assert!(files.next().is_none(), "nothing else is left behind");
+    let whole = std::fs::read(&path).expect("written");
+    assert!(matches!(state(), CacheState::Read(bytes) if bytes >= 32 && bytes < whole.len()));
+    let mut flipped = whole.clone();
+    *flipped.last_mut().expect("bytes") ^= 1;
+    for damaged in [&whole[..whole.len() - 1], &flipped, b"", b"no cache at all"] {
+        std::fs::write(&path, damaged).expect("written");
+        assert_eq!(state(), CacheState::Refused, "{} bytes", damaged.len());
+        assert!(matches!(state(), CacheState::Read(_)), "made anew");
+    }
 }
 
 #[test]

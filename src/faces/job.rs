@@ -50,6 +50,7 @@ pub fn context_options(
         device,
         validate,
         without: without.into_iter().collect(),
+        cache_folder: dirs::cache_dir().map(|folder| folder.join("skylight")),
     }
 }
 

@@ -14,6 +14,7 @@ mod render;
 mod sky;
 mod sky_report;
 mod sky_table;
+mod startup;
 pub mod view;
 
 pub use bake::{BakeWishes, Layout, Map};
@@ -45,7 +46,12 @@ pub fn run(command: Command) -> Result<()> {
         Command::Sky { wishes, options } => sky::run(&wishes, *options),
         Command::Bake { wishes, options } => bake::run(&wishes, *options),
         Command::Compare { wishes } => compare::run(&wishes),
-        Command::Info { without } => info::run(&without),
+        Command::Info {
+            startup: true,
+            device,
+            without,
+        } => startup::run(device, without),
+        Command::Info { without, .. } => info::run(without.as_slice()),
     }
 }
 

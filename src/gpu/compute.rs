@@ -23,7 +23,7 @@ pub(super) fn create(
     let made = unsafe {
         context
             .raw()
-            .create_compute_pipelines(vk::PipelineCache::null(), &[info], None)
+            .create_compute_pipelines(context.pipeline_cache(), &[info], None)
     };
     made.map(|p| p[0])
         .map_err(|(_, result)| result)

@@ -1,6 +1,7 @@
 //! Instance, device, queue, memory and the few samplers: what everything else keeps alive.
 
 use std::mem::ManuallyDrop;
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use ash::{ext, khr, vk};
@@ -8,7 +9,9 @@ use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 
 use super::error::{During, GpuError, Result};
 use super::instance::{InstanceGuard, has_instance_extension, load};
+use super::pipeline_cache::{CacheState, Key, PipelineCache};
 use super::select::{self, DeviceSummary, Optional};
+use super::startup::{Startup, Step};
 use super::surface::{self, RawSurface, Surface, WindowHandles};
 use super::validation::Messenger;
 
@@ -21,6 +24,8 @@ pub struct ContextOptions {
     pub validate: bool,
     /// What to do without although the device has it.
     pub without: Vec<Optional>,
+    /// Where the driver's pipeline cache is kept between runs; nowhere without it.
+    pub cache_folder: Option<PathBuf>,
 }
 
 /// How an image is looked up.
@@ -56,6 +61,8 @@ pub struct Context {
     // Dropped by hand first, then in the order of the fields: device, messenger, instance, loader.
     allocator: ManuallyDrop<Arc<Mutex<Allocator>>>,
     samplers: [vk::Sampler; SAMPLERS.len()],
+    cache: PipelineCache,
+    pub(super) startup: Startup,
     device: DeviceGuard,
     pub(super) push_descriptor: Option<khr::push_descriptor::Device>,
     pub(super) swapchain: Option<khr::swapchain::Device>,
@@ -98,7 +105,9 @@ impl Context {
         options: &ContextOptions,
         window: Option<Arc<dyn WindowHandles>>,
     ) -> Result<(Arc<Self>, Option<RawSurface>)> {
+        let mut startup = Startup::new();
         let entry = load()?;
+        startup.done("Vulkan loader");
         let windows = window
             .as_deref()
             .map_or(Ok(&[][..]), surface::instance_extensions)?;
@@ -110,22 +119,22 @@ impl Context {
         let surface = window
             .map(|window| RawSurface::new(&entry, &instance.raw, window))
             .transpose()?;
+        startup.done("instance");
         let chosen = select::choose(
             select::candidates(&instance.raw, surface.as_ref(), &options.without)?,
             options.device.as_deref(),
         )?;
         let push = chosen.summary.has(Optional::PushDescriptor);
+        startup.done("choice of the device");
         let device = create_device(&instance.raw, &chosen, surface.is_some())?;
         // SAFETY: `chosen` comes from this instance; the queue family was found on it.
-        let (queue, limits) = unsafe {
+        let (queue, properties) = unsafe {
             (
                 device.raw.get_device_queue(chosen.queue_family, 0),
-                instance
-                    .raw
-                    .get_physical_device_properties(chosen.handle)
-                    .limits,
+                instance.raw.get_physical_device_properties(chosen.handle),
             )
         };
+        startup.done("device");
         let debug = has_instance_extension(&entry, None, ext::debug_utils::NAME)?
             .then(|| ext::debug_utils::Device::new(&instance.raw, &device.raw));
         let push_descriptor =
@@ -135,9 +144,15 @@ impl Context {
             .then(|| khr::swapchain::Device::new(&instance.raw, &device.raw));
         let allocator = create_allocator(&instance.raw, &device.raw, chosen.handle)?;
         let samplers = create_samplers(&device.raw)?;
+        startup.done("memory, samplers");
+        let key = Key::new(&properties);
+        let cache = PipelineCache::new(&device.raw, key, options.cache_folder.as_deref())?;
+        startup.done("pipeline cache");
         let context = Arc::new(Self {
             allocator: ManuallyDrop::new(Arc::new(Mutex::new(allocator))),
             samplers,
+            cache,
+            startup,
             device,
             push_descriptor,
             swapchain,
@@ -145,7 +160,7 @@ impl Context {
             queue,
             queue_family: chosen.queue_family,
             physical: chosen.handle,
-            limits,
+            limits: properties.limits,
             summary: chosen.summary,
             #[cfg(feature = "hot-reload")]
             reloaded: Default::default(),
@@ -177,6 +192,25 @@ impl Context {
     /// Whether the device counts what its pipelines do.
     pub(super) fn counts_work(&self) -> bool {
         self.summary.has(Optional::PipelineStatistics)
+    }
+
+    pub(super) fn pipeline_cache(&self) -> vk::PipelineCache {
+        self.cache.raw
+    }
+
+    /// What became of the file of the pipeline cache.
+    pub fn cache_state(&self) -> CacheState {
+        self.cache.state
+    }
+
+    /// What opening the device took, step by step.
+    pub fn opening(&self) -> &[Step] {
+        &self.startup.steps
+    }
+
+    /// Every pipeline made so far, with what it took; they may have been made at the same time.
+    pub fn pipelines(&self) -> Vec<Step> {
+        self.startup.pipelines()
     }
 
     /// Messages of the validation layer so far; empty when validation is off.
@@ -276,6 +310,7 @@ impl Drop for Context {
         // SAFETY: no resource is alive (each holds an Arc of this); the allocator is dropped once, before the device.
         unsafe {
             let _ = self.raw().device_wait_idle();
+            self.cache.save_and_destroy(&self.device.raw);
             for sampler in self.samplers {
                 self.device.raw.destroy_sampler(sampler, None);
             }

@@ -1,6 +1,7 @@
 //! Pipelines (graphics with dynamic rendering, or compute), their layouts derived from what the stages declare.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use ash::vk;
 
@@ -129,6 +130,7 @@ impl Pipeline {
     /// # Panics
     /// When the stages contradict each other or a constant is not declared: a fault of this program.
     pub fn new(context: &Arc<Context>, desc: &PipelineDesc<'_>) -> Result<Self> {
+        let start = Instant::now();
         let slots = merge_slots(desc.stages);
         let push = merge_push(desc.stages);
         for (name, _) in desc.constants {
@@ -166,6 +168,7 @@ impl Pipeline {
         let modules = Modules::new(context, desc.stages)?;
         pipeline.raw = pipeline.create(desc, &modules)?;
         context.name(pipeline.raw, desc.name);
+        context.startup.pipeline(desc.name, start);
         Ok(pipeline)
     }
 
@@ -272,9 +275,11 @@ impl Pipeline {
             .push_next(&mut rendering);
         // SAFETY: everything `info` points to lives on this stack.
         let made = unsafe {
-            self.context
-                .raw()
-                .create_graphics_pipelines(vk::PipelineCache::null(), &[info], None)
+            self.context.raw().create_graphics_pipelines(
+                self.context.pipeline_cache(),
+                &[info],
+                None,
+            )
         };
         made.map(|p| p[0])
             .map_err(|(_, result)| result)

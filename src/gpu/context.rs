@@ -10,6 +10,7 @@ use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use super::error::{During, GpuError, Result};
 use super::instance::{InstanceGuard, has_instance_extension, load};
 use super::pipeline_cache::{CacheState, Key, PipelineCache};
+use super::sampler::{self, Sampler};
 use super::select::{self, DeviceSummary, Optional};
 use super::startup::{Startup, Step};
 use super::surface::{self, RawSurface, Surface, WindowHandles};
@@ -27,19 +28,6 @@ pub struct ContextOptions {
     /// Where the driver's pipeline cache is kept between runs; nowhere without it.
     pub cache_folder: Option<PathBuf>,
 }
-
-/// How an image is looked up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Sampler {
-    /// Nearest texel, clamped.
-    Nearest,
-    /// Bilinear (cubes: seamless), clamped, trilinear where there are mip levels.
-    Linear,
-    /// Trilinear, repeating: surface textures.
-    Repeat,
-}
-
-const SAMPLERS: [Sampler; 3] = [Sampler::Nearest, Sampler::Linear, Sampler::Repeat];
 
 /// A logical device destroyed on drop.
 struct DeviceGuard {
@@ -60,7 +48,7 @@ impl Drop for DeviceGuard {
 pub struct Context {
     // Dropped by hand first, then in the order of the fields: device, messenger, instance, loader.
     allocator: ManuallyDrop<Arc<Mutex<Allocator>>>,
-    samplers: [vk::Sampler; SAMPLERS.len()],
+    samplers: [vk::Sampler; Sampler::COUNT],
     cache: PipelineCache,
     pub(super) startup: Startup,
     device: DeviceGuard,
@@ -143,7 +131,7 @@ impl Context {
             .is_some()
             .then(|| khr::swapchain::Device::new(&instance.raw, &device.raw));
         let allocator = create_allocator(&instance.raw, &device.raw, chosen.handle)?;
-        let samplers = create_samplers(&device.raw)?;
+        let samplers = sampler::create_all(&device.raw)?;
         startup.done("memory, samplers");
         let key = Key::new(&properties);
         let cache = PipelineCache::new(&device.raw, key, options.cache_folder.as_deref())?;
@@ -377,33 +365,4 @@ fn create_allocator(
         what: "the allocator".into(),
         reason: e.to_string(),
     })
-}
-
-fn create_samplers(device: &ash::Device) -> Result<[vk::Sampler; SAMPLERS.len()]> {
-    let mut samplers = [vk::Sampler::null(); SAMPLERS.len()];
-    for (slot, kind) in samplers.iter_mut().zip(SAMPLERS) {
-        // SAFETY: the info has no pointers.
-        *slot = unsafe { device.create_sampler(&sampler_info(kind), None) }
-            .during("create a sampler")?;
-    }
-    Ok(samplers)
-}
-
-fn sampler_info(sampler: Sampler) -> vk::SamplerCreateInfo<'static> {
-    let (filter, mipmap) = match sampler {
-        Sampler::Nearest => (vk::Filter::NEAREST, vk::SamplerMipmapMode::NEAREST),
-        Sampler::Linear | Sampler::Repeat => (vk::Filter::LINEAR, vk::SamplerMipmapMode::LINEAR),
-    };
-    let address = match sampler {
-        Sampler::Repeat => vk::SamplerAddressMode::REPEAT,
-        Sampler::Nearest | Sampler::Linear => vk::SamplerAddressMode::CLAMP_TO_EDGE,
-    };
-    vk::SamplerCreateInfo::default()
-        .mag_filter(filter)
-        .min_filter(filter)
-        .mipmap_mode(mipmap)
-        .address_mode_u(address)
-        .address_mode_v(address)
-        .address_mode_w(address)
-        .max_lod(vk::LOD_CLAMP_NONE)
 }

@@ -5,11 +5,11 @@ use ash::vk;
 
 use super::access::Use;
 use super::buffer::Buffer;
-use super::context::Sampler;
 use super::image::Image;
 use super::layout::GpuStruct;
 use super::pass::Pass;
 use super::pipeline::Pipeline;
+use super::sampler::Sampler;
 use super::work::{texel_bytes, texels};
 
 /// The draws inside a pass.

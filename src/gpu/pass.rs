@@ -6,12 +6,12 @@ use ash::vk;
 
 use super::access::{self, Use};
 use super::buffer::Buffer;
-use super::context::Sampler;
 use super::draws::Draws;
 use super::image::{Image, is_depth};
 use super::layout::{GpuStruct, check_layout};
 use super::pipeline::{Pipeline, block_size};
 use super::recorder::Recorder;
+use super::sampler::Sampler;
 use super::shader::{Binding, BindingKind};
 use super::work::{Traffic, texels};
 

@@ -9,7 +9,7 @@ use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
 
 use crate::error::Result;
-use crate::faces::job::context_options;
+use crate::faces::job::{context_options, notice};
 use crate::gpu::{
     Context, Format, GpuError, Image, ImageDesc, Overlay, Presenter, Recorder, Timing, Timings,
     UiFrame,
@@ -58,8 +58,12 @@ impl Stage {
             .create_window(attributes)
             .map_err(|e| GpuError::Window(e.to_string()))?;
         let window = Arc::new(window);
-        let wanted = context_options(options.device.clone(), options.validate);
+        let device = options.device.clone();
+        let wanted = context_options(device, options.validate, options.without);
         let (context, surface) = Context::for_window(&wanted, window.clone())?;
+        if !options.quiet {
+            notice(&context);
+        }
         let mut presenter = Presenter::new(surface, window.inner_size().into())?;
         let format = presenter.format();
         let recorder = presenter.idle()?;

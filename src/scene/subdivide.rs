@@ -102,6 +102,18 @@ impl Cutter {
         let unit = normal.try_normalize().unwrap_or(fallback);
         scene.normals.push(unit.into());
         scene.texcoords.push(texcoord.truncate().into());
+        if !scene.colours.is_empty() {
+            let mix = |i: usize| {
+                let part =
+                    |(v, weight): (u32, u32)| u32::from(scene.colours[v as usize][i]) * weight;
+                (corners.into_iter().map(part).sum::<u32>() / self.k) as u16
+            };
+            scene.colours.push(std::array::from_fn(mix));
+        }
+        if !scene.tangents.is_empty() {
+            // For the cost of a tangent it need not be a new one.
+            scene.tangents.push(scene.tangents[corners[0].0 as usize]);
+        }
         (scene.positions.len() - 1) as u32
     }
 }
@@ -142,6 +154,17 @@ mod tests {
         assert_eq!(fine.positions.len(), expected);
         assert_eq!(fine.normals.len(), fine.positions.len());
         assert_eq!(fine.texcoords.len(), fine.positions.len());
+    }
+
+    #[test]
+    fn colours_and_tangents_are_cut_too() {
+        let mut scene = bundled(&LoadOptions::default()).expect("a scene").scene;
+        let vertices = scene.positions.len();
+        scene.colours = vec![[65_535, 100, 0, 65_535]; vertices];
+        scene.tangents = vec![[32_767, 0, 0, -32_767]; vertices];
+        let fine = scene.subdivided(2);
+        assert_eq!(fine.colours, vec![scene.colours[0]; fine.positions.len()]);
+        assert_eq!(fine.tangents, vec![scene.tangents[0]; fine.positions.len()]);
     }
 
     #[test]

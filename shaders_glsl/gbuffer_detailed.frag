@@ -28,7 +28,7 @@ layout(set = 0, binding = 2) uniform sampler2D normal_map;
 
 /// The normal of the map in the frame of the surface (Mikkelsen 2008: interpolated, not normalised).
 vec3 mapped_normal(vec3 n) {
-    vec3 slope = texture(normal_map, surface_uv).xyz * 2.0 - 1.0;
+    vec3 slope = texture(normal_map, surface_uv, -push.sharpen).xyz * 2.0 - 1.0;
     slope.xy *= push.normal_scale;
     vec3 bitangent = cross(shading_normal, surface_tangent.xyz) * surface_tangent.w;
     return slope.x * surface_tangent.xyz + slope.y * bitangent + slope.z * n;
@@ -37,10 +37,10 @@ vec3 mapped_normal(vec3 n) {
 void main() {
     vec3 n = facing_normal(shading_normal, from_eye);
     vec4 surface = vec4(push.diffuse, 1.0) * surface_colour;
-    if (DIFFUSE_MAP) surface *= texture(diffuse_map, surface_uv);
+    if (DIFFUSE_MAP) surface *= texture(diffuse_map, surface_uv, -push.sharpen);
     if (NORMAL_MAP) n = mapped_normal(n);
     float gloss = 1.0;
-    if (SPECULAR_MAP) gloss = dot(texture(specular_map, surface_uv).rgb, vec3(1.0 / 3.0));
+    if (SPECULAR_MAP) gloss = dot(texture(specular_map, surface_uv, -push.sharpen).rgb, vec3(1.0 / 3.0));
     if (CUT_OUT && surface.a < push.cutoff) discard;
     normal = octahedral_encode(n);
     albedo = vec4(surface.rgb, gloss);

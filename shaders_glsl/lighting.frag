@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "constants.glsl"
+#include "occlusion.glsl"
 #include "octahedral.glsl"
 #include "view.glsl"
 
@@ -26,6 +27,10 @@ layout(constant_id = 9) const bool SHOW_DEPTH = false;
 layout(constant_id = 10) const int OCCLUSION_DOWNSCALE = 2;
 // Surfaces with a rho_s mirror more at grazing angles.
 layout(constant_id = 11) const bool FRESNEL = false;
+// The diffuse light of the sky is this pass' matter; otherwise it is the dome's (A = 0 here).
+layout(constant_id = 12) const bool AMBIENT = true;
+// One comparison of the shadow map in the plane of the face, for frames whose mean softens its edges.
+layout(constant_id = 13) const bool PLANE_SHADOW = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform sampler2D normal;
@@ -40,9 +45,10 @@ layout(set = 0, binding = 9, scalar) uniform Sun {
     mat4 shadow_from_world;
     vec3 direction;       // unit, toward the sun
     vec3 illuminance;     // E_sun at normal incidence, klx
-    float normal_offset;  // of receivers, metres
+    float normal_offset;  // of receivers, metres; with PLANE_SHADOW the bias of depth
     float max_radiance;   // largest value the target holds, kcd/m^2
     float specular_scale; // factor on every rho_s
+    mat4 planes;          // inverse transpose of shadow_from_world
 } sun;
 
 struct Material {
@@ -52,6 +58,15 @@ struct Material {
 layout(set = 0, binding = 10, scalar) readonly buffer Materials {
     Material materials[];
 };
+
+#include "face.glsl"
+
+/// V of one point of the sun's disc: what is left to error is the map's texel, which the mean over many maps makes even.
+float plane_visibility(vec3 world, vec3 face) {
+    if (dot(face, sun.direction) <= 0.0) return 0.0;
+    vec4 window = vec4(vec2(0.0), vec2(textureSize(shadow_map, 0)));
+    return float(is_lit_in_plane(shadow_map, sun.shadow_from_world, sun.planes, window, sun.normal_offset, world, face));
+}
 
 /// V: the share of the sun that the shadow map lets through, over a 3x3 tent: the mean of four bilinear comparisons half
 /// a texel apart. Nine fetches and comparisons give the same and cost a CPU a third of four filtered lookups.
@@ -85,26 +100,6 @@ vec3 grazing(vec3 rho_s, float shininess, float cosine) {
     return mix(rho_s, most, pow(clamp(1.0 - cosine, 0.0, 1.0), 5.0));
 }
 
-/// A, upsampled without crossing depth edges.
-float ambient_occlusion(ivec2 pixel, float distance) {
-    if (OCCLUSION_DOWNSCALE == 1) return texelFetch(occlusion, pixel, 0).r;
-    // Texel k of the occlusion was computed at pixel k * DOWNSCALE of the picture.
-    vec2 at = vec2(pixel) / float(OCCLUSION_DOWNSCALE);
-    ivec2 base = ivec2(floor(at));
-    vec2 f = at - vec2(base);
-    ivec2 last = textureSize(occlusion, 0) - 1;
-    vec2 sum = vec2(0.0);
-    for (int y = 0; y < 2; ++y) {
-        for (int x = 0; x < 2; ++x) {
-            vec2 tap = texelFetch(occlusion, min(base + ivec2(x, y), last), 0).rg;
-            float bilinear = (x == 0 ? 1.0 - f.x : f.x) * (y == 0 ? 1.0 - f.y : f.y);
-            float w = (bilinear + 1e-3) / (1e-3 + abs(tap.g - distance) / distance);
-            sum += vec2(tap.r, 1.0) * w;
-        }
-    }
-    return sum.r / sum.g;
-}
-
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec2 uv = gl_FragCoord.xy / vec2(textureSize(depth, 0));
@@ -117,10 +112,14 @@ void main() {
     vec4 surface = texelFetch(albedo, pixel, 0);
     float n_dot_l = dot(n, sun.direction);
 
-    float V = n_dot_l > 0.0 ? visibility(world, n, n_dot_l) : 0.0;
-    float A = ambient_occlusion(pixel, distance);
+    float V = 0.0;
+    if (n_dot_l > 0.0) {
+        if (PLANE_SHADOW) V = plane_visibility(world, face_normal(pixel, texelFetch(depth, pixel, 0).r, n));
+        else V = visibility(world, n, n_dot_l);
+    }
+    float A = AMBIENT ? ambient_occlusion(occlusion, OCCLUSION_DOWNSCALE, pixel, distance) : 0.0;
     vec3 sun_irradiance = max(n_dot_l, 0.0) * V * sun.illuminance;
-    vec3 irradiance = A * textureLod(sky_irradiance, n, 0.0).rgb;
+    vec3 irradiance = AMBIENT ? A * textureLod(sky_irradiance, n, 0.0).rgb : vec3(0.0);
 
     if (SHOW_VISIBILITY) { radiance = vec4(vec3(V), 1.0); return; }
     if (SHOW_OCCLUSION) { radiance = vec4(vec3(A), 1.0); return; }

@@ -1,53 +1,40 @@
 //! The frame: owns the passes; [`Frame::record`] is the whole pipeline in reading order.
 
+mod converging;
 mod sample;
+mod settings;
 
 use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::thread::{self, ScopedJoinHandle};
 
-use glam::{UVec2, Vec3};
+use glam::Vec3;
+
+pub use self::sample::{Filter, Sampling, Visibility};
+pub use self::settings::FrameSettings;
 
 use crate::daylight::sky::Daylight;
 use crate::gpu::{Context, Image, Recorder, Result};
 use crate::passes::accumulate::Accumulate;
 use crate::passes::background::Background;
+use crate::passes::dome::Gathered;
+use crate::passes::dome_fit::{self, Receivers};
 use crate::passes::exposure::Exposure;
 use crate::passes::gbuffer::Gbuffer;
 use crate::passes::geometry::Geometry;
-use crate::passes::irradiance::{Irradiance, IrradianceSettings};
-use crate::passes::lighting::{Light, Lighting, LightingSettings, Show};
+use crate::passes::irradiance::Irradiance;
+use crate::passes::lighting::{Light, Lighting, Show};
 use crate::passes::probe::{Probe, Reading};
 use crate::passes::shadow::Shadow;
 use crate::passes::shadow_fit::{self, ShadowView};
 use crate::passes::sky_cube::SkyCube;
-use crate::passes::ssao::{Ssao, SsaoSettings};
-use crate::passes::tone_map::{ToneMap, ToneSettings};
+use crate::passes::ssao::Ssao;
+use crate::passes::tone_map::ToneMap;
 use crate::passes::view::View;
 use crate::scene::{Camera, Scene};
 
-use sample::Sample;
-
-/// Everything that is fixed while frames are drawn.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FrameSettings {
-    /// Width and height, pixels.
-    pub size: UVec2,
-    /// Frames that are averaged into a picture; 1 samples pixel centres and the sun's centre.
-    pub samples: u32,
-    /// Edge of a face of the sky cube, texels.
-    pub sky_edge: u32,
-    /// The irradiance cube.
-    pub irradiance: IrradianceSettings,
-    /// Edge of the shadow map, texels.
-    pub shadow_resolution: u32,
-    /// Ambient occlusion.
-    pub ssao: SsaoSettings,
-    /// Lighting.
-    pub lighting: LightingSettings,
-    /// Display.
-    pub tone: ToneSettings,
-}
+use self::converging::Converging;
+use self::sample::Sample;
 
 /// What the newest frame was drawn with, for passes that look at it afterwards.
 #[derive(Clone, Copy)]
@@ -58,6 +45,9 @@ struct Drawn {
     /// Whether it is part of an average.
     is_averaged: bool,
 }
+
+/// Mip levels by which textures are sharpened where samples converge: each sees an eighth of the pixel's width.
+const SHARPEN: f32 = 3.0;
 
 /// The passes, wired.
 pub struct Frame {
@@ -72,6 +62,7 @@ pub struct Frame {
     lighting: Lighting,
     background: Background,
     accumulate: Option<Accumulate>,
+    converging: Option<Converging>,
     exposure: Exposure,
     tone_map: ToneMap,
     probe: Option<Probe>,
@@ -99,6 +90,7 @@ impl Frame {
             Ok(Self {
                 shadow: Shadow::new(device, &geometry, settings.shadow_resolution)?,
                 gbuffer: Gbuffer::new(device, &geometry, size)?,
+                converging: Converging::new(device, &geometry, &settings)?,
                 geometry,
                 irradiance: Irradiance::new(recorder, settings.irradiance)?,
                 accumulate: accumulate(device, &settings)?,
@@ -146,8 +138,11 @@ impl Frame {
             self.background = Background::new(&context, new.lighting)?;
             self.probe = None;
         }
-        if resized || (new.samples > 1) != (old.samples > 1) {
+        if resized || new.averages() != old.averages() {
             self.accumulate = accumulate(&context, &new)?;
+        }
+        if Converging::is_changed(&old, &new) {
+            self.converging = Converging::new(&context, &self.geometry, &new)?;
         }
         if resized || new.tone != old.tone {
             self.tone_map = ToneMap::new(&context, size, new.tone)?;
@@ -176,23 +171,45 @@ impl Frame {
         camera: &Camera,
         index: Option<u32>,
     ) {
-        let sample = Sample::new(self.settings.samples, daylight, index.unwrap_or(0));
+        let converging = self.converging.as_mut().filter(|_| index.is_some());
+        let sun = daylight.sun_direction.as_vec3();
+        let sample = match index {
+            Some(index) if converging.is_some() || self.settings.averages() => {
+                Sample::new(sun, index, &self.settings.sampling)
+            }
+            _ => Sample::central(sun),
+        };
         let view = View {
             camera: *camera,
             size: self.settings.size,
             jitter: sample.jitter,
+            sharpen: if converging.is_some() { SHARPEN } else { 0.0 },
         };
 
         let sky = self.sky_cube.record(rec, daylight);
         let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
 
+        let (shadow, lighting, dome) = match converging {
+            Some(c) => (&mut c.shadow, &mut c.lighting, Some(&mut c.dome)),
+            None => (&mut self.shadow, &mut self.lighting, None),
+        };
         let (bounds, casters) = (self.geometry.bounds(), self.geometry.casters());
-        let resolution = self.shadow.resolution();
-        let shadow_view = shadow_fit::fit(sample.sun_direction, bounds, casters, &view, resolution);
-        let shadow_map = self.shadow.record(rec, &self.geometry, &shadow_view);
+        let resolution = shadow.resolution();
+        let shadow_view = match dome {
+            Some(_) => {
+                let receivers = Receivers::new(bounds, &view);
+                let shift = sample.jitter + 0.5;
+                dome_fit::fit(sample.sun_direction, bounds, &receivers, resolution, shift)
+            }
+            None => shadow_fit::fit(sample.sun_direction, bounds, casters, &view, resolution),
+        };
+        let shadow_map = shadow.record(rec, &self.geometry, &shadow_view);
 
         let surfaces = self.gbuffer.record(rec, &self.geometry, &view);
-        let occlusion = self.ssao.record(rec, surfaces, &view, sample.phase);
+        let occlusion = match (&dome, index) {
+            (Some(dome), Some(index)) if !dome.begins_with_occlusion(index) => self.ssao.image(),
+            _ => self.ssao.record(rec, surfaces, &view, sample.phase),
+        };
 
         let light = Light {
             daylight,
@@ -203,13 +220,20 @@ impl Frame {
             sky_radiance: sky.radiance,
         };
         let materials = self.geometry.materials();
-        let frame = self
-            .lighting
-            .record(rec, surfaces, materials, occlusion, &light, &view);
+        let frame = lighting.record(rec, surfaces, materials, occlusion, &light, &view);
         self.background
             .record(rec, &surfaces.depth, &light, &view, frame);
-        let radiance = match (&mut self.accumulate, index) {
-            (Some(accumulate), Some(index)) => accumulate.record(rec, frame, index),
+        let radiance = match (dome, &mut self.accumulate, index) {
+            (Some(dome), _, Some(index)) => {
+                let gathered = Gathered {
+                    surfaces,
+                    frame,
+                    sky_irradiance,
+                    occlusion,
+                };
+                dome.record(rec, &self.geometry, &gathered, daylight, &view, index)
+            }
+            (None, Some(accumulate), Some(index)) => accumulate.record(rec, frame, index),
             _ => frame,
         };
         self.drawn = Some(Drawn {
@@ -235,13 +259,16 @@ impl Frame {
         self.lighting = Lighting::new(&context, size, self.settings.lighting)?;
         self.background = Background::new(&context, self.settings.lighting)?;
         self.tone_map = ToneMap::new(&context, size, self.settings.tone)?;
+        self.converging = Converging::new(&context, &self.geometry, &self.settings)?;
         Ok(())
     }
 
     /// The picture in kcd/m² (or the quantity shown), averaged over the samples.
     pub fn radiance(&self) -> &Image {
-        match (&self.accumulate, &self.drawn) {
-            (Some(accumulate), Some(drawn)) if drawn.is_averaged => accumulate.image(),
+        let is_averaged = self.drawn.is_some_and(|drawn| drawn.is_averaged);
+        match (&self.converging, &self.accumulate) {
+            (Some(converging), _) if is_averaged => converging.dome.image(),
+            (None, Some(accumulate)) if is_averaged => accumulate.image(),
             _ => self.lighting.image(),
         }
     }
@@ -349,16 +376,6 @@ impl Frame {
     }
 }
 
-impl FrameSettings {
-    /// A scene without any ρ_s needs none of its lookups.
-    fn for_scene(mut self, geometry: &Geometry) -> Self {
-        if !geometry.is_specular() {
-            self.lighting.specular_scale = 0.0;
-        }
-        self
-    }
-}
-
 /// What a thread made.
 fn made<T>(thread: ScopedJoinHandle<'_, Result<T>>) -> Result<T> {
     // A fault of this program is one on this thread too.
@@ -367,7 +384,8 @@ fn made<T>(thread: ScopedJoinHandle<'_, Result<T>>) -> Result<T> {
 
 /// The mean over frames, where more than one is asked for.
 fn accumulate(context: &Arc<Context>, settings: &FrameSettings) -> Result<Option<Accumulate>> {
-    (settings.samples > 1)
+    settings
+        .averages()
         .then(|| Accumulate::new(context, settings.size.to_array()))
         .transpose()
 }

@@ -1,6 +1,7 @@
 //! What a picture is made with: [`Options`] as the user gave them, on the command line or in a scene file, and
 //! [`Settings`] with everything decided.
 
+mod parameters;
 mod resolve;
 mod values;
 
@@ -8,8 +9,10 @@ use chrono::{DateTime, FixedOffset};
 use clap::{Args, Command, FromArgMatches};
 
 pub use crate::daylight::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCurve};
+pub use crate::frame::{Filter, Visibility};
 pub use crate::gpu::Optional;
-pub(crate) use resolve::name;
+use crate::passes::dome::MOST_DIRECTIONS;
+pub(crate) use parameters::name;
 pub use resolve::{CameraParts, Exposure, Settings, SunInput};
 pub use values::{
     AoResolution, Direction, ExposureMode, Fresnel, Place, Preset, Show, Size, SolarTime, Switch,
@@ -30,6 +33,16 @@ pub struct Options {
     /// Frames to accumulate: anti-aliasing, soft sun, less noise [default: 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536), help_heading = "Picture")]
     pub samples: Option<u32>,
+    /// What hides the sky: ambient occlusion of the screen, or shadow maps from directions of the sky, which converge to the
+    /// truth with the samples [default: dome from 16 samples on, else ssao].
+    #[arg(long, value_enum, value_name = "HOW", help_heading = "Picture")]
+    pub visibility: Option<Visibility>,
+    /// Spread of the samples in a pixel [default: box].
+    #[arg(long, value_enum, value_name = "FILTER", help_heading = "Picture")]
+    pub filter: Option<Filter>,
+    /// Start of the sample sequences: the same number, the same picture [default: 0].
+    #[arg(long, value_name = "N", help_heading = "Picture")]
+    pub seed: Option<u32>,
     /// What to show: the picture, or one quantity of the equation [default: beauty].
     #[arg(long, value_enum, value_name = "WHAT", help_heading = "Picture")]
     pub show: Option<Show>,
@@ -132,6 +145,12 @@ pub struct Options {
     /// Edge of the shadow map, texels, 64 to 16384 [default: 2048].
     #[arg(long, value_name = "TEXELS", value_parser = clap::value_parser!(u32).range(64..=16_384), help_heading = "Light")]
     pub shadow_size: Option<u32>,
+    /// Directions of the sky in each sample of --visibility dome, 1 to 16 [default: 8].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_DIRECTIONS)), help_heading = "Light")]
+    pub dome_directions: Option<u32>,
+    /// Edge of the shadow map of each of them, texels, 64 to 4096 [default: 1024].
+    #[arg(long, value_name = "TEXELS", value_parser = clap::value_parser!(u32).range(64..=4096), help_heading = "Light")]
+    pub dome_size: Option<u32>,
     /// Smooth models without normals below this angle between faces, degrees, 0 to 180.
     #[arg(long, value_name = "DEGREES", value_parser = values::crease, allow_hyphen_values = true, help_heading = "Light")]
     pub smooth: Option<f64>,
@@ -213,9 +232,9 @@ impl Options {
             (base.ev100, base.exposure) = (None, None);
         }
         first_of!(self, base;
-            size samples show preset place when sun solar sun_position sky turbidity sky_illuminance refraction ground_albedo camera eye target fov
+            size samples visibility filter seed show preset place when sun solar sun_position sky turbidity sky_illuminance refraction ground_albedo camera eye target fov
             ev100 exposure tonemap gamma scale irradiance irradiance_samples irradiance_error ao_radius ao_resolution specular shadow_size
-            smooth device without max_triangles max_texture_edge max_texture_mib max_file_mib fresnel moment;
+            dome_directions dome_size smooth device without max_triangles max_texture_edge max_texture_mib max_file_mib fresnel moment;
             layers limb_darkening quiet validate allow_outside)
     }
 }

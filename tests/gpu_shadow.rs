@@ -45,6 +45,7 @@ fn texel(scene: &Scene, day: &Daylight, camera: &Camera) -> f64 {
         camera: *camera,
         size: UVec2::new(SIZE.0, SIZE.1),
         jitter: Vec2::ZERO,
+        sharpen: 0.0,
     };
     let sun = day.sun_direction.as_vec3();
     f64::from(

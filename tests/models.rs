@@ -45,6 +45,7 @@ fn settings() -> FrameSettings {
     FrameSettings {
         size: SIZE,
         samples: 1,
+        sampling: skylight::frame::Sampling::default(),
         sky_edge: 256,
         irradiance: IrradianceSettings {
             samples: 64,

@@ -5,4 +5,5 @@ layout(push_constant, scalar) uniform Push {
     uint material;      // index into the table of materials
     float cutoff;       // of a cut-out: alpha below it is a hole
     float normal_scale; // factor on the slopes of the normal map
+    float sharpen;      // mip levels by which maps are sharper than a single sample wants
 } push;

@@ -11,7 +11,8 @@
 //!    ground below the horizon.
 //! 5. [`cube`]: cube maps in Vulkan's convention. [`irradiance`]: E(n) of a radiance, by four methods; [`sampling`] and
 //!    [`mod@frame`] serve them, [`quadrature`] is what they are tested against.
-//! 6. [`exposure`] and [`tone_curve`]: from cd/m² to a picture.
+//! 6. [`dome`]: the sky as directional lights, for shadow maps from its directions.
+//! 7. [`exposure`] and [`tone_curve`]: from cd/m² to a picture.
 //!
 //! # Conventions
 //!
@@ -28,6 +29,7 @@ pub mod colour;
 pub mod convergence;
 pub mod cube;
 mod data;
+pub mod dome;
 pub mod exposure;
 pub mod frame;
 pub mod hosek;

@@ -14,9 +14,10 @@ use crate::daylight::sun_position::SunPosition;
 use crate::daylight::sunlight::LIMB_DARKENING;
 use crate::daylight::tone_curve::REINHARD_WHITE;
 use crate::error::Result;
-use crate::frame::FrameSettings;
+use crate::frame::{FrameSettings, Sampling};
 use crate::gpu::{Context, ContextOptions, Optional};
 use crate::passes::cube_route::CubeRoute;
+use crate::passes::dome::DomeSettings;
 use crate::passes::irradiance::IrradianceSettings;
 use crate::passes::lighting::{LightingSettings, Precision, Show};
 use crate::passes::ssao::SsaoSettings;
@@ -157,6 +158,7 @@ impl Job {
         FrameSettings {
             size: UVec2::new(s.size.width, s.size.height),
             samples: s.samples,
+            sampling: self.sampling(),
             sky_edge: self.sky_edge(),
             irradiance: self.irradiance_settings(),
             shadow_resolution: s.shadow_size,
@@ -184,6 +186,19 @@ impl Job {
                 white: REINHARD_WHITE,
                 gamma: s.gamma,
                 depth_scale: f64::from(self.scene.bounds.diagonal()).max(1e-3),
+            },
+        }
+    }
+
+    fn sampling(&self) -> Sampling {
+        let s = &self.settings;
+        Sampling {
+            visibility: s.visibility,
+            filter: s.filter,
+            dome: DomeSettings {
+                directions: s.dome_directions,
+                map_edge: s.dome_size,
+                seed: s.seed,
             },
         }
     }

@@ -1,42 +1,116 @@
-//! Where each frame of an average samples: the pixel, the sun's disc, the noise.
+//! Where frames that are averaged sample the pixel and the sun's disc, and by what the sky is hidden.
 
+use clap::ValueEnum;
 use glam::{DVec2, Vec2, Vec3};
+use serde::Deserialize;
 
 use crate::daylight::sampling;
-use crate::daylight::sky::Daylight;
 use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
+use crate::passes::dome::DomeSettings;
+
+/// What hides the sky from a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, ValueEnum, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Visibility {
+    /// Screen-space ambient occlusion: at once, from what is on the screen.
+    #[default]
+    Ssao,
+    /// Shadow maps from directions of the sky: converges to the truth over the samples.
+    Dome,
+    /// The same, beginning with ambient occlusion, which fades: for what stops moving (previews are drawn as with `Ssao`).
+    #[value(skip)]
+    Progressive,
+}
+
+/// How the samples of a pixel are spread.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, ValueEnum, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Filter {
+    /// Evenly over the pixel.
+    #[default]
+    Box,
+    /// By a Blackman-Harris window 3 pixels wide: smooth, little ringing of fine patterns.
+    BlackmanHarris,
+}
+
+/// How frames that are averaged differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Sampling {
+    /// What hides the sky.
+    pub visibility: Visibility,
+    /// Directions and maps of [`Visibility::Dome`].
+    pub dome: DomeSettings,
+    /// Spread of the samples in a pixel.
+    pub filter: Filter,
+}
 
 /// Where a frame samples the pixel and the sun's disc.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
-    /// Offset in the pixel, in pixels, −0.5..0.5.
-    pub(super) jitter: Vec2,
-    /// Unit vector toward a point of the sun's disc.
-    pub(super) sun_direction: Vec3,
-    /// Turns the noise of occlusion, 0..1.
-    pub(super) phase: f32,
+    /// Offset in the pixel, pixels.
+    pub jitter: Vec2,
+    /// Toward a point of the sun's disc.
+    pub sun_direction: Vec3,
+    /// Turn of the noise of ambient occlusion, 0..1.
+    pub phase: f32,
 }
 
 impl Sample {
-    /// That of frame number `index` of an average of `samples`; a single one is at the centres.
-    pub(super) fn new(samples: u32, daylight: &Daylight, index: u32) -> Self {
-        let centre = daylight.sun_direction.as_vec3();
-        if samples <= 1 {
-            return Self {
-                jitter: Vec2::ZERO,
-                sun_direction: centre,
-                phase: 0.0,
-            };
+    /// Pixel centres and the sun's centre.
+    pub fn central(sun: Vec3) -> Self {
+        Self {
+            jitter: Vec2::ZERO,
+            sun_direction: sun,
+            phase: 0.0,
         }
+    }
+
+    /// Sample number `index` of a sequence that any number of samples covers evenly.
+    pub fn new(sun: Vec3, index: u32, sampling_settings: &Sampling) -> Self {
         // Two stretches of one sequence, far apart, so that pixel and disc are not sampled in step.
-        let pixel = sampling::r2(index) - 0.5;
+        let start = sampling_settings.dome.seed.wrapping_mul(1 << 12);
+        let index = start.wrapping_add(index);
+        let pixel = sampling::r2(index);
         let disc = sampling::r2(index.wrapping_add(1 << 20));
         Self {
-            jitter: pixel.as_vec2(),
-            sun_direction: on_disc(centre, disc),
+            jitter: offset(sampling_settings.filter, pixel),
+            sun_direction: on_disc(sun, disc),
             phase: sampling::radical_inverse(index) as f32,
         }
     }
+}
+
+/// Offset in the pixel, pixels, distributed as the filter's weight (Ernst, Stamminger & Greiner 2006, "Filter importance
+/// sampling"): the plain mean of the samples is the filtered pixel.
+fn offset(filter: Filter, xi: DVec2) -> Vec2 {
+    match filter {
+        Filter::Box => (xi - 0.5).as_vec2(),
+        Filter::BlackmanHarris => {
+            DVec2::new(blackman_harris(xi.x), blackman_harris(xi.y)).as_vec2()
+        }
+    }
+}
+
+/// Half the width of the window, pixels.
+const RADIUS: f64 = 1.5;
+
+/// The offset below which the share `xi` of a Blackman-Harris window lies (Harris 1978, four terms), by bisection.
+fn blackman_harris(xi: f64) -> f64 {
+    // The window is 0.35875 - 0.48829 cos + 0.14128 cos 2 - 0.01168 cos 3 of 2 pi t, t over 0..1; this is its integral.
+    let share = |t: f64| {
+        let wave = |k: f64| (k * std::f64::consts::TAU * t).sin() / (k * std::f64::consts::TAU);
+        t - (0.48829 * wave(1.0) - 0.14128 * wave(2.0) + 0.01168 * wave(3.0)) / 0.35875
+    };
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if share(middle) < xi {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    (low + high - 1.0) * RADIUS
 }
 
 /// A uniform point of the sun's disc for `xi` in the unit square.
@@ -65,5 +139,31 @@ mod tests {
             .filter(|a| **a < SUN_ANGULAR_RADIUS / 2f64.sqrt())
             .count();
         assert!((450..550).contains(&inner), "{inner}");
+    }
+
+    #[test]
+    fn the_window_is_even_and_has_its_own_spread() {
+        let n = 4096;
+        let points = (0..n).map(|i| blackman_harris((f64::from(i) + 0.5) / f64::from(n)));
+        let points: Vec<f64> = points.collect();
+        assert!(points.is_sorted() && points[0] > -RADIUS && points[4095] < RADIUS);
+        assert!(points.iter().sum::<f64>().abs() < 1e-6);
+        // Variance of the window on -1/2..1/2, by its terms: 1/12 + sum of +-a_k / (2 pi^2 k^2 a_0).
+        let pi2 = std::f64::consts::PI.powi(2);
+        let unit = 1.0 / 12.0 - (0.48829 - 0.14128 / 4.0 + 0.01168 / 9.0) / (2.0 * pi2 * 0.35875);
+        let variance = points.iter().map(|x| x * x).sum::<f64>() / f64::from(n);
+        let expected = unit * (2.0 * RADIUS).powi(2);
+        assert!(
+            (variance / expected - 1.0).abs() < 1e-3,
+            "{variance} {expected}"
+        );
+    }
+
+    #[test]
+    fn the_first_sample_is_the_pixels_centre() {
+        for filter in [Filter::Box, Filter::BlackmanHarris] {
+            let offset = offset(filter, sampling::r2(0));
+            assert!(offset.length() < 1e-6, "{filter:?} {offset}");
+        }
     }
 }

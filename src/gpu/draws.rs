@@ -76,6 +76,34 @@ impl<'r> Draws<'_, 'r> {
         }
     }
 
+    /// Confines the following draws to a part of the target: its first texel and its size.
+    pub fn window(&mut self, origin: [u32; 2], size: [u32; 2]) {
+        let viewport = vk::Viewport {
+            x: origin[0] as f32,
+            y: origin[1] as f32,
+            width: size[0] as f32,
+            height: size[1] as f32,
+            min_depth: 0.0,
+            max_depth: 1.0,
+        };
+        let scissor = vk::Rect2D {
+            offset: vk::Offset2D {
+                x: origin[0].cast_signed(),
+                y: origin[1].cast_signed(),
+            },
+            extent: vk::Extent2D {
+                width: size[0],
+                height: size[1],
+            },
+        };
+        let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
+        // SAFETY: the command buffer is inside the rendering of this pass; both states are dynamic in every pipeline.
+        unsafe {
+            raw.cmd_set_viewport(command, 0, &[viewport]);
+            raw.cmd_set_scissor(command, 0, &[scissor]);
+        }
+    }
+
     /// Draws a range of the indices.
     pub fn indexed(&mut self, first: u32, count: u32) {
         self.pass.flush();

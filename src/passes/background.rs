@@ -135,6 +135,7 @@ mod tests {
             camera,
             size: UVec2::new(640, 360),
             jitter: Vec2::ZERO,
+            sharpen: 0.0,
         };
         // The corner of the picture lies 36.6 degrees off its centre.
         let off =

@@ -87,7 +87,7 @@ impl Details {
                         draws.pipeline(&self.pipelines[&current]);
                     }
                     bind_maps(draws, bound);
-                    draws.push(&Push::of(clip_from_world, eye, bound));
+                    draws.push(&Push::of(clip_from_world, eye, view.sharpen, bound));
                 });
             });
     }

@@ -23,12 +23,18 @@ gpu_struct! {
         material: u32,
         cutoff: f32,
         normal_scale: f32,
+        sharpen: f32,
     }
 }
 
 impl Push {
     /// The camera and what a draw binds.
-    pub(super) fn of(clip_from_world: [[f32; 4]; 4], eye: Vec3, bound: &Bound<'_>) -> Self {
+    pub(super) fn of(
+        clip_from_world: [[f32; 4]; 4],
+        eye: Vec3,
+        sharpen: f32,
+        bound: &Bound<'_>,
+    ) -> Self {
         Self {
             clip_from_world,
             eye,
@@ -36,6 +42,7 @@ impl Push {
             material: bound.material,
             cutoff: bound.cutoff,
             normal_scale: bound.normal_scale,
+            sharpen,
         }
     }
 }
@@ -160,7 +167,7 @@ impl Gbuffer {
                     let [diffuse_map, specular_map] = maps.map(|m| m.unwrap_or(bound.white));
                     draws.texture("diffuse_map", diffuse_map, Sampler::Repeat);
                     draws.texture("specular_map", specular_map, Sampler::Repeat);
-                    draws.push(&Push::of(clip_from_world, eye, bound));
+                    draws.push(&Push::of(clip_from_world, eye, view.sharpen, bound));
                 });
             });
         self.details

@@ -15,6 +15,7 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
+use super::dome::BIAS_TEXELS;
 use super::gbuffer::Surfaces;
 use super::kilo;
 use super::shadow_fit::ShadowView;
@@ -29,6 +30,7 @@ gpu_struct! {
         normal_offset: f32,
         max_radiance: f32,
         specular_scale: f32,
+        planes: [[f32; 4]; 4],
     }
 }
 
@@ -203,6 +205,7 @@ const NORMAL_OFFSET_TEXELS: f32 = 1.5;
 /// The pass and its picture.
 pub struct Lighting {
     settings: LightingSettings,
+    is_converging: bool,
     pipeline: Pipeline,
     radiance: Image,
 }
@@ -213,6 +216,28 @@ impl Lighting {
     /// # Errors
     /// When the device refuses.
     pub fn new(context: &Arc<Context>, size: [u32; 2], settings: LightingSettings) -> Result<Self> {
+        Self::with(context, size, settings, false)
+    }
+
+    /// For frames whose mean converges: without the diffuse light of the sky (A = 0), which [`super::dome::Dome`] adds, and
+    /// with hard shadows of the map of [`super::shadow::Shadow::unbiased`].
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn converging(
+        context: &Arc<Context>,
+        size: [u32; 2],
+        settings: LightingSettings,
+    ) -> Result<Self> {
+        Self::with(context, size, settings, true)
+    }
+
+    fn with(
+        context: &Arc<Context>,
+        size: [u32; 2],
+        settings: LightingSettings,
+        is_converging: bool,
+    ) -> Result<Self> {
         let format = settings.precision.format();
         let mut constants = settings
             .show
@@ -220,6 +245,8 @@ impl Lighting {
             .to_vec();
         constants.push(("OCCLUSION_DOWNSCALE", settings.occlusion_downscale));
         constants.push(("FRESNEL", settings.fresnel.into()));
+        constants.push(("AMBIENT", (!is_converging).into()));
+        constants.push(("PLANE_SHADOW", is_converging.into()));
         let pipeline = Pipeline::new(
             context,
             &PipelineDesc {
@@ -234,6 +261,7 @@ impl Lighting {
         let radiance = Image::new(context, &ImageDesc::flat("radiance", format, size))?;
         Ok(Self {
             settings,
+            is_converging,
             pipeline,
             radiance,
         })
@@ -298,13 +326,20 @@ impl Lighting {
     }
 
     fn sun_block(&self, light: &Light<'_>) -> SunBlock {
+        let shadow = light.shadow_view;
+        let normal_offset = if self.is_converging {
+            BIAS_TEXELS * shadow.texel_depth
+        } else {
+            NORMAL_OFFSET_TEXELS * shadow.texel
+        };
         SunBlock {
-            shadow_from_world: light.shadow_view.shadow_from_world.to_cols_array_2d(),
+            shadow_from_world: shadow.shadow_from_world.to_cols_array_2d(),
             direction: light.sun_direction,
             illuminance: kilo(light.daylight.sun_illuminance),
-            normal_offset: NORMAL_OFFSET_TEXELS * light.shadow_view.texel,
+            normal_offset,
             max_radiance: self.settings.precision.max_radiance(),
             specular_scale: self.settings.specular_scale,
+            planes: shadow.planes().to_cols_array_2d(),
         }
     }
 

@@ -6,6 +6,8 @@ pub mod accumulate;
 pub mod background;
 pub mod cube_route;
 pub mod details;
+pub mod dome;
+pub mod dome_fit;
 pub mod exposure;
 pub mod gbuffer;
 pub mod geometry;

@@ -29,7 +29,89 @@ gpu_struct! {
 /// Slopes of depth, in texels, by which casters are pushed away from the sun.
 const SLOPE_BIAS: f32 = 1.5;
 
-fn pipeline(context: &Arc<Context>, name: &str, holes: bool) -> Result<Pipeline> {
+/// Draws what casts shadows into maps.
+pub(super) struct Casters {
+    solid: Pipeline,
+    /// For surfaces with holes, if there are any.
+    cut_outs: Option<Pipeline>,
+}
+
+/// A map in an image of maps.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tile {
+    /// What it shows.
+    pub view: ShadowView,
+    /// Its first texel.
+    pub origin: [u32; 2],
+    /// Texels of its edge.
+    pub edge: u32,
+}
+
+impl Casters {
+    /// With casters pushed away from the light by so many slopes of depth.
+    pub fn new(context: &Arc<Context>, geometry: &Geometry, slope_bias: f32) -> Result<Self> {
+        let has_holes = geometry.kinds().any(|kind| kind.cut_out);
+        Ok(Self {
+            solid: pipeline(context, "shadow map", slope_bias, false)?,
+            cut_outs: has_holes
+                .then(|| pipeline(context, "shadow map, cut-outs", slope_bias, true))
+                .transpose()?,
+        })
+    }
+
+    /// Draws all maps of an image.
+    pub fn record(
+        &self,
+        recorder: &mut Recorder,
+        name: &'static str,
+        geometry: &Geometry,
+        tiles: &[Tile],
+        maps: &Image,
+    ) {
+        recorder
+            .pass(name, &self.solid)
+            .depth(maps, Load::Clear([0.0; 4]))
+            .draws(|draws| {
+                for tile in tiles {
+                    draws.window(tile.origin, [tile.edge; 2]);
+                    draws.push(&Push {
+                        shadow_from_world: tile.view.shadow_from_world.to_cols_array_2d(),
+                    });
+                    geometry.draw_positions(draws);
+                }
+            });
+        if let Some(pipeline) = &self.cut_outs {
+            record_cut_outs(recorder, pipeline, geometry, tiles, maps);
+        }
+    }
+}
+
+fn record_cut_outs(
+    recorder: &mut Recorder,
+    pipeline: &Pipeline,
+    geometry: &Geometry,
+    tiles: &[Tile],
+    maps: &Image,
+) {
+    recorder
+        .pass("shadow map, cut-outs", pipeline)
+        .depth(maps, Load::Keep)
+        .draws(|draws| {
+            for tile in tiles {
+                draws.window(tile.origin, [tile.edge; 2]);
+                geometry.draw_cut_outs(draws, |draws, bound| {
+                    let map = bound.diffuse_map.unwrap_or(bound.white);
+                    draws.texture("diffuse_map", map, Sampler::Repeat);
+                    draws.push(&CutOutPush {
+                        shadow_from_world: tile.view.shadow_from_world.to_cols_array_2d(),
+                        cutoff: bound.cutoff,
+                    });
+                });
+            }
+        });
+}
+
+fn pipeline(context: &Arc<Context>, name: &str, slope_bias: f32, holes: bool) -> Result<Pipeline> {
     let solid: &[_] = &[&shaders::SHADOW_VERT];
     let cut_out: &[_] = &[&shaders::SHADOW_CUT_OUT_VERT, &shaders::SHADOW_CUT_OUT_FRAG];
     let streams = [Format::R32G32B32_SFLOAT, Format::R32G32_SFLOAT];
@@ -42,7 +124,7 @@ fn pipeline(context: &Arc<Context>, name: &str, holes: bool) -> Result<Pipeline>
             colors: &[],
             depth: Depth::Write {
                 format: Format::D32_SFLOAT,
-                slope_bias: SLOPE_BIAS,
+                slope_bias,
             },
             constants: &[],
         },
@@ -51,9 +133,7 @@ fn pipeline(context: &Arc<Context>, name: &str, holes: bool) -> Result<Pipeline>
 
 /// The pass and its map.
 pub struct Shadow {
-    pipeline: Pipeline,
-    /// For surfaces with holes, if there are any.
-    cut_outs: Option<Pipeline>,
+    casters: Casters,
     depth: Image,
     drawn: Option<ShadowView>,
 }
@@ -64,16 +144,27 @@ impl Shadow {
     /// # Errors
     /// When the device refuses.
     pub fn new(context: &Arc<Context>, geometry: &Geometry, resolution: u32) -> Result<Self> {
-        let pipeline = pipeline(context, "shadow map", false)?;
-        let has_holes = geometry.kinds().any(|kind| kind.cut_out);
-        let cut_outs = has_holes
-            .then(|| self::pipeline(context, "shadow map, cut-outs", true))
-            .transpose()?;
+        Self::with(context, geometry, resolution, SLOPE_BIAS)
+    }
+
+    /// The same for comparisons in the plane of the receiver, which need no bias of casters.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn unbiased(context: &Arc<Context>, geometry: &Geometry, resolution: u32) -> Result<Self> {
+        Self::with(context, geometry, resolution, 0.0)
+    }
+
+    fn with(
+        context: &Arc<Context>,
+        geometry: &Geometry,
+        resolution: u32,
+        slope_bias: f32,
+    ) -> Result<Self> {
         let size = [resolution, resolution];
         let desc = ImageDesc::flat("shadow map", Format::D32_SFLOAT, size);
         Ok(Self {
-            pipeline,
-            cut_outs,
+            casters: Casters::new(context, geometry, slope_bias)?,
             depth: Image::new(context, &desc)?,
             drawn: None,
         })
@@ -92,14 +183,13 @@ impl Shadow {
         view: &ShadowView,
     ) -> &Image {
         if self.drawn.as_ref() != Some(view) {
-            recorder
-                .pass("shadow map", &self.pipeline)
-                .push(&Push {
-                    shadow_from_world: view.shadow_from_world.to_cols_array_2d(),
-                })
-                .depth(&self.depth, Load::Clear([0.0; 4]))
-                .draws(|draws| geometry.draw_positions(draws));
-            self.record_cut_outs(recorder, geometry, view);
+            let tile = Tile {
+                view: *view,
+                origin: [0, 0],
+                edge: self.resolution(),
+            };
+            self.casters
+                .record(recorder, "shadow map", geometry, &[tile], &self.depth);
             self.drawn = Some(*view);
         }
         &self.depth
@@ -108,26 +198,6 @@ impl Shadow {
     /// The map as it was last drawn.
     pub fn image(&self) -> &Image {
         &self.depth
-    }
-
-    fn record_cut_outs(&self, recorder: &mut Recorder, geometry: &Geometry, view: &ShadowView) {
-        let Some(pipeline) = &self.cut_outs else {
-            return;
-        };
-        let shadow_from_world = view.shadow_from_world.to_cols_array_2d();
-        recorder
-            .pass("shadow map, cut-outs", pipeline)
-            .depth(&self.depth, Load::Keep)
-            .draws(|draws| {
-                geometry.draw_cut_outs(draws, |draws, bound| {
-                    let map = bound.diffuse_map.unwrap_or(bound.white);
-                    draws.texture("diffuse_map", map, Sampler::Repeat);
-                    draws.push(&CutOutPush {
-                        shadow_from_world,
-                        cutoff: bound.cutoff,
-                    });
-                });
-            });
     }
 
     /// Forgets what was drawn, so that the next frame draws it again.

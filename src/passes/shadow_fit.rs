@@ -14,8 +14,17 @@ const SCALE_STEP: f32 = 1.25;
 pub struct ShadowView {
     /// World to the map's clip space: depth 1 nearest the sun, 0 farthest.
     pub shadow_from_world: Mat4,
-    /// Edge of a texel, metres.
+    /// Edge of a texel, metres; where the map is warped, at the viewer's end.
     pub texel: f32,
+    /// Depth that the edge of a texel is long.
+    pub texel_depth: f32,
+}
+
+impl ShadowView {
+    /// Takes planes from the world to clip space.
+    pub fn planes(&self) -> Mat4 {
+        self.shadow_from_world.inverse().transpose()
+    }
 }
 
 /// Right, up and toward-the-sun axes of the map.
@@ -76,15 +85,21 @@ pub fn fit(
     ShadowView {
         shadow_from_world: orthographic([right, up, toward], centre, side, &casters),
         texel,
+        texel_depth: texel / depth_range(&casters).1,
     }
+}
+
+/// Far end and depth of a map, metres along the axis toward the light, `casters` being in the light's axes.
+pub(super) fn depth_range(casters: &Bounds) -> (f32, f32) {
+    let deep = (casters.max.z - casters.min.z).max(1e-3);
+    // A little slack keeps the nearest and farthest casters inside the clip volume.
+    (casters.min.z - 0.01 * deep, 1.02 * deep)
 }
 
 fn orthographic(axes: [Vec3; 3], centre: Vec2, side: f32, casters: &Bounds) -> Mat4 {
     let [right, up, toward] = axes;
     let scale = 2.0 / side;
-    let deep = (casters.max.z - casters.min.z).max(1e-3);
-    // A little slack keeps the nearest and farthest casters inside the clip volume.
-    let (far, depth) = (casters.min.z - 0.01 * deep, 1.02 * deep);
+    let (far, depth) = depth_range(casters);
     let row = |axis: Vec3, scale: f32, offset: f32| (axis * scale).extend(offset);
     Mat4::from_cols(
         row(right, scale, -centre.x * scale),
@@ -109,7 +124,7 @@ impl Plane {
 }
 
 /// The corners of the view's pyramid cut with the box: the receivers' hull.
-fn visible_points(bounds: &Bounds, view: &View) -> Vec<Vec3> {
+pub(super) fn visible_points(bounds: &Bounds, view: &View) -> Vec<Vec3> {
     let frustum = frustum(view);
     let mut points = Vec::new();
     for face in box_faces(bounds) {
@@ -259,6 +274,7 @@ mod tests {
             camera,
             size: UVec2::new(640, 360),
             jitter: Vec2::ZERO,
+            sharpen: 0.0,
         }
     }
 

@@ -25,6 +25,8 @@ pub struct View {
     pub size: UVec2,
     /// Offset of the sample in the pixel, in pixels, −0.5..0.5; zero is the pixel's centre.
     pub jitter: Vec2,
+    /// Mip levels by which textures are sharper than one sample a pixel wants: many samples filter better than mip maps.
+    pub sharpen: f32,
 }
 
 impl View {
@@ -86,6 +88,7 @@ mod tests {
             camera,
             size: UVec2::new(640, 360),
             jitter,
+            sharpen: 0.0,
         }
     }
 

@@ -1,15 +1,16 @@
 //! From what the user gave to what is used: defaults, presets, cameras by name.
 
 use chrono::{DateTime, FixedOffset};
-use clap::ValueEnum;
 use glam::Vec3;
 
 use super::{
-    AoResolution, Direction, Fresnel, IrradianceMethod, Options, Place, Preset, SettingsError,
-    Show, Size, SkyModel, SolarTime, SunPositionMethod, Switch, ToneCurve, values,
+    AoResolution, Direction, Filter, Fresnel, IrradianceMethod, Options, Place, Preset,
+    SettingsError, Show, Size, SkyModel, SolarTime, SunPositionMethod, Switch, ToneCurve,
+    Visibility, values,
 };
 use crate::error::Error;
 use crate::gpu::Optional;
+use crate::passes::dome::DomeSettings;
 use crate::scene::{Bounds, Camera, Loaded, NamedOptions, SceneError};
 
 /// The default place: the lecture's university, degrees.
@@ -19,6 +20,9 @@ const DEFAULT_PLACE: Place = Place {
 };
 /// The default moment: a summer afternoon there.
 const DEFAULT_WHEN: &str = "2026-06-21T15:00:00+02:00";
+
+/// Samples from which on shadow maps from the sky are better than ambient occlusion in every view.
+const DOME_SAMPLES: u32 = 16;
 
 /// What `--preset lecture` sets, by the course's own defaults.
 const LECTURE: [(&str, &str); 16] = [
@@ -99,6 +103,12 @@ pub struct Settings {
     pub size: Size,
     /// Frames to accumulate, at least 1.
     pub samples: u32,
+    /// What hides the sky.
+    pub visibility: Visibility,
+    /// Spread of the samples in a pixel.
+    pub filter: Filter,
+    /// Start of the sample sequences.
+    pub seed: u32,
     /// Where the sun comes from.
     pub sun: SunInput,
     /// Formulas of its position.
@@ -149,6 +159,10 @@ pub struct Settings {
     pub smooth: Option<f64>,
     /// Edge of the shadow map, texels.
     pub shadow_size: u32,
+    /// Directions of the sky in a sample, 1..=16.
+    pub dome_directions: u32,
+    /// Edge of the map of each, texels.
+    pub dome_size: u32,
     /// Part of a device's name, or its number.
     pub device: Option<String>,
     /// No progress, no warnings.
@@ -209,6 +223,13 @@ impl Settings {
                 "--eye and --target are the same point; move one".to_owned(),
             ));
         }
+        let samples = o.samples.unwrap_or(1);
+        let visibility = if samples >= DOME_SAMPLES {
+            Visibility::Dome
+        } else {
+            Visibility::Ssao
+        };
+        let dome = DomeSettings::default();
         let (sky, turbidity) = (o.sky.unwrap_or_default(), o.turbidity.unwrap_or(3.0));
         Ok(Self {
             sun: sun(&o)?,
@@ -216,7 +237,10 @@ impl Settings {
                 width: 1280,
                 height: 720,
             }),
-            samples: o.samples.unwrap_or(1),
+            samples,
+            visibility: o.visibility.unwrap_or(visibility),
+            filter: o.filter.unwrap_or_default(),
+            seed: o.seed.unwrap_or(0),
             sun_position: o.sun_position.unwrap_or_default(),
             sky,
             turbidity,
@@ -246,6 +270,8 @@ impl Settings {
             layers: o.layers,
             smooth: o.smooth,
             shadow_size: o.shadow_size.unwrap_or(2048),
+            dome_directions: o.dome_directions.unwrap_or(dome.directions),
+            dome_size: o.dome_size.unwrap_or(dome.map_edge),
             device: o.device,
             quiet: o.quiet,
             validate: o.validate,
@@ -266,74 +292,6 @@ impl Settings {
             bounds,
             aspect,
         )
-    }
-
-    /// What decided the picture, by option name: for the metadata of files.
-    pub fn parameters(&self) -> Vec<(&'static str, String)> {
-        let mut list = vec![
-            ("size", format!("{}x{}", self.size.width, self.size.height)),
-            ("samples", self.samples.to_string()),
-            ("show", name(self.show)),
-            ("sun-position", name(self.sun_position)),
-            ("sky", name(self.sky)),
-            ("turbidity", self.turbidity.to_string()),
-            ("refraction", name(self.refraction)),
-            ("ground-albedo", self.ground_albedo.to_string()),
-            ("irradiance", name(self.irradiance)),
-            ("irradiance-samples", self.irradiance_samples.to_string()),
-            ("irradiance-error", self.irradiance_error.to_string()),
-            ("ao-radius", self.ao_radius.to_string()),
-            ("ao-resolution", name(self.ao_resolution)),
-            ("fresnel", name(self.fresnel)),
-            ("specular", self.specular.to_string()),
-            ("shadow-size", self.shadow_size.to_string()),
-            ("tonemap", name(self.tone_curve)),
-        ];
-        list.extend(sun_parameters(&self.sun));
-        list.push(match self.exposure {
-            Exposure::Auto => ("exposure", "auto".to_owned()),
-            Exposure::Ev100(ev) => ("ev100", ev.to_string()),
-        });
-        let illuminance = self.sky_illuminance;
-        list.extend(illuminance.map(|v| ("sky-illuminance", v.to_string())));
-        list.extend(self.gamma.map(|v| ("gamma", v.to_string())));
-        list.extend(self.scale.map(|v| ("scale", v.to_string())));
-        list
-    }
-}
-
-pub(crate) fn name(value: impl ValueEnum) -> String {
-    value
-        .to_possible_value()
-        .map_or_else(String::new, |v| v.get_name().to_owned())
-}
-
-fn sun_parameters(sun: &SunInput) -> Vec<(&'static str, String)> {
-    match *sun {
-        SunInput::Place {
-            latitude,
-            longitude,
-            when,
-        } => {
-            vec![
-                ("place", format!("{latitude},{longitude}")),
-                ("when", when.to_rfc3339()),
-            ]
-        }
-        SunInput::Solar {
-            day,
-            hours,
-            latitude,
-        } => {
-            vec![
-                ("place", format!("{latitude},0")),
-                ("solar", format!("{day},{hours}")),
-            ]
-        }
-        SunInput::Direction {
-            azimuth_deg,
-            elevation_deg,
-        } => vec![("sun", format!("{azimuth_deg},{elevation_deg}"))],
     }
 }
 

@@ -7,7 +7,7 @@ use glam::{DVec3, UVec2, Vec3};
 use skylight::daylight::cube;
 use skylight::daylight::sky::{Conditions, Daylight, SkyModel};
 use skylight::daylight::tone_curve::{REINHARD_WHITE, ToneCurve};
-use skylight::frame::{Frame, FrameSettings};
+use skylight::frame::{Frame, FrameSettings, Sampling};
 use skylight::gpu::{Context, ContextOptions, Image, Recorder, Timing, read_back};
 use skylight::passes::irradiance::IrradianceSettings;
 use skylight::passes::lighting::{LightingSettings, Precision, Show};
@@ -202,6 +202,7 @@ pub fn settings(width: u32, height: u32) -> FrameSettings {
     FrameSettings {
         size: UVec2::new(width, height),
         samples: 1,
+        sampling: Sampling::default(),
         sky_edge: 256,
         irradiance: IrradianceSettings::default(),
         shadow_resolution: 1024,

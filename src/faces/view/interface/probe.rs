@@ -106,6 +106,7 @@ fn point(document: &Document, reading: Reading) -> Option<DVec3> {
         camera: document.job.camera,
         size,
         jitter: Vec2::ZERO,
+        sharpen: 0.0,
     };
     let [x, y] = reading.pixel;
     let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);

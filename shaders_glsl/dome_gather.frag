@@ -1,0 +1,100 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "constants.glsl"
+#include "occlusion.glsl"
+#include "octahedral.glsl"
+#include "view.glsl"
+
+// The light of the sky by shadow maps from directions of the sky: E = 1/n sum V (n.w) L/p, and what it would be without V.
+// Both are averaged over the frames, with everything else that the frames show; their quotient is A, weighted by the light.
+
+// rgb: the sky's light, reflected; a: the luminance that it would have if nothing hid the sky, by the same directions.
+layout(location = 0) out vec4 sky;
+// rgb: all other light, kcd/m^2; a: the luminance of the sky's light if nothing hid it, by the irradiance cube.
+layout(location = 1) out vec4 rest;
+
+// What the sky's light is shown as: the radiance reflected, the irradiance, or the share A.
+layout(constant_id = 0) const bool SHOW_IRRADIANCE = false;
+layout(constant_id = 1) const bool SHOW_OCCLUSION = false;
+// Whether it is shown at all.
+layout(constant_id = 2) const bool SKY = true;
+layout(constant_id = 3) const int DIRECTIONS = 4;
+// Begin with ambient occlusion, as if it had come from earlier frames.
+layout(constant_id = 4) const bool PRIOR = false;
+layout(constant_id = 5) const int OCCLUSION_DOWNSCALE = 2;
+
+layout(set = 0, binding = 0) uniform sampler2D depth;
+layout(set = 0, binding = 1) uniform sampler2D normal;
+layout(set = 0, binding = 2) uniform sampler2D albedo;
+layout(set = 0, binding = 3) uniform sampler2D frame;          // kcd/m^2, without the sky's light
+layout(set = 0, binding = 4) uniform sampler2D previous_sky;
+layout(set = 0, binding = 5) uniform sampler2D previous_rest;
+layout(set = 0, binding = 6) uniform sampler2D maps;           // reversed: 1 is nearest the light
+layout(set = 0, binding = 7) uniform samplerCube sky_irradiance; // E of sky and ground, klx
+layout(set = 0, binding = 8, scalar) uniform View { VIEW_BLOCK } view;
+layout(set = 0, binding = 9, scalar) uniform Dome {
+    mat4 clip_from_world[16];
+    mat4 planes[16];  // its inverse transpose
+    vec4 window[16];  // first texel of the map and its edges
+    vec4 toward[16];  // unit, toward the light; a: bias of depth
+    vec4 light[16];   // share of the irradiance at normal incidence, klx; a: 1 of the sky, 0 of the ground
+} dome;
+
+layout(set = 0, binding = 10) uniform sampler2D occlusion;
+
+layout(push_constant, scalar) uniform Push {
+    vec3 ground;     // radiance below the horizon, kcd/m^2
+    float sky_share; // of this frame in the mean of the sky's light, 0..1
+    float share;     // and in that of the rest
+} push;
+
+#include "face.glsl"
+
+/// The light of this frame's directions on a face: rgb with V; a: its luminance without V. The ground's is known without
+/// sampling where V is left out.
+vec4 light_of_directions(vec3 world, vec3 n, vec3 face) {
+    vec3 visible = vec3(0.0);
+    float whole = luminance(push.ground) * (0.5 * PI * (1.0 - n.y));
+    for (int k = 0; k < DIRECTIONS; ++k) {
+        float cosine = dot(n, dome.toward[k].xyz);
+        if (cosine <= 0.0) continue;
+        vec3 light = dome.light[k].rgb * cosine;
+        whole += luminance(light) * dome.light[k].a;
+        if (dot(face, dome.toward[k].xyz) <= 0.0) continue;
+        bool lit = is_lit_in_plane(maps, dome.clip_from_world[k], dome.planes[k], dome.window[k], dome.toward[k].a, world, face);
+        if (lit) visible += light;
+    }
+    return vec4(visible, whole);
+}
+
+void gather(ivec2 pixel, float d) {
+    vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
+    vec3 p = in_view(pixel, d);
+    vec3 world = view.eye + view.world_from_view * p;
+    sky = light_of_directions(world, n, face_normal(pixel, d, n));
+    vec3 open = textureLod(sky_irradiance, n, 0.0).rgb;
+    if (PRIOR) {
+        float A = ambient_occlusion(occlusion, OCCLUSION_DOWNSCALE, pixel, -p.z);
+        sky = mix(vec4(A * open, luminance(open)), sky, push.sky_share);
+    }
+    if (SHOW_OCCLUSION) {
+        sky.rgb = vec3(luminance(sky.rgb));
+        rest.a = 1.0;
+        return;
+    }
+    vec3 reflected = SHOW_IRRADIANCE ? vec3(1.0) : texelFetch(albedo, pixel, 0).rgb / PI;
+    sky *= vec4(reflected, luminance(reflected));
+    rest.a = luminance(open) * luminance(reflected);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float d = texelFetch(depth, pixel, 0).r;
+    sky = vec4(0.0);
+    rest = vec4(texelFetch(frame, pixel, 0).rgb, 0.0);
+    if (SKY && d > 0.0) gather(pixel, d);
+    if (push.share >= 1.0) return;
+    sky = mix(texelFetch(previous_sky, pixel, 0), sky, push.sky_share);
+    rest = mix(texelFetch(previous_rest, pixel, 0), rest, push.share);
+}

@@ -1,0 +1,16 @@
+#version 460
+
+// The picture of the means: the sky's light, scaled by what its directions got wrong of the whole sky, and all other light.
+
+layout(location = 0) out vec4 radiance; // kcd/m^2, or the quantity asked for
+
+layout(set = 0, binding = 0) uniform sampler2D sky;
+layout(set = 0, binding = 1) uniform sampler2D rest;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 visible = texelFetch(sky, pixel, 0);
+    vec4 other = texelFetch(rest, pixel, 0);
+    vec3 light = visible.a > 0.0 ? visible.rgb * (other.a / visible.a) : vec3(0.0);
+    radiance = vec4(light + other.rgb, 1.0);
+}

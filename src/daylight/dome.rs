@@ -1,0 +1,210 @@
+//! The sky as a set of directional lights: directions drawn by luminance, each with the light it stands for.
+//!
+//! ∫ V L cos dω ≈ 1/n Σ V(ω_i) cos θ_i L(ω_i)/p(ω_i): p follows the luminance, so that all directions are of nearly equal
+//! luminance, and L/p keeps the spectrum. The points are of one low-discrepancy sequence, so that every prefix is well spread.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DVec2, DVec3};
+
+use super::colour::luminance;
+use super::sampling;
+use super::sky::Daylight;
+
+/// Rows of the table, of equal steps in the sine of the elevation: all cells have the same solid angle.
+const ROWS: usize = 64;
+/// Columns, of equal steps in azimuth.
+const COLUMNS: usize = 256;
+/// Solid angle of a cell, sr.
+const CELL: f64 = TAU / (ROWS * COLUMNS) as f64;
+
+/// A directional light that stands for a part of the sky or of the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DomeLight {
+    /// Unit vector toward the light.
+    pub direction: DVec3,
+    /// L/p: illuminance at normal incidence of the whole hemisphere, were it all there; linear BT.709 RGB, lux.
+    pub illuminance: DVec3,
+}
+
+/// Draws directions of the upper hemisphere with a density proportional to the sky's luminance.
+///
+/// The density is constant in each cell of a table, and L is evaluated at the direction itself, so the estimate has no bias.
+#[derive(Clone, Debug)]
+pub struct SkyDome {
+    /// Cumulative shares of the rows, from the horizon; the last is 1.
+    rows: Vec<f64>,
+    /// Cumulative shares within each row.
+    columns: Vec<Vec<f64>>,
+}
+
+impl SkyDome {
+    /// The table of a daylight.
+    pub fn new(daylight: &Daylight) -> Self {
+        let cell = |row: usize, column: usize| {
+            let at = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
+            luminance(daylight.sky_radiance(toward(at)))
+        };
+        let table: Vec<Vec<f64>> = (0..ROWS)
+            .map(|row| (0..COLUMNS).map(|column| cell(row, column)).collect())
+            .collect();
+        let sums: Vec<f64> = table.iter().map(|row| row.iter().sum()).collect();
+        Self {
+            rows: cumulative(&sums),
+            columns: table.iter().map(|row| cumulative(row)).collect(),
+        }
+    }
+
+    /// The light for a point in [0, 1)².
+    pub fn light(&self, daylight: &Daylight, xi: DVec2) -> DomeLight {
+        let (row, y, row_share) = invert(&self.rows, xi.y);
+        let (column, x, column_share) = invert(&self.columns[row], xi.x);
+        let direction = toward(DVec2::new(column as f64 + x, row as f64 + y));
+        let density = row_share * column_share / CELL;
+        DomeLight {
+            direction,
+            illuminance: daylight.sky_radiance(direction) / density,
+        }
+    }
+}
+
+/// The light of the ground far below the horizon for a point in [0, 1)²: directions of the lower hemisphere, uniform.
+pub fn ground_light(daylight: &Daylight, xi: DVec2) -> DomeLight {
+    let up = sampling::uniform_sphere(DVec2::new(0.5 * xi.x, xi.y));
+    DomeLight {
+        direction: DVec3::new(up.x, -up.z, up.y),
+        illuminance: daylight.ground_luminance * TAU,
+    }
+}
+
+/// Irradiance of the ground far below the horizon on a plane, nothing in between: π L (1 − n_y)/2, lux.
+pub fn ground_irradiance(daylight: &Daylight, normal: DVec3) -> DVec3 {
+    daylight.ground_luminance * (0.5 * PI * (1.0 - normal.y))
+}
+
+/// Direction of a point of the table: x in columns, y in rows.
+fn toward(at: DVec2) -> DVec3 {
+    let sine = at.y / ROWS as f64;
+    let cosine = (1.0 - sine * sine).max(0.0).sqrt();
+    let (s, c) = (at.x / COLUMNS as f64 * TAU).sin_cos();
+    DVec3::new(s * cosine, sine, -c * cosine)
+}
+
+/// Shares up to and with each value; of a sum of 0, equal ones.
+fn cumulative(values: &[f64]) -> Vec<f64> {
+    let total: f64 = values.iter().sum();
+    let share = |v: &f64| {
+        if total > 0.0 {
+            v / total
+        } else {
+            1.0 / values.len() as f64
+        }
+    };
+    let mut sum = 0.0;
+    let mut list: Vec<f64> = values
+        .iter()
+        .map(|v| {
+            sum += share(v);
+            sum
+        })
+        .collect();
+    if let Some(last) = list.last_mut() {
+        *last = 1.0;
+    }
+    list
+}
+
+/// The cell in which `xi` in [0, 1) falls, its place in it (0..1), and the cell's share.
+fn invert(cumulative: &[f64], xi: f64) -> (usize, f64, f64) {
+    let cell = cumulative
+        .partition_point(|c| *c <= xi)
+        .min(cumulative.len() - 1);
+    let low = if cell == 0 { 0.0 } else { cumulative[cell - 1] };
+    let share = cumulative[cell] - low;
+    (cell, ((xi - low) / share).clamp(0.0, 1.0), share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::daylight::quadrature::SphereQuadrature;
+    use crate::daylight::sky::{Conditions, SkyModel};
+
+    fn day(model: SkyModel, elevation: f64) -> Daylight {
+        Daylight::new(&Conditions {
+            model,
+            sun_elevation_deg: elevation,
+            ..Conditions::default()
+        })
+    }
+
+    fn estimate(daylight: &Daylight, count: u32, normal: DVec3) -> DVec3 {
+        let dome = SkyDome::new(daylight);
+        let sum: DVec3 = (0..count)
+            .map(|i| dome.light(daylight, sampling::r2(i)))
+            .map(|l| l.illuminance * l.direction.dot(normal).max(0.0))
+            .sum();
+        sum / f64::from(count)
+    }
+
+    #[test]
+    fn the_lights_add_up_to_the_skys_irradiance() {
+        let quadrature = SphereQuadrature::upper(256, 512);
+        for model in [SkyModel::Preetham, SkyModel::Hosek, SkyModel::Overcast] {
+            for elevation in [3.0, 40.0, 85.0] {
+                let daylight = day(model, elevation);
+                for normal in [DVec3::Y, DVec3::X, DVec3::new(0.6, 0.0, 0.8)] {
+                    let exact = quadrature.irradiance(normal, |d| daylight.sky_radiance(d));
+                    let scale = luminance(daylight.sky_irradiance_up);
+                    for (count, tolerance) in [(64, 0.1), (4096, 2e-3), (65_536, 5e-4)] {
+                        let error = (estimate(&daylight, count, normal) - exact)
+                            .abs()
+                            .max_element()
+                            / scale;
+                        assert!(
+                            error < tolerance,
+                            "{model:?} {elevation} {normal} {count}: {error}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn lights_are_of_nearly_equal_luminance() {
+        let daylight = day(SkyModel::Preetham, 20.0);
+        let dome = SkyDome::new(&daylight);
+        let mean = (0..1024)
+            .map(|i| luminance(dome.light(&daylight, sampling::r2(i)).illuminance))
+            .sum::<f64>()
+            / 1024.0;
+        for i in 0..1024 {
+            let l = luminance(dome.light(&daylight, sampling::r2(i)).illuminance);
+            assert!((l / mean - 1.0).abs() < 0.2, "{i}: {l} of {mean}");
+        }
+    }
+
+    #[test]
+    fn a_black_sky_is_black_and_finite() {
+        let daylight = Daylight::new(&Conditions {
+            horizontal_illuminance: Some(0.0),
+            ..Conditions::default()
+        });
+        assert_eq!(estimate(&daylight, 16, DVec3::Y), DVec3::ZERO);
+    }
+
+    #[test]
+    fn the_ground_lights_what_looks_down() {
+        let daylight = day(SkyModel::Preetham, 40.0);
+        for normal in [DVec3::NEG_Y, DVec3::X, DVec3::Y] {
+            let sum: DVec3 = (0..4096)
+                .map(|i| ground_light(&daylight, sampling::r2(i)))
+                .map(|l| l.illuminance * l.direction.dot(normal).max(0.0))
+                .sum();
+            let error = sum / 4096.0 - ground_irradiance(&daylight, normal);
+            let largest = ground_irradiance(&daylight, DVec3::NEG_Y).max_element();
+            assert!(error.abs().max_element() < 2e-3 * largest, "{normal}");
+        }
+    }
+}

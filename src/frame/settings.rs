@@ -1,0 +1,48 @@
+//! How frames are drawn.
+
+use glam::UVec2;
+
+use super::{Sampling, Visibility};
+use crate::passes::geometry::Geometry;
+use crate::passes::irradiance::IrradianceSettings;
+use crate::passes::lighting::LightingSettings;
+use crate::passes::ssao::SsaoSettings;
+use crate::passes::tone_map::ToneSettings;
+
+/// Everything that is fixed while frames are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrameSettings {
+    /// Width and height, pixels.
+    pub size: UVec2,
+    /// Frames that are averaged into a picture; 1 samples pixel centres and the sun's centre.
+    pub samples: u32,
+    /// How they differ, and what hides the sky from them.
+    pub sampling: Sampling,
+    /// Edge of a face of the sky cube, texels.
+    pub sky_edge: u32,
+    /// The irradiance cube.
+    pub irradiance: IrradianceSettings,
+    /// Edge of the shadow map, texels.
+    pub shadow_resolution: u32,
+    /// Ambient occlusion.
+    pub ssao: SsaoSettings,
+    /// Lighting.
+    pub lighting: LightingSettings,
+    /// Display.
+    pub tone: ToneSettings,
+}
+
+impl FrameSettings {
+    /// Whether frames are averaged by [`crate::passes::accumulate::Accumulate`].
+    pub(super) fn averages(&self) -> bool {
+        self.samples > 1 && self.sampling.visibility == Visibility::Ssao
+    }
+
+    /// A scene without any ρ_s needs none of its lookups.
+    pub(super) fn for_scene(mut self, geometry: &Geometry) -> Self {
+        if !geometry.is_specular() {
+            self.lighting.specular_scale = 0.0;
+        }
+        self
+    }
+}

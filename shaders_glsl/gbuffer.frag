@@ -20,7 +20,7 @@ layout(set = 0, binding = 0) uniform sampler2D diffuse_map;
 layout(set = 0, binding = 1) uniform sampler2D specular_map;
 
 void main() {
-    normal = octahedral_encode(facing_normal(shading_normal, from_eye));
+    normal = octahedral_encode(facing_normal(shading_normal, from_eye, 0.0));
     albedo = vec4(push.diffuse, 1.0);
     if (DIFFUSE_MAP) albedo.rgb *= texture(diffuse_map, surface_uv, -push.sharpen).rgb;
     if (SPECULAR_MAP) albedo.a = dot(texture(specular_map, surface_uv, -push.sharpen).rgb, vec3(1.0 / 3.0));

@@ -35,7 +35,8 @@ vec3 mapped_normal(vec3 n) {
 }
 
 void main() {
-    vec3 n = facing_normal(shading_normal, from_eye);
+    // Cards of leaves and grass lean their normals out of the crown or up: across the face is no reason to turn them.
+    vec3 n = facing_normal(shading_normal, from_eye, CUT_OUT ? 0.5 : 0.0);
     vec4 surface = vec4(push.diffuse, 1.0) * surface_colour;
     if (DIFFUSE_MAP) surface *= texture(diffuse_map, surface_uv, -push.sharpen);
     if (NORMAL_MAP) n = mapped_normal(n);

@@ -158,6 +158,9 @@ pub struct Options {
     /// Let a model read libraries and pictures outside of its own folder tree.
     #[arg(long, help_heading = "Limits")]
     pub allow_outside: bool,
+    /// Read large models anew instead of keeping them processed in the user's cache folder.
+    #[arg(long, help_heading = "Limits")]
+    pub no_cache: bool,
     /// Most triangles of a scene, instances counted [default: 67108864].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Limits")]
     pub max_triangles: Option<u32>,
@@ -235,7 +238,7 @@ impl Options {
             size samples visibility filter seed show preset place when sun solar sun_position sky turbidity sky_illuminance refraction ground_albedo camera eye target fov
             ev100 exposure tonemap gamma scale irradiance irradiance_samples irradiance_error ao_radius ao_resolution specular shadow_size
             dome_directions dome_size smooth device without max_triangles max_texture_edge max_texture_mib max_file_mib fresnel moment;
-            layers limb_darkening quiet validate allow_outside)
+            layers limb_darkening quiet validate allow_outside no_cache)
     }
 }
 

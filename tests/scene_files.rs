@@ -450,3 +450,100 @@ fn loading_tells_how_far_it_is_from_another_thread() {
     );
     assert_eq!(told.last().map(|t| t.0), Some(1.0));
 }
+
+#[test]
+fn the_island_is_sound() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/island.toml");
+    let island = load(&path, &LoadOptions::default()).expect("the island");
+    assert_sound("island", &island.scene);
+    assert_eq!(island.scene.warnings, Vec::<String>::new());
+    let triangles = island.scene.triangles();
+    assert!((150_000..300_000).contains(&triangles), "{triangles}");
+    let names = |list: &[skylight::scene::NamedOptions]| -> Vec<String> {
+        list.iter().map(|named| named.name.clone()).collect()
+    };
+    assert_eq!(names(&island.cameras), ["bay", "temple", "veranda"]);
+    assert_eq!(names(&island.moments), ["morning", "noon", "evening"]);
+    let sea = island
+        .scene
+        .casting()
+        .iter()
+        .filter(|casts| !**casts)
+        .count();
+    assert_eq!(sea, 1, "the sea alone casts no shadow");
+}
+
+/// A model that is large enough for the cache, with a library.
+fn large_model(folder: &Path) -> PathBuf {
+    let mut text = String::from("mtllib m.mtl\nusemtl a\n");
+    for i in 0..90_000 {
+        text += &format!("v {i}.25 0 0.5\nv {i}.75 1.5 0\nv {i}.5 0 1\nf -3 -2 -1\n");
+    }
+    fs::write(folder.join("m.mtl"), "newmtl a\nKd 0.1 0.2 0.3\n").expect("a library");
+    fs::write(folder.join("m.obj"), text).expect("a model");
+    folder.join("m.obj")
+}
+
+#[test]
+fn a_cached_model_is_the_same_and_a_damaged_or_stale_one_is_not_trusted() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let path = large_model(folder.path());
+    let cache = folder.path().join("cache");
+    let options = LoadOptions {
+        cache: Some(cache.clone()),
+        ..LoadOptions::default()
+    };
+    let plain = load(&path, &LoadOptions::default()).expect("a model");
+    let entries = || -> Vec<PathBuf> {
+        let list = fs::read_dir(&cache).expect("the cache");
+        list.map(|entry| entry.expect("an entry").path()).collect()
+    };
+    assert_eq!(load(&path, &options).expect("read"), plain);
+    let [entry] = &entries()[..] else {
+        panic!("one entry: {:?}", entries())
+    };
+    let whole = fs::read(entry).expect("the entry");
+    assert_eq!(load(&path, &options).expect("from the cache"), plain);
+    for at in [0, 9, whole.len() / 2, whole.len() - 1] {
+        let mut damaged = whole.clone();
+        damaged[at] ^= 0x40;
+        fs::write(entry, &damaged).expect("damage");
+        assert_eq!(load(&path, &options).expect("rebuilt"), plain, "byte {at}");
+        assert_eq!(fs::read(entry).expect("the new entry"), whole, "byte {at}");
+    }
+    fs::write(entry, &whole[..whole.len() / 3]).expect("a cut");
+    assert_eq!(load(&path, &options).expect("rebuilt"), plain);
+    fs::write(folder.path().join("m.mtl"), "newmtl a\nKd 0.9 0.2 0.3\n").expect("a library");
+    let changed = load(&path, &options).expect("with the new library").scene;
+    assert_eq!(changed.materials[0].diffuse[0], 0.9);
+}
+
+#[test]
+fn models_read_nothing_outside_of_their_folder() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let inner = folder.path().join("inner");
+    fs::create_dir(&inner).expect("a folder");
+    let png = folder.path().join("secret.png");
+    image::RgbImage::new(2, 2).save(&png).expect("a picture");
+    let outside = png.display();
+    let link = inner.join("link.png");
+    std::os::unix::fs::symlink(&png, &link).expect("a link");
+    for name in ["../secret.png", "link.png", &outside.to_string()] {
+        let mtl = format!("newmtl a\nmap_Kd {name}\n");
+        fs::write(inner.join("m.mtl"), mtl).expect("a library");
+        let obj = format!("mtllib m.mtl\n{TRIANGLE}usemtl a\nf 1 2 3\n");
+        fs::write(inner.join("m.obj"), obj).expect("a model");
+        let scene = load(&inner.join("m.obj"), &LoadOptions::default())
+            .expect(name)
+            .scene;
+        assert!(scene.textures.is_empty(), "{name}");
+        let told = scene.warnings.iter().any(|w| w.contains("--allow-outside"));
+        assert!(told, "{name}: {:?}", scene.warnings);
+        let trusting = LoadOptions {
+            allow_outside: true,
+            ..LoadOptions::default()
+        };
+        let scene = load(&inner.join("m.obj"), &trusting).expect(name).scene;
+        assert_eq!(scene.textures.len(), 1, "{name}: {:?}", scene.warnings);
+    }
+}

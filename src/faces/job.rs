@@ -1,6 +1,6 @@
 //! What render, view and bench have in common: from options to a scene, a daylight and the settings of a frame.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::UVec2;
@@ -38,7 +38,21 @@ pub fn load_options(options: &Options) -> LoadOptions {
             .max_triangles
             .map_or(default.max_triangles, |n| n as usize),
         allow_outside: options.allow_outside,
+        cache: if options.no_cache {
+            None
+        } else {
+            cache_folder()
+        },
     }
+}
+
+/// Where processed scenes are kept: the user's folder for what may be deleted at any time.
+fn cache_folder() -> Option<PathBuf> {
+    let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
+    let base = set("XDG_CACHE_HOME").map(PathBuf::from);
+    let base = base.filter(|path| path.is_absolute());
+    let folder = base.or_else(|| Some(PathBuf::from(set("HOME")?).join(".cache")))?;
+    Some(folder.join("skylight"))
 }
 
 /// How a device is to be opened.

@@ -1,9 +1,10 @@
 //! Axis-aligned bounding boxes.
 
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 /// An axis-aligned box in world space, metres. `min > max` on every axis means that it holds nothing.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Bounds {
     /// Smallest coordinates, metres.
     pub min: Vec3,

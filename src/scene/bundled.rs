@@ -34,7 +34,7 @@ pub(super) fn load_bundled(
     progress: Progress<'_>,
 ) -> Result<Loaded, SceneError> {
     load_from(
-        Files::embedded(FILES),
+        &mut Files::embedded(FILES),
         Path::new("colonnade.toml"),
         options,
         progress,

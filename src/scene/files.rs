@@ -1,15 +1,41 @@
 //! Where files come from: the disk, or the ones that are built into the program.
 
 use std::borrow::Cow;
+use std::cell::RefCell;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
+use serde::{Deserialize, Serialize};
+
 use super::error::SceneError;
+
+/// BLAKE3 of the content of a file.
+pub(super) type Digest = [u8; 32];
+
+pub(super) fn digest(bytes: &[u8]) -> Digest {
+    *blake3::hash(bytes).as_bytes()
+}
+
+/// A file that was read, and what it held.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct ReadFile {
+    pub path: PathBuf,
+    digest: Digest,
+}
+
+impl ReadFile {
+    /// Whether it holds the same still.
+    pub fn is_unchanged(&self) -> bool {
+        std::fs::read(&self.path).is_ok_and(|bytes| digest(&bytes) == self.digest)
+    }
+}
 
 /// A source of files.
 #[derive(Debug, Clone)]
 pub(super) struct Files {
     source: Source,
+    /// What was read, if anybody wants to know.
+    record: Option<RefCell<Vec<ReadFile>>>,
     /// Of a model: what it names must lie in this folder tree. None: anywhere.
     confined_to: Option<PathBuf>,
 }
@@ -36,6 +62,7 @@ impl Files {
     pub fn disk(max_bytes: u64) -> Self {
         Self {
             source: Source::Disk { max_bytes },
+            record: None,
             confined_to: None,
         }
     }
@@ -44,8 +71,22 @@ impl Files {
     pub fn embedded(files: &'static [(&'static str, &'static [u8])]) -> Self {
         Self {
             source: Source::Embedded(files),
+            record: None,
             confined_to: None,
         }
+    }
+
+    /// Keeps a record of what is read from now on.
+    pub fn start_record(&mut self) {
+        self.record = Some(RefCell::default());
+    }
+
+    /// What was read since [`Files::start_record`].
+    pub fn take_record(&mut self) -> Vec<ReadFile> {
+        self.record
+            .take()
+            .map(RefCell::into_inner)
+            .unwrap_or_default()
     }
 
     /// From now on [`Files::find`] finds only what lies in the folder tree of `model`.
@@ -97,7 +138,16 @@ impl Files {
     /// One that names the file when it is missing, no regular file, too large or unreadable.
     pub fn read(&self, path: &Path) -> Result<Vec<u8>, SceneError> {
         match self.source {
-            Source::Disk { max_bytes } => read_disk(path, max_bytes),
+            Source::Disk { max_bytes } => {
+                let bytes = read_disk(path, max_bytes)?;
+                if let Some(record) = &self.record {
+                    record.borrow_mut().push(ReadFile {
+                        path: path.to_owned(),
+                        digest: digest(&bytes),
+                    });
+                }
+                Ok(bytes)
+            }
             Source::Embedded(files) => files
                 .iter()
                 .find(|(name, _)| Path::new(name) == path)

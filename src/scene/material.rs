@@ -1,7 +1,9 @@
 //! Materials as the lecture's ρ_d, ρ_s and p, and the rules that lead there from other models.
 
+use serde::{Deserialize, Serialize};
+
 /// How a surface reflects: Lambert plus a Phong lobe. Every surface is seen from both sides.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// Name in its file.
     pub name: String,

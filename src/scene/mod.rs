@@ -7,6 +7,7 @@ mod arena;
 mod bounds;
 mod builder;
 mod bundled;
+mod cache;
 mod camera;
 mod error;
 mod files;
@@ -34,6 +35,7 @@ mod triangulate;
 use std::path::{Path, PathBuf};
 
 use glam::Affine3A;
+use serde::{Deserialize, Serialize};
 
 pub use bounds::Bounds;
 pub use bundled::bundled;
@@ -45,7 +47,7 @@ pub use scene_file::{NamedCamera, NamedMoment, NamedOptions};
 pub use texture::{Encoding, Texture};
 
 use builder::Builder;
-use files::Files;
+use files::{Files, digest};
 use obj::{Placement, append_obj};
 use progress::Reporter;
 use scene_file::Said;
@@ -79,7 +81,7 @@ pub struct Scene {
 }
 
 /// A run of triangles of one mesh with one material.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Part {
     /// Where it starts in [`Scene::indices`].
     pub first_index: u32,
@@ -173,6 +175,8 @@ pub struct LoadOptions {
     /// Whether a model may name libraries, pictures and buffers outside of its own folder tree. False by default: a
     /// downloaded model has no business with other files.
     pub allow_outside: bool,
+    /// Folder for processed scenes: a large model starts quickly the second time. None by default.
+    pub cache: Option<PathBuf>,
 }
 
 impl Default for LoadOptions {
@@ -184,6 +188,7 @@ impl Default for LoadOptions {
             max_file_bytes: 1 << 32,
             max_triangles: 64 << 20,
             allow_outside: false,
+            cache: None,
         }
     }
 }
@@ -225,18 +230,42 @@ pub fn load_telling(
 ) -> Result<Loaded, SceneError> {
     let disk = Files::disk(options.max_file_bytes);
     match path {
-        Some(path) => load_from(disk, path, options, progress),
+        Some(path) => load_by_cache(disk, path, options, progress),
         None => bundled::load_bundled(options, progress),
     }
 }
 
-fn load_from(
-    files: Files,
+/// From the cache if there is one, the model is large and its entry sound; else from the files, and into the cache.
+fn load_by_cache(
+    mut files: Files,
     path: &Path,
     options: &LoadOptions,
     progress: Progress<'_>,
 ) -> Result<Loaded, SceneError> {
-    let mut builder = Builder::new(files, options, Reporter::new(progress));
+    let large = std::fs::metadata(path).is_ok_and(|meta| meta.len() >= cache::SMALLEST);
+    let Some(folder) = options.cache.as_deref().filter(|_| large) else {
+        return load_from(&mut files, path, options, progress);
+    };
+    progress(0.0, "looking in the cache");
+    let content = digest(&files.read(path)?);
+    let entry = cache::place(folder, path, content, options);
+    if let Some(loaded) = cache::read(&entry, path) {
+        progress(1.0, "loaded");
+        return Ok(loaded);
+    }
+    files.start_record();
+    let loaded = load_from(&mut files, path, options, progress)?;
+    cache::write(&entry, &loaded, files.take_record());
+    Ok(loaded)
+}
+
+fn load_from(
+    files: &mut Files,
+    path: &Path,
+    options: &LoadOptions,
+    progress: Progress<'_>,
+) -> Result<Loaded, SceneError> {
+    let mut builder = Builder::new(files.clone(), options, Reporter::new(progress));
     let extension = path
         .extension()
         .map(|e| e.to_string_lossy().to_ascii_lowercase());
@@ -257,6 +286,7 @@ fn load_from(
         }
     };
     builder.scene.fill_streams();
+    *files = builder.files;
     progress(1.0, "loaded");
     Ok(Loaded {
         path: path.to_owned(),

@@ -5,6 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use glam::{Affine3A, EulerRot, Mat3, Quat, Vec3};
+use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::builder::Builder;
@@ -54,7 +55,7 @@ const TOP_KEYS: &[&str] = &[
 type Pairs = Vec<(String, String)>;
 
 /// Options of a scene file that a name chooses.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NamedOptions {
     /// The name.
     pub name: String,

@@ -8,7 +8,7 @@ fn load(toml: &str) -> Result<Loaded, String> {
     let toml: &'static [u8] = toml.to_owned().into_bytes().leak();
     let files: Vec<(&'static str, &'static [u8])> = vec![("dir/s.toml", toml), ("dir/m.obj", OBJ)];
     load_from(
-        Files::embedded(files.leak()),
+        &mut Files::embedded(files.leak()),
         Path::new("dir/s.toml"),
         &LoadOptions::default(),
         &|_, _| (),

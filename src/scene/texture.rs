@@ -2,8 +2,10 @@
 
 use std::sync::LazyLock;
 
+use serde::{Deserialize, Serialize};
+
 /// What the bytes of a [`Texture`] mean; alpha is always linear.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Encoding {
     /// Red, green and blue are sRGB-encoded colours.
     Srgb,

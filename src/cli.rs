@@ -27,6 +27,9 @@ pub enum Command {
     View {
         /// Scene file (.toml) or model (.obj) [default: the bundled scene].
         scene: Option<PathBuf>,
+        /// Go on with the settings and the camera that this scene was left with.
+        #[arg(long)]
+        resume: bool,
         /// How; --samples is the number of frames averaged at rest [default: 64].
         #[command(flatten)]
         options: Box<Options>,

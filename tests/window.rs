@@ -271,6 +271,45 @@ fn a_file_that_cannot_be_opened_is_told_in_the_window() {
 }
 
 #[test]
+fn resumed_windows_go_on_where_they_were_left() {
+    let state = tempfile::tempdir().expect("a scratch folder");
+    let variables = [("XDG_STATE_HOME", state.path())];
+    let words = ["--size", "320x180", "--samples", "2"];
+    let first = Running::bare_with(&words, &variables);
+    let start = first.picture();
+    let left = first.after(|d| {
+        d.typed('h');
+        d.point(100, 90);
+        d.press(1);
+        d.point(150, 80);
+        d.release(1);
+    });
+    assert!(difference(&start, &left) > 0.02);
+    first.close_well();
+    let again = Running::bare_with(&["--resume"], &variables);
+    let resumed = again.picture();
+    assert_eq!(resumed.size, [320, 180]);
+    let flip = difference(&left, &resumed);
+    println!("FLIP of the resumed window against the one that was left: {flip:.5}");
+    assert!(flip < 0.01, "{flip}");
+    again.close_well();
+
+    let file = state.path().join("skylight").join("bundled.toml");
+    fs::write(&file, "turbidity = \"much\"").expect("written");
+    let output = program(state.path())
+        .args(["view", "--resume"])
+        .env("XDG_STATE_HOME", state.path())
+        .output()
+        .expect("the program starts");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        said.contains("bundled.toml") && said.contains("delete it"),
+        "{said}"
+    );
+    assert_eq!(said.lines().count(), 1, "{said}");
+}
+
+#[test]
 fn without_a_display_one_line_points_to_render() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let output = program(folder.path())

@@ -41,7 +41,11 @@ pub fn run(command: Command) -> Result<()> {
             output,
             options,
         } => render::run(scene.as_deref(), &output, *options),
-        Command::View { scene, options } => view::run(scene.as_deref(), *options),
+        Command::View {
+            scene,
+            resume,
+            options,
+        } => view::run(scene.as_deref(), resume, *options),
         Command::Bench { wishes, options } => bench::run(&wishes, *options),
         Command::Sky { wishes, options } => sky::run(&wishes, *options),
         Command::Bake { wishes, options } => bake::run(&wishes, *options),

@@ -79,7 +79,10 @@ fn reason(error: &std::io::Error) -> String {
 }
 
 /// Writes beside the target and renames when whole.
-fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+///
+/// # Errors
+/// When the folder cannot be written to: an older file is left alone.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     write_set(&[(path.to_owned(), bytes.to_vec())])
 }
 

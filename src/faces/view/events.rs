@@ -174,6 +174,12 @@ impl ApplicationHandler<Message> for App {
         if let Some(stage) = &mut self.stage {
             let _ = stage.idle();
         }
+        if let Some(document) = &self.document
+            && let Err(error) = super::resume::keep(document)
+            && !self.options.quiet
+        {
+            eprintln!("warning: {error}");
+        }
         self.document = None;
     }
 }

@@ -3,7 +3,7 @@
 //! - [`controls`]: from drags, wheel and keys to a camera; no device, no window. [`viewpoints`]: places to come back to.
 //! - `app` and `events`: the event loop; `stage`: the window with its device; `document`: the scene that is open.
 //! - `keys` and `input`: what keys and pointer do. `interface`: what lies over the picture, panel by panel.
-//! - `loader`: scenes in the background. `capture`: pictures to files.
+//! - `loader`: scenes in the background. `capture`: pictures to files. `resume`: settings for the next time.
 
 mod app;
 mod capture;
@@ -14,6 +14,7 @@ mod input;
 mod interface;
 mod keys;
 mod loader;
+mod resume;
 mod stage;
 mod style;
 pub mod viewpoints;
@@ -27,11 +28,17 @@ use crate::settings::Options;
 
 use app::App;
 
-/// Opens the window on `scene`, or on the bundled scene, and returns when it is closed.
+/// Opens the window on `scene`, or on the bundled scene, and returns when it is closed; `resumes` with the settings that this
+/// scene was left with.
 ///
 /// # Errors
 /// No display, no device that presents to it, or a device that is lost. A scene that cannot be loaded is told in the window.
-pub fn run(scene: Option<&Path>, options: Options) -> Result<()> {
+pub fn run(scene: Option<&Path>, resumes: bool, options: Options) -> Result<()> {
+    let options = if resumes {
+        resume::recall(scene, options)?
+    } else {
+        options
+    };
     let event_loop = EventLoop::with_user_event()
         .build()
         .map_err(|e| Error::NoDisplay(e.to_string()))?;

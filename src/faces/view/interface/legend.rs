@@ -1,0 +1,55 @@
+//! The legend of false colours.
+
+use egui::{Align2, Color32, FontId, Mesh, Rect, Sense, Ui, pos2, vec2};
+
+use super::corner;
+use crate::daylight::false_colour::{Quantity, Range};
+
+/// Size of the bar, points.
+const BAR: [f32; 2] = [18.0, 220.0];
+/// Steps of colour in it.
+const STEPS: u32 = 48;
+
+pub(super) fn show(ui: &Ui, quantity: Quantity, range: Range) {
+    corner(ui, "legend", Align2::RIGHT_CENTER, [-12.0, 0.0], |ui| {
+        ui.strong(quantity.unit());
+        ui.add_space(8.0);
+        let (rect, _) = ui.allocate_exact_size(vec2(BAR[0] + 62.0, BAR[1]), Sense::hover());
+        let bar = Rect::from_min_size(rect.min, BAR.into());
+        ui.painter().add(colours(bar, range));
+        for tick in range.ticks() {
+            let y = at(bar, tick.share);
+            let text = pos2(bar.right() + 8.0, y);
+            let font = FontId::proportional(12.0);
+            ui.painter().hline(bar.right()..=bar.right() + 5.0, y, (1.0, Color32::WHITE));
+            ui.painter()
+                .text(text, Align2::LEFT_CENTER, &tick.label, font, Color32::WHITE);
+        }
+        ui.add_space(8.0);
+    });
+}
+
+/// Height of a share of the range: the largest value is on top.
+fn at(bar: Rect, share: f64) -> f32 {
+    bar.bottom() - bar.height() * share as f32
+}
+
+/// The colours from the bottom to the top.
+fn colours(bar: Rect, range: Range) -> Mesh {
+    let mut mesh = Mesh::default();
+    for step in 0..=STEPS {
+        let share = f64::from(step) / f64::from(STEPS);
+        let value = range.min * (range.max / range.min).powf(share);
+        let c = range.colour(value).as_vec3();
+        let color = egui::Rgba::from_rgb(c.x, c.y, c.z).into();
+        let y = at(bar, share);
+        mesh.colored_vertex(pos2(bar.left(), y), color);
+        mesh.colored_vertex(pos2(bar.right(), y), color);
+        if step > 0 {
+            let n = 2 * step;
+            mesh.add_triangle(n - 2, n - 1, n);
+            mesh.add_triangle(n - 1, n, n + 1);
+        }
+    }
+    mesh
+}

@@ -149,6 +149,8 @@ pub struct Controls {
     size: f64,
     /// Middle of what there is to see, metres.
     centre: DVec3,
+    /// Farthest that the pivot may be from the middle and from the eye, metres.
+    reach: f64,
     /// Factor that the wheel puts on the speed of flight.
     speed: f64,
     /// Of flight, metres a second.
@@ -162,15 +164,19 @@ impl Controls {
         let pose = Pose::of(camera);
         let centre = bounds.centre().as_dvec3();
         let diagonal = f64::from(bounds.diagonal());
+        let size = if diagonal > 0.0 {
+            diagonal
+        } else {
+            pose.distance
+        };
+        // Whoever starts farther off than that may stay there.
+        let start = pose.distance.max(pose.pivot.distance(centre));
         Self {
             pose,
             near: camera.near,
-            size: if diagonal > 0.0 {
-                diagonal
-            } else {
-                pose.distance
-            },
+            size,
             centre,
+            reach: (REACH.1 * size).max(start),
             speed: 1.0,
             velocity: DVec3::ZERO,
             travel: None,
@@ -330,11 +336,12 @@ impl Controls {
         self.go(Pose::of(camera));
     }
 
-    /// Turns toward `point`, metres, which becomes the pivot.
+    /// Turns toward `point`, metres, which becomes the pivot, unless it is out of reach.
     pub fn focus(&mut self, point: DVec3) {
         let eye = self.pose.eye();
         let distance = eye.distance(point);
-        if !(point.is_finite() && distance > REACH.0 * self.size) {
+        let limits = REACH.0 * self.size..=self.reach;
+        if !(point.is_finite() && limits.contains(&distance)) {
             return;
         }
         let (azimuth_deg, elevation_deg) = azimuth_elevation(point - eye);
@@ -377,18 +384,13 @@ impl Controls {
     }
 
     fn within_reach(&self, distance: f64) -> f64 {
-        distance.clamp(REACH.0 * self.size, self.reach())
-    }
-
-    /// Whoever starts farther off than the limit may stay there.
-    fn reach(&self) -> f64 {
-        (REACH.1 * self.size).max(self.pose.distance)
+        distance.clamp(REACH.0 * self.size, self.reach)
     }
 
     /// Keeps the pivot where one finds back from.
     fn hold(&mut self) {
         let offset = self.pose.pivot - self.centre;
-        self.pose.pivot = self.centre + offset.clamp_length_max(self.reach());
+        self.pose.pivot = self.centre + offset.clamp_length_max(self.reach);
     }
 }
 

@@ -1,4 +1,5 @@
 use super::*;
+use crate::daylight::sampling::rnd;
 use glam::Vec3;
 
 fn house() -> Bounds {
@@ -12,15 +13,12 @@ fn start() -> Controls {
     Controls::new(&Camera::framing(&house(), 45.0, 1.5), &house())
 }
 
-/// xorshift64*: numbers in 0..1.
-struct Random(u64);
+struct Random(u32);
 
 impl Random {
+    /// 0..1.
     fn next(&mut self) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1u64 << 53) as f64
+        rnd(&mut self.0)
     }
 
     fn within(&mut self, size: f64) -> f64 {

@@ -1,0 +1,275 @@
+//! False colours: a luminance or an illuminance as a colour that can be read off a legend.
+//!
+//! Values run logarithmically from one end of a [`Range`] to the other, and through [`turbo`]. What is below or above the
+//! range has the colour of its end; where there is no light, or no surface, it is black.
+
+use clap::ValueEnum;
+use glam::DVec3;
+
+use super::colour::srgb_eotf;
+
+/// Shares of the picture's values that an automatic range leaves out at each end.
+const OUTLIERS: f64 = 0.01;
+/// Decades that the ends of an automatic range are whole multiples of.
+const STEP_DECADES: f64 = 0.5;
+
+/// What false colours show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Quantity {
+    /// Of the light toward the eye, cd/m².
+    Luminance,
+    /// Of the surface under the pixel, lux.
+    Illuminance,
+}
+
+impl Quantity {
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Luminance => "cd/m²",
+            Self::Illuminance => "lux",
+        }
+    }
+
+    /// A range that holds a sunny day and its shadows: for pictures that move, whose colours must not.
+    pub fn daytime(self) -> Range {
+        match self {
+            Self::Luminance => Range {
+                min: 10.0,
+                max: 1e5,
+            },
+            Self::Illuminance => Range {
+                min: 100.0,
+                max: 1e5,
+            },
+        }
+    }
+}
+
+/// From where to where the colours go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// Value of the first colour, positive, in the quantity's unit.
+    pub min: f64,
+    /// Value of the last colour, greater than `min`.
+    pub max: f64,
+}
+
+impl std::fmt::Display for Range {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} to {}", label(self.min), label(self.max))
+    }
+}
+
+/// A labelled value of a legend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tick {
+    /// In the quantity's unit.
+    pub value: f64,
+    /// Where it is from the first colour (0) to the last (1).
+    pub share: f64,
+    /// The value as text.
+    pub label: String,
+}
+
+impl Range {
+    /// The half decades around `values`, without one percent at each end; `None` when there is no light.
+    pub fn around(values: impl Iterator<Item = f64>) -> Option<Self> {
+        let mut values: Vec<f64> = values.filter(|v| v.is_finite() && *v > 0.0).collect();
+        let last = values.len().checked_sub(1)?;
+        let mut at = |share: f64| {
+            let index = (share * last as f64).round() as usize;
+            let (_, value, _) = values.select_nth_unstable_by(index, f64::total_cmp);
+            value.log10() / STEP_DECADES
+        };
+        // A value on a half decade is not to be rounded off it.
+        let (low, high) = (at(OUTLIERS) + 1e-9, at(1.0 - OUTLIERS) - 1e-9);
+        let low = low.floor();
+        let high = high.ceil().max(low + 1.0);
+        let value = |steps: f64| 10f64.powf(steps * STEP_DECADES);
+        Some(Self {
+            min: value(low),
+            max: value(high),
+        })
+    }
+
+    /// Where `value` is from the first colour (0) to the last (1), cut there.
+    pub fn share(&self, value: f64) -> f64 {
+        let (scale, offset) = self.log2_scale();
+        (value.log2() * scale + offset).clamp(0.0, 1.0)
+    }
+
+    /// (a, b) such that a log₂(value) + b is the share: the form in which a shader takes a range.
+    pub fn log2_scale(&self) -> (f64, f64) {
+        let scale = 1.0 / (self.max.log2() - self.min.log2());
+        (scale, -self.min.log2() * scale)
+    }
+
+    /// The linear BT.709 colour of `value`, 0..1.
+    pub fn colour(&self, value: f64) -> DVec3 {
+        if value > 0.0 {
+            turbo(self.share(value))
+        } else {
+            DVec3::ZERO
+        }
+    }
+
+    /// The values 1, 2 and 5 of every decade within the range; its ends where those are fewer than two.
+    pub fn ticks(&self) -> Vec<Tick> {
+        let decades = self.min.log10().floor() as i32..=self.max.log10().ceil() as i32;
+        let round = decades.flat_map(|decade| [1, 2, 5].map(|digit| (digit, decade)));
+        let round = round.map(|(digit, decade)| decimal(digit, decade));
+        // The ends of a half decade are as written, not as rounded.
+        let inside = |v: &f64| *v >= self.min * (1.0 - 1e-9) && *v <= self.max * (1.0 + 1e-9);
+        let values: Vec<f64> = round.filter(inside).collect();
+        let values = if values.len() < 2 {
+            vec![self.min, self.max]
+        } else {
+            values
+        };
+        let tick = |value| Tick {
+            value,
+            share: self.share(value),
+            label: label(value),
+        };
+        values.into_iter().map(tick).collect()
+    }
+}
+
+/// `digit` times a power of ten, as the nearest number to its decimal text.
+fn decimal(digit: i32, decade: i32) -> f64 {
+    format!("{digit}e{decade}")
+        .parse()
+        .unwrap_or(f64::from(digit) * 10f64.powi(decade))
+}
+
+/// At most four digits that count, thousands apart.
+fn label(value: f64) -> String {
+    let decimals = (3 - value.abs().log10().floor() as i32).clamp(0, 12);
+    let text = format!("{value:.*}", decimals as usize);
+    let text = match text.split_once('.') {
+        Some((whole, part)) if part.trim_end_matches('0').is_empty() => whole.to_owned(),
+        Some((whole, part)) => return format!("{whole}.{}", part.trim_end_matches('0')),
+        None => text,
+    };
+    let mut grouped = String::new();
+    for (i, digit) in text.chars().enumerate() {
+        if i > 0 && (text.len() - i) % 3 == 0 {
+            grouped.push(' ');
+        }
+        grouped.push(digit);
+    }
+    grouped
+}
+
+/// Mikhailov 2019, *Turbo, An Improved Rainbow Colormap for Visualization*: Du's polynomial of it, linear BT.709. `share` is
+/// 0..1.
+///
+/// Hues tell values apart that a map of one hue would blend, while lightness changes smoothly, without the bands of older rainbows.
+/// The polynomial is of sRGB values, which are decoded here.
+pub fn turbo(share: f64) -> DVec3 {
+    const TERMS: [DVec3; 6] = [
+        DVec3::new(0.135_721_38, 0.091_402_61, 0.106_673_30),
+        DVec3::new(4.615_392_60, 2.194_188_39, 12.641_946_08),
+        DVec3::new(-42.660_322_58, 4.842_966_58, -60.582_048_36),
+        DVec3::new(132.131_082_34, -14.185_033_33, 110.362_767_71),
+        DVec3::new(-152.942_393_96, 4.277_298_57, -89.903_109_12),
+        DVec3::new(59.286_379_43, 2.829_566_04, 27.348_249_73),
+    ];
+    let x = share.clamp(0.0, 1.0);
+    let encoded = TERMS
+        .iter()
+        .rev()
+        .fold(DVec3::ZERO, |sum, term| sum * x + *term);
+    encoded.clamp(DVec3::ZERO, DVec3::ONE).map(srgb_eotf)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::colour::srgb_oetf;
+    use super::*;
+
+    #[test]
+    fn turbo_meets_its_table() {
+        // Entries of the published table of 256 sRGB colours.
+        const TABLE: [(u32, [f64; 3]); 10] = [
+            (0, [0.18995, 0.07176, 0.23217]),
+            (17, [0.25107, 0.25237, 0.63374]),
+            (34, [0.27628, 0.42118, 0.89123]),
+            (51, [0.25862, 0.57958, 0.99876]),
+            (68, [0.15844, 0.73551, 0.92305]),
+            (85, [0.09267, 0.86554, 0.76230]),
+            (102, [0.19659, 0.94901, 0.59466]),
+            (119, [0.42778, 0.99419, 0.38575]),
+            (136, [0.64362, 0.98999, 0.23356]),
+            (255, [0.47960, 0.01583, 0.01055]),
+        ];
+        let mut worst = 0.0f64;
+        for (entry, rgb) in TABLE {
+            let ours = turbo(f64::from(entry) / 255.0).map(srgb_oetf);
+            let off = (ours - DVec3::from_array(rgb)).abs().max_element();
+            // The polynomial was fitted to the inside: it is darker at the ends.
+            let is_end = entry == 0 || entry == 255;
+            assert!(off < if is_end { 0.13 } else { 0.03 }, "{entry}: {off}");
+            worst = worst.max(if is_end { 0.0 } else { off });
+        }
+        println!("turbo: {worst:.4} from its table, without the ends");
+        for i in 0..=1000 {
+            let c = turbo(f64::from(i) / 1000.0);
+            assert!(c.min_element() >= 0.0 && c.max_element() <= 1.0);
+        }
+    }
+
+    #[test]
+    fn shares_are_logarithmic_and_cut() {
+        let range = Range {
+            min: 10.0,
+            max: 1000.0,
+        };
+        for (value, share) in [(10.0, 0.0), (100.0, 0.5), (1000.0, 1.0), (1.0, 0.0), (1e9, 1.0)] {
+            assert!((range.share(value) - share).abs() < 1e-12, "{value}");
+        }
+        assert_eq!(range.colour(0.0), DVec3::ZERO);
+        assert_eq!(range.colour(-1.0), DVec3::ZERO);
+        assert_eq!(range.colour(f64::NAN), DVec3::ZERO);
+        assert_eq!(range.colour(1.0), turbo(0.0));
+        assert_eq!(range.colour(f64::INFINITY), turbo(1.0));
+    }
+
+    #[test]
+    fn ranges_are_half_decades_around_all_but_the_outliers() {
+        let around = |low: f64, high: f64| {
+            let values = (0..=1000).map(move |i| low + (high - low) * f64::from(i) / 1000.0);
+            // One in a thousand far off at each end does not count.
+            let values = values.chain([1e-9, 1e9, 0.0, -5.0, f64::NAN]);
+            Range::around(values).expect("light")
+        };
+        let close = |range: Range, min: f64, max: f64| {
+            assert!((range.min / min - 1.0).abs() < 1e-9, "{range:?}");
+            assert!((range.max / max - 1.0).abs() < 1e-9, "{range:?}");
+        };
+        close(around(20.0, 900.0), 10f64.powf(1.0), 1000.0);
+        close(around(40.0, 2000.0), 10f64.powf(1.5), 10f64.powf(3.5));
+        close(around(100.0, 100.0), 100.0, 10f64.powf(2.5));
+        assert_eq!(Range::around([0.0, -1.0].into_iter()), None);
+        assert_eq!(Range::around(std::iter::empty()), None);
+    }
+
+    #[test]
+    fn ticks_are_one_two_five() {
+        let labels = |min, max| {
+            let ticks = Range { min, max }.ticks();
+            ticks.into_iter().map(|t| t.label).collect::<Vec<_>>()
+        };
+        assert_eq!(labels(100.0, 10_000.0), ["100", "200", "500", "1 000", "2 000", "5 000", "10 000"]);
+        assert_eq!(labels(10f64.powf(1.5), 10f64.powf(2.5)), ["50", "100", "200"]);
+        assert_eq!(labels(0.01, 0.1), ["0.01", "0.02", "0.05", "0.1"]);
+        assert_eq!(labels(120.0, 130.0), ["120", "130"]);
+        assert_eq!(labels(1.25, 1.75), ["1.25", "1.75"]);
+        assert_eq!(labels(500_000.0, 1e6), ["500 000", "1 000 000"]);
+        for tick in (Range { min: 30.0, max: 3e4 }).ticks() {
+            let expected = (tick.value / 30.0).log10() / 3.0;
+            assert!((tick.share - expected).abs() < 1e-12);
+        }
+    }
+}

@@ -3,6 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "constants.glsl"
 #include "tone_curve.glsl"
+#include "false_colour.glsl"
 
 layout(location = 0) out vec4 display;
 
@@ -20,19 +21,28 @@ layout(constant_id = 6) const bool AUTO = false;
 layout(constant_id = 8) const bool EXPONENTIAL_LUMINANCE = false;
 // Show the luminance only.
 layout(constant_id = 7) const bool GREY = false;
+// False colours of the luminance instead of exposure and curve.
+layout(constant_id = 9) const bool FALSE_COLOUR = false;
 
 layout(set = 0, binding = 0) uniform sampler2D radiance;          // kcd/m^2
 layout(set = 0, binding = 1) uniform sampler2D average_luminance; // kcd/m^2, one texel
 
 layout(push_constant, scalar) uniform Push {
-    float exposure;      // display units for 1 kcd/m^2; with AUTO the display value of the average luminance
-    float offset;        // added after the scale: shows signed quantities
+    float exposure;      // display units for 1 kcd/m^2; with AUTO the display value of the average luminance;
+                         // with FALSE_COLOUR shares of the range for a factor of 2
+    float offset;        // added after the scale: shows signed quantities; with FALSE_COLOUR the share of 1 kcd/m^2 (1 klx)
     float white;         // Reinhard's white, display units
     float inverse_gamma; // of the power
 } push;
 
 void main() {
     vec3 c = texelFetch(radiance, ivec2(gl_FragCoord.xy), 0).rgb;
+    if (FALSE_COLOUR) {
+        float l = luminance(c);
+        float share = clamp(log2(max(l, 1e-30)) * push.exposure + push.offset, 0.0, 1.0);
+        display = vec4(l > 0.0 ? turbo(share) : vec3(0.0), 1.0);
+        return;
+    }
     float exposure = push.exposure;
     if (AUTO) exposure /= texelFetch(average_luminance, ivec2(0), 0).r;
     if (GREY) c = vec3(luminance(c));

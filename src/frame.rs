@@ -1,6 +1,7 @@
 //! The frame: owns the passes; [`Frame::record`] is the whole pipeline in reading order.
 
 mod converging;
+mod develop;
 mod sample;
 mod settings;
 

@@ -1,6 +1,7 @@
 //! What a picture is made with: [`Options`] as the user gave them, on the command line or in a scene file, and
 //! [`Settings`] with everything decided.
 
+mod command;
 mod parameters;
 mod resolve;
 mod values;
@@ -8,12 +9,13 @@ mod values;
 use chrono::{DateTime, FixedOffset};
 use clap::{Args, Command, FromArgMatches};
 
+pub use crate::daylight::false_colour::{Quantity, Range};
 pub use crate::daylight::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCurve};
 pub use crate::frame::{Filter, Visibility};
 pub use crate::gpu::Optional;
 use crate::passes::dome::MOST_DIRECTIONS;
 pub(crate) use parameters::name;
-pub use resolve::{CameraParts, Exposure, Settings, SunInput};
+pub use resolve::{CameraParts, Exposure, Limits, Settings, SunInput};
 pub use values::{
     AoResolution, Direction, ExposureMode, Fresnel, Place, Preset, Show, Size, SolarTime, Switch,
 };
@@ -117,6 +119,12 @@ pub struct Options {
     /// Factor before the tone curve, instead of an exposure.
     #[arg(long, value_name = "S", value_parser = values::scale, allow_hyphen_values = true, help_heading = "Tone")]
     pub scale: Option<f64>,
+    /// False colours with a legend instead of the picture: luminance in cd/m², illuminance of the surfaces in lux.
+    #[arg(long, value_enum, value_name = "QUANTITY", help_heading = "Tone")]
+    pub false_colour: Option<Quantity>,
+    /// Values of the first and the last false colour [default: from the picture; 10,100000 cd/m² or 100,100000 lux in the window].
+    #[arg(long, value_name = "MIN,MAX", value_parser = values::colour_range, allow_hyphen_values = true, help_heading = "Tone")]
+    pub false_colour_range: Option<Range>,
 
     /// How the light of the sky is integrated [default: quasi].
     #[arg(long, value_enum, value_name = "METHOD", help_heading = "Light")]
@@ -232,11 +240,11 @@ impl Options {
             (base.eye, base.target, base.fov) = (None, None, None);
         }
         if self.ev100.is_some() || self.exposure.is_some() {
-            (base.ev100, base.exposure) = (None, None);
+            (base.ev100, base.exposure, base.scale) = (None, None, None);
         }
         first_of!(self, base;
             size samples visibility filter seed show preset place when sun solar sun_position sky turbidity sky_illuminance refraction ground_albedo camera eye target fov
-            ev100 exposure tonemap gamma scale irradiance irradiance_samples irradiance_error ao_radius ao_resolution specular shadow_size
+            ev100 exposure tonemap gamma scale false_colour false_colour_range irradiance irradiance_samples irradiance_error ao_radius ao_resolution specular shadow_size
             dome_directions dome_size smooth device without max_triangles max_texture_edge max_texture_mib max_file_mib fresnel moment;
             layers limb_darkening quiet validate allow_outside no_cache)
     }

@@ -1,6 +1,5 @@
-//! The tone curves of the shader against `shared/reference`, in 32-bit floats.
-//!
-//! Seen to fail with the white of Reinhard's curve left out, and with the rows of AgX's inset matrix transposed.
+//! The tone curves of the shader against `shared/reference`, in 32-bit floats,
+//! and false colours against the CPU's. Seen to fail with the white of Reinhard's curve left out, and with the rows of AgX's inset matrix transposed.
 
 mod common;
 #[path = "common/gpu.rs"]
@@ -8,10 +7,15 @@ mod gpu;
 
 use common::{Table, Worst};
 use gpu::Device;
+use skylight::daylight::colour::srgb_oetf;
+use skylight::daylight::false_colour::Range;
+use skylight::daylight::tone_curve::ToneCurve;
 use skylight::gpu::{
-    Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Sampler, shaders, upload_texture,
+    Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Sampler, read_back, shaders,
+    upload_texture,
 };
-use skylight::passes::tone_map::Push;
+use skylight::passes::lighting::Show;
+use skylight::passes::tone_map::{Push, Scale, ToneMap, ToneSettings};
 
 /// A column of the reference, and how the shader is set to compute it.
 struct Case {
@@ -115,4 +119,52 @@ fn the_shaders_curves_meet_the_reference() {
         }
         worst.finish();
     }
+}
+
+#[test]
+fn the_false_colours_are_those_of_the_cpu() {
+    let mut device = Device::new();
+    let range = Range {
+        min: 20.0,
+        max: 5e4,
+    };
+    // From far below the range to far above it, and no light at all; cd/m².
+    let mut values: Vec<f64> = (0..2000)
+        .map(|i| 10f64.powf(-3.0 + f64::from(i) / 200.0))
+        .collect();
+    values.push(0.0);
+    let kilo = |v: &f64| [(v / 1e3) as f32; 4];
+    let texels: Vec<[f32; 4]> = values.iter().map(kilo).collect();
+    let size = [texels.len() as u32, 1];
+    let desc = ImageDesc::flat("luminances", Format::R32G32B32A32_SFLOAT, size);
+    let settings = ToneSettings {
+        show: Show::Beauty,
+        curve: ToneCurve::Agx,
+        scale: Scale::Average(0.36),
+        white: 3.0,
+        gamma: Some(2.2),
+        depth_scale: 1.0,
+        false_colour: Some(range),
+    };
+    let mut tone_map = ToneMap::new(&device.context, size, settings).expect("a pass");
+    let source = device
+        .run(|rec| upload_texture(rec, &desc, &[bytemuck::cast_slice(&texels)]).expect("uploaded"));
+    device.run(|rec| {
+        tone_map.record(rec, &source, &source);
+    });
+    let bytes = read_back(&mut device.recorder, tone_map.image())
+        .expect("read")
+        .bytes;
+    // Half a step of rounding, and what an encoding to sRGB may be off.
+    let mut worst = Worst::new("false colours, 8 bits", 1.0);
+    for (value, pixel) in values.iter().zip(bytes.chunks_exact(4)) {
+        let expected = range
+            .colour(*value)
+            .to_array()
+            .map(|c| 255.0 * srgb_oetf(c));
+        for (byte, expected) in pixel.iter().zip(expected) {
+            worst.see(f64::from(*byte) - expected, value);
+        }
+    }
+    worst.finish();
 }

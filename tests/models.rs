@@ -69,6 +69,7 @@ fn settings() -> FrameSettings {
             white: 1.0,
             gamma: None,
             depth_scale: 1.0,
+            false_colour: None,
         },
     }
 }

@@ -204,16 +204,16 @@ mod tests {
             (136, [0.64362, 0.98999, 0.23356]),
             (255, [0.47960, 0.01583, 0.01055]),
         ];
-        let mut worst = 0.0f64;
-        for (entry, rgb) in TABLE {
+        let off = |(entry, rgb): (u32, [f64; 3])| {
             let ours = turbo(f64::from(entry) / 255.0).map(srgb_oetf);
-            let off = (ours - DVec3::from_array(rgb)).abs().max_element();
-            // The polynomial was fitted to the inside: it is darker at the ends.
-            let is_end = entry == 0 || entry == 255;
-            assert!(off < if is_end { 0.13 } else { 0.03 }, "{entry}: {off}");
-            worst = worst.max(if is_end { 0.0 } else { off });
-        }
-        println!("turbo: {worst:.4} from its table, without the ends");
+            (ours - DVec3::from_array(rgb)).abs().max_element()
+        };
+        let errors = TABLE.map(off);
+        let worst = errors.into_iter().fold(0.0, f64::max);
+        let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+        println!("turbo: {worst:.3} from its table at worst, {mean:.3} in the mean");
+        // What the published coefficients give, evaluated apart from this code.
+        assert!(worst < 0.13 && mean < 0.085, "{errors:?}");
         for i in 0..=1000 {
             let c = turbo(f64::from(i) / 1000.0);
             assert!(c.min_element() >= 0.0 && c.max_element() <= 1.0);
@@ -226,7 +226,13 @@ mod tests {
             min: 10.0,
             max: 1000.0,
         };
-        for (value, share) in [(10.0, 0.0), (100.0, 0.5), (1000.0, 1.0), (1.0, 0.0), (1e9, 1.0)] {
+        for (value, share) in [
+            (10.0, 0.0),
+            (100.0, 0.5),
+            (1000.0, 1.0),
+            (1.0, 0.0),
+            (1e9, 1.0),
+        ] {
             assert!((range.share(value) - share).abs() < 1e-12, "{value}");
         }
         assert_eq!(range.colour(0.0), DVec3::ZERO);
@@ -261,13 +267,24 @@ mod tests {
             let ticks = Range { min, max }.ticks();
             ticks.into_iter().map(|t| t.label).collect::<Vec<_>>()
         };
-        assert_eq!(labels(100.0, 10_000.0), ["100", "200", "500", "1 000", "2 000", "5 000", "10 000"]);
-        assert_eq!(labels(10f64.powf(1.5), 10f64.powf(2.5)), ["50", "100", "200"]);
+        assert_eq!(
+            labels(100.0, 10_000.0),
+            ["100", "200", "500", "1 000", "2 000", "5 000", "10 000"]
+        );
+        assert_eq!(
+            labels(10f64.powf(1.5), 10f64.powf(2.5)),
+            ["50", "100", "200"]
+        );
         assert_eq!(labels(0.01, 0.1), ["0.01", "0.02", "0.05", "0.1"]);
         assert_eq!(labels(120.0, 130.0), ["120", "130"]);
         assert_eq!(labels(1.25, 1.75), ["1.25", "1.75"]);
         assert_eq!(labels(500_000.0, 1e6), ["500 000", "1 000 000"]);
-        for tick in (Range { min: 30.0, max: 3e4 }).ticks() {
+        for tick in (Range {
+            min: 30.0,
+            max: 3e4,
+        })
+        .ticks()
+        {
             let expected = (tick.value / 30.0).log10() / 3.0;
             assert!((tick.share - expected).abs() < 1e-12);
         }

@@ -12,7 +12,7 @@
 //! 5. [`cube`]: cube maps in Vulkan's convention. [`irradiance`]: E(n) of a radiance, by four methods; [`sampling`] and
 //!    [`mod@frame`] serve them, [`quadrature`] is what they are tested against.
 //! 6. [`dome`]: the sky as directional lights, for shadow maps from its directions.
-//! 7. [`exposure`] and [`tone_curve`]: from cd/m² to a picture.
+//! 7. [`exposure`] and [`tone_curve`]: from cd/m² to a picture; [`false_colour`]: to one whose values can be read.
 //!
 //! # Conventions
 //!
@@ -31,6 +31,7 @@ pub mod cube;
 mod data;
 pub mod dome;
 pub mod exposure;
+pub mod false_colour;
 pub mod frame;
 pub mod hosek;
 pub mod irradiance;

@@ -94,6 +94,10 @@ pub struct Job {
     pub daylight: Daylight,
     /// Name of the scene, for metadata.
     pub name: String,
+    /// Where the scene came from, `None` for the bundled one.
+    pub path: Option<PathBuf>,
+    /// What its file says of the settings; its model is in `scene`.
+    pub loaded: Loaded,
 }
 
 impl Job {
@@ -116,11 +120,11 @@ impl Job {
     ///
     /// # Errors
     /// Options that make no sense.
-    pub fn of(path: Option<&Path>, loaded: Loaded, options: Options) -> Result<Self> {
+    pub fn of(path: Option<&Path>, mut loaded: Loaded, options: Options) -> Result<Self> {
         let settings = Settings::resolve(options, &loaded)?;
         let sun = sun_position(&settings)?;
         let daylight = Daylight::new(&conditions(&settings, &sun));
-        let scene = loaded.scene;
+        let scene = std::mem::take(&mut loaded.scene);
         let camera = settings.camera(&scene.bounds);
         let name = path.map_or("bundled".to_owned(), |p| p.display().to_string());
         Ok(Self {
@@ -130,6 +134,8 @@ impl Job {
             sun,
             daylight,
             name,
+            path: path.map(Path::to_owned),
+            loaded,
         })
     }
 
@@ -200,6 +206,10 @@ impl Job {
                 white: REINHARD_WHITE,
                 gamma: s.gamma,
                 depth_scale: f64::from(self.scene.bounds.diagonal()).max(1e-3),
+                false_colour: s
+                    .false_colour
+                    .filter(|quantity| show.holds(*quantity))
+                    .map(|quantity| s.false_colour_range.unwrap_or(quantity.daytime())),
             },
         }
     }
@@ -257,19 +267,13 @@ impl Job {
         }
     }
 
-    /// The command that makes the picture again, for a shell.
-    pub fn command(&self, scene: Option<&Path>) -> String {
-        let point = |p: glam::Vec3| format!("{},{},{}", p.x, p.y, p.z);
-        let camera = [
-            ("eye", point(self.camera.eye)),
-            ("target", point(self.camera.target)),
-            ("fov", self.camera.fov_deg.to_string()),
-        ];
-        let mut words = vec!["skylight".to_owned(), "render".to_owned()];
-        words.extend(scene.map(|p| p.display().to_string()));
-        let options = self.settings.parameters().into_iter().chain(camera);
-        words.extend(options.map(|(name, value)| format!("--{name}={value}")));
-        words.join(" ")
+    /// The command line that renders this view under this light, with these settings.
+    ///
+    /// # Errors
+    /// As [`Settings::command_line`].
+    pub fn command_line(&self) -> Result<String> {
+        let settings = self.settings.with_camera(&self.camera);
+        settings.command_line(self.path.as_deref(), &self.loaded)
     }
 
     /// What makes the picture again, and the numbers of its light.
@@ -302,6 +306,12 @@ impl Job {
                 format!("{} lux (RGB)", rgb(self.daylight.sky_irradiance_up)),
             ),
         ];
+        // Missing only where a scene sets what these settings lack.
+        list.extend(
+            self.command_line()
+                .ok()
+                .map(|line| ("command".into(), line)),
+        );
         let parameters = self.settings.parameters();
         list.extend(
             parameters

@@ -6,12 +6,17 @@ use indicatif::ProgressBar;
 
 use super::job::Job;
 use super::progress;
+use crate::daylight::colour::luminance;
 use crate::daylight::exposure::automatic;
+use crate::daylight::false_colour::{Quantity, Range};
 use crate::error::Result;
 use crate::frame::Frame;
 use crate::gpu::{Recorder, Timing, read_back};
-use crate::output::{Channels, Encoding, Layer, check_writable, print, write_exr, write_png};
+use crate::output::{
+    Channels, Encoding, Layer, check_writable, draw_legend, print, write_exr, write_png,
+};
 use crate::passes::lighting::{Precision, Show};
+use crate::passes::tone_map::ToneSettings;
 use crate::settings::{Exposure, Options, SettingsError};
 
 /// Renders `scene` to `output`.
@@ -95,28 +100,55 @@ impl<'j> Renderer<'j> {
 
     fn save_png(&mut self, path: &Path) -> Result<String> {
         self.draw()?;
-        let pixels = read_back(&mut self.recorder, self.frame.display())?;
+        let colours = self.false_colours()?;
+        let mut pixels = read_back(&mut self.recorder, self.frame.display())?;
         let ev100 = self.ev100()?;
         let mut metadata = self.job.metadata();
         if let Some(ev100) = ev100 {
             metadata.push(("ev100 used".into(), format!("{ev100:.3}")));
         }
-        let encoding = self
-            .job
-            .settings
-            .gamma
-            .map_or(Encoding::Srgb, Encoding::Gamma);
+        let gamma = self.job.settings.gamma.filter(|_| colours.is_none());
+        let encoding = gamma.map_or(Encoding::Srgb, Encoding::Gamma);
+        let mut summary = ev100.map_or(String::new(), |ev| format!(", EV100 {ev:.2}"));
+        if let Some((quantity, range)) = colours {
+            draw_legend(&mut pixels.bytes, pixels.size, quantity, range);
+            let used = format!("{},{}", range.min, range.max);
+            metadata.push(("false-colour-range used".into(), used));
+            summary = format!(", {range} {}", quantity.unit());
+        }
         write_png(path, pixels.size, &pixels.bytes, encoding, &metadata)?;
         self.progress.finish_and_clear();
-        let exposure = ev100
-            .map(|ev| format!(", EV100 {ev:.2}"))
-            .unwrap_or_default();
-        Ok(format!("{}x{}{exposure}", pixels.size[0], pixels.size[1]))
+        Ok(format!("{}x{}{summary}", pixels.size[0], pixels.size[1]))
+    }
+
+    /// What false colours show, and their range; one that was not given is looked for in the picture, which is then mapped
+    /// again.
+    fn false_colours(&mut self) -> Result<Option<(Quantity, Range)>> {
+        let settings = &self.job.settings;
+        let Some(quantity) = settings.false_colour else {
+            return Ok(None);
+        };
+        if let Some(range) = settings.false_colour_range {
+            return Ok(Some((quantity, range)));
+        }
+        let texels = read_back(&mut self.recorder, self.frame.radiance())?.rgba();
+        let luminance = |t: &[f32; 4]| luminance(glam::Vec3::from_slice(t).as_dvec3()) * 1e3;
+        let range = Range::around(texels.iter().map(luminance)).unwrap_or(quantity.daytime());
+        let tone = ToneSettings {
+            false_colour: Some(range),
+            ..self.frame.settings().tone
+        };
+        self.recorder.begin()?;
+        self.frame.develop(&mut self.recorder, tone)?;
+        self.recorder.finish()?;
+        Ok(Some((quantity, range)))
     }
 
     /// The exposure used, of quantities that are exposed.
     fn ev100(&mut self) -> Result<Option<f64>> {
-        if self.job.settings.scale.is_some() || self.job.settings.show.file_unit() == 1.0 {
+        let settings = &self.job.settings;
+        let exposed = settings.scale.is_none() && settings.false_colour.is_none();
+        if !exposed || settings.show.file_unit() == 1.0 {
             return Ok(None);
         }
         if let Exposure::Ev100(ev100) = self.job.settings.exposure {

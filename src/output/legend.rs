@@ -231,8 +231,8 @@ mod tests {
                 let at = 4 * (y as u32 * canvas.zoom * size[0] + x as u32 * canvas.zoom) as usize;
                 let expected = turbo(tick.share).map(|c| 255.0 * srgb_oetf(c));
                 for (byte, expected) in rgba[at..at + 3].iter().zip(expected.to_array()) {
-                    // The row's middle is half a row off.
-                    assert!((f64::from(*byte) - expected).abs() < 6.0, "{tick:?}");
+                    // The row's middle is half a row off, where blue grows fastest.
+                    assert!((f64::from(*byte) - expected).abs() < 12.0, "{tick:?}");
                 }
             }
             assert!(layout.ticks.len() >= 4);
@@ -242,7 +242,17 @@ mod tests {
     #[test]
     fn labels_do_not_touch() {
         for height in [40, 100, 200, 400, 800] {
-            for range in [RANGE, Range { min: 1e-3, max: 1e5 }, Range { min: 120.0, max: 130.0 }] {
+            for range in [
+                RANGE,
+                Range {
+                    min: 1e-3,
+                    max: 1e5,
+                },
+                Range {
+                    min: 120.0,
+                    max: 130.0,
+                },
+            ] {
                 let ticks = legible(range.ticks(), height, 13);
                 for pair in ticks.windows(2) {
                     let apart = (pair[1].share - pair[0].share) * f64::from(height);

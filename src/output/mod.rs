@@ -2,6 +2,7 @@
 
 mod exr;
 mod hdr;
+mod legend;
 mod png;
 
 use std::io::Write as _;
@@ -9,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 pub use self::exr::{Channels, Layer, encode_exr, write_exr};
 pub use self::hdr::encode_hdr;
+pub use self::legend::draw_legend;
 pub use self::png::{Encoding, write_png};
 
 use crate::error::{Error, Result};

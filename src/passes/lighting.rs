@@ -8,6 +8,7 @@ use clap::ValueEnum;
 use glam::Vec3;
 use serde::Deserialize;
 
+use crate::daylight::false_colour::Quantity;
 use crate::daylight::sky::Daylight;
 use crate::gpu::{
     Buffer, Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, PipelineDesc, Recorder,
@@ -111,6 +112,14 @@ impl Show {
         match self {
             Self::Visibility | Self::Occlusion | Self::Albedo | Self::Normal | Self::Depth => 1.0,
             _ => 1000.0,
+        }
+    }
+
+    /// Whether `quantity` can be read off it.
+    pub fn holds(self, quantity: Quantity) -> bool {
+        match quantity {
+            Quantity::Luminance => self.file_unit() != 1.0 && self != Self::Irradiance,
+            Quantity::Illuminance => self == Self::Irradiance,
         }
     }
 

@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use crate::daylight::false_colour::Range;
 use crate::daylight::tone_curve::ToneCurve;
 use crate::gpu::{
     Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
@@ -48,6 +49,8 @@ pub struct ToneSettings {
     pub gamma: Option<f64>,
     /// Metres at which a shown depth is mid-grey.
     pub depth_scale: f64,
+    /// False colours of the luminance, cd/m² (lux of an irradiance), instead of all that: sRGB, whatever the gamma.
+    pub false_colour: Option<Range>,
 }
 
 /// The pass and its picture.
@@ -62,18 +65,27 @@ fn is_light(show: Show) -> bool {
     show.file_unit() != 1.0
 }
 
+/// Factor and offset of the share of a range, for log2 of thousands of its unit.
+fn kilo_range(range: Range) -> (f64, f64) {
+    let (scale, offset) = range.log2_scale();
+    (scale, offset + scale * 1e3f64.log2())
+}
+
 impl ToneMap {
     /// A picture of `size` pixels.
     ///
     /// # Errors
     /// When the device refuses.
     pub fn new(context: &Arc<Context>, size: [u32; 2], settings: ToneSettings) -> Result<Self> {
-        let light = is_light(settings.show);
+        let false_colour = settings.false_colour.is_some();
+        let light = is_light(settings.show) && !false_colour;
         let curve = |c: ToneCurve| u32::from(light && settings.curve == c);
         let average = light && matches!(settings.scale, Scale::Average(_));
-        let format = match settings.gamma {
-            None => Format::R8G8B8A8_SRGB,
-            Some(_) => Format::R8G8B8A8_UNORM,
+        let gamma = settings.gamma.is_some() && !false_colour;
+        let format = if gamma {
+            Format::R8G8B8A8_UNORM
+        } else {
+            Format::R8G8B8A8_SRGB
         };
         let pipeline = Pipeline::new(
             context,
@@ -93,9 +105,10 @@ impl ToneMap {
                     ("AGX", curve(ToneCurve::Agx)),
                     ("NEUTRAL", curve(ToneCurve::Neutral)),
                     ("ACES", curve(ToneCurve::Aces)),
-                    ("GAMMA", settings.gamma.is_some().into()),
+                    ("GAMMA", gamma.into()),
                     ("AUTO", average.into()),
                     ("GREY", (settings.show == Show::Luminance).into()),
+                    ("FALSE_COLOUR", false_colour.into()),
                 ],
             },
         )?;
@@ -126,7 +139,19 @@ impl ToneMap {
 
     fn push(&self) -> Push {
         let s = &self.settings;
-        let (exposure, offset) = match s.show {
+        let (exposure, offset) = s.false_colour.map_or_else(|| self.exposure(), kilo_range);
+        Push {
+            exposure: exposure as f32,
+            offset: offset as f32,
+            white: s.white as f32,
+            inverse_gamma: s.gamma.map_or(1.0, f64::recip) as f32,
+        }
+    }
+
+    /// Factor and offset before the curve.
+    fn exposure(&self) -> (f64, f64) {
+        let s = &self.settings;
+        match s.show {
             Show::Normal => (0.5, 0.5),
             Show::Depth => (0.5 / s.depth_scale, 0.0),
             Show::Visibility | Show::Occlusion | Show::Albedo => (1.0, 0.0),
@@ -142,12 +167,6 @@ impl ToneMap {
                     Scale::Average(key) => (key, 0.0),
                 }
             }
-        };
-        Push {
-            exposure: exposure as f32,
-            offset: offset as f32,
-            white: s.white as f32,
-            inverse_gamma: s.gamma.map_or(1.0, f64::recip) as f32,
         }
     }
 

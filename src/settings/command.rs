@@ -1,9 +1,9 @@
 //! Settings back to the words that give them: the reverse of reading options.
 
+use std::borrow::Cow;
 use std::path::Path;
 
-use super::resolve::name;
-use super::{CameraParts, Exposure, Options, Settings, SettingsError, SunInput};
+use super::{CameraParts, Options, Settings, SettingsError, name};
 use crate::error::Error;
 use crate::scene::{Camera, Loaded};
 
@@ -11,8 +11,12 @@ use crate::scene::{Camera, Loaded};
 const ALWAYS: [&str; 9] = [
     "place", "when", "solar", "sun", "camera", "eye", "target", "fov", "preset",
 ];
-/// How bright the picture is: one matter, of which all is written or nothing.
-const BRIGHTNESS: [&str; 3] = ["exposure", "ev100", "scale"];
+/// Options that decide about each other: of such a matter all is written or nothing.
+const MATTERS: [&[&str]; 2] = [&["exposure", "ev100", "scale"], &["samples", "visibility"]];
+/// Options that others replace: what lacks in the settings is not lost.
+const REPLACED: [&str; 7] = [
+    "place", "when", "solar", "sun", "exposure", "ev100", "scale",
+];
 
 /// The name of an option and its value; none for a flag.
 type Word = (&'static str, Option<String>);
@@ -63,51 +67,18 @@ impl Settings {
         });
         let line = ["skylight".to_owned(), "render".to_owned()];
         let line: Vec<String> = line.into_iter().chain(scene).chain(words).collect();
-        let quoted = shlex::try_join(line.iter().map(String::as_str));
+        let quoted: Result<Vec<_>, _> = line.iter().map(|word| quoted(word)).collect();
+        let quoted = quoted.map(|words| words.join(" "));
         Ok(quoted.map_err(|_| {
             SettingsError("a name holds a zero byte, which no command line can; rename it".into())
         })?)
     }
 
-    /// What decided the picture, by option name: for the metadata of files.
-    pub fn parameters(&self) -> Vec<(&'static str, String)> {
-        let mut list = vec![
-            ("size", format!("{}x{}", self.size.width, self.size.height)),
-            ("samples", self.samples.to_string()),
-            ("show", name(self.show)),
-            ("sun-position", name(self.sun_position)),
-            ("sky", name(self.sky)),
-            ("turbidity", self.turbidity.to_string()),
-            ("refraction", name(self.refraction)),
-            ("ground-albedo", self.ground_albedo.to_string()),
-            ("irradiance", name(self.irradiance)),
-            ("irradiance-samples", self.irradiance_samples.to_string()),
-            ("irradiance-error", self.irradiance_error.to_string()),
-            ("ao-radius", self.ao_radius.to_string()),
-            ("ao-resolution", name(self.ao_resolution)),
-            ("specular", self.specular.to_string()),
-            ("shadow-size", self.shadow_size.to_string()),
-            ("tonemap", name(self.tone_curve)),
-        ];
-        list.extend(sun_parameters(&self.sun));
-        list.push(match self.exposure {
-            Exposure::Auto => ("exposure", "auto".to_owned()),
-            Exposure::Ev100(ev) => ("ev100", ev.to_string()),
-        });
-        let illuminance = self.sky_illuminance;
-        list.extend(illuminance.map(|v| ("sky-illuminance", v.to_string())));
-        list.extend(self.gamma.map(|v| ("gamma", v.to_string())));
-        list.extend(self.scale.map(|v| ("scale", v.to_string())));
-        list.extend(self.false_colour.map(|v| ("false-colour", name(v))));
-        let range = self.false_colour_range;
-        list.extend(range.map(|r| ("false-colour-range", format!("{},{}", r.min, r.max))));
-        list
-    }
-
     /// Every option that gives a part of these settings.
     fn words(&self) -> Vec<Word> {
         let point = |p: [f64; 3]| format!("{},{},{}", p[0], p[1], p[2]);
-        let camera = &self.camera;
+        let count = |n: Option<u32>| n.map(|n| n.to_string());
+        let (camera, limits) = (&self.camera, &self.limits);
         let mut words: Vec<Word> = self
             .parameters()
             .into_iter()
@@ -121,6 +92,11 @@ impl Settings {
             ("fov", camera.fov_deg.map(|fov| fov.to_string())),
             ("smooth", self.smooth.map(|angle| angle.to_string())),
             ("device", self.device.clone()),
+            ("without", self.without.map(name)),
+            ("max-triangles", count(limits.max_triangles)),
+            ("max-texture-edge", count(limits.max_texture_edge)),
+            ("max-texture-mib", count(limits.max_texture_mib)),
+            ("max-file-mib", count(limits.max_file_mib)),
         ];
         words.extend(optional.into_iter().filter(|(_, value)| value.is_some()));
         let flags = [
@@ -128,58 +104,27 @@ impl Settings {
             ("layers", self.layers),
             ("quiet", self.quiet),
             ("validate", self.validate),
+            ("allow-outside", limits.allow_outside),
         ];
         words.extend(flags.into_iter().filter(|f| f.1).map(|f| (f.0, None)));
         words
     }
 }
 
-fn sun_parameters(sun: &SunInput) -> Vec<(&'static str, String)> {
-    match *sun {
-        SunInput::Place {
-            latitude,
-            longitude,
-            when,
-        } => {
-            vec![
-                ("place", format!("{latitude},{longitude}")),
-                ("when", when.to_rfc3339()),
-            ]
-        }
-        SunInput::Solar {
-            day,
-            hours,
-            latitude,
-        } => {
-            vec![
-                ("place", format!("{latitude},0")),
-                ("solar", format!("{day},{hours}")),
-            ]
-        }
-        SunInput::Direction {
-            azimuth_deg,
-            elevation_deg,
-        } => vec![("sun", format!("{azimuth_deg},{elevation_deg}"))],
-    }
-}
-
 /// What turns the settings `from` into `to`, as arguments.
 fn differences(to: &[Word], from: &[Word]) -> Result<Vec<String>, SettingsError> {
     let of = |name: &str, words: &[Word]| words.iter().find(|word| word.0 == name).cloned();
-    let is_brightness = |name: &str| BRIGHTNESS.contains(&name);
-    let brightness_changes = BRIGHTNESS.iter().any(|name| of(name, to) != of(name, from));
-    let lost = from.iter().find(|(name, _)| {
-        let replaced = is_brightness(name) || ["place", "when", "solar", "sun"].contains(name);
-        !replaced && of(name, to).is_none()
-    });
-    if let Some((name, _)) = lost {
+    let is_lost = |word: &&Word| !REPLACED.contains(&word.0) && of(word.0, to).is_none();
+    if let Some((name, _)) = from.iter().find(is_lost) {
         return Err(SettingsError(format!(
             "the scene sets {name}, and no option takes that back; change it in the scene file"
         )));
     }
+    let changes = |name: &str| of(name, to) != of(name, from);
     let is_written = |word: &&Word| {
-        let same = of(word.0, from).as_ref() == Some(*word);
-        ALWAYS.contains(&word.0) || !same || (is_brightness(word.0) && brightness_changes)
+        let mut matters = MATTERS.iter().filter(|matter| matter.contains(&word.0));
+        let matter_changes = matters.any(|matter| matter.iter().any(|name| changes(name)));
+        ALWAYS.contains(&word.0) || changes(word.0) || matter_changes
     };
     Ok(to.iter().filter(is_written).flat_map(arguments).collect())
 }
@@ -191,6 +136,15 @@ fn arguments((name, value): &Word) -> Vec<String> {
         Some(value) if value.starts_with('-') => vec![format!("--{name}={value}")],
         Some(value) => vec![format!("--{name}"), value.clone()],
     }
+}
+
+/// For a shell; a list of numbers needs no quotes.
+fn quoted(word: &str) -> Result<Cow<'_, str>, shlex::QuoteError> {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-+_./:,=".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return Ok(word.into());
+    }
+    shlex::try_quote(word)
 }
 
 /// The number with the fewest digits that is the same in 32 bits.

@@ -4,14 +4,14 @@ use chrono::{DateTime, FixedOffset};
 use clap::ValueEnum;
 
 use super::super::{
-    AoResolution, Direction, ExposureMode, Place, Preset, Quantity, Range, Show, Size, SkyModel, SolarTime,
-    SunPositionMethod, Switch, ToneCurve,
+    AoResolution, Direction, ExposureMode, Filter, Fresnel, Optional, Place, Preset, Quantity,
+    Range, Show, Size, SkyModel, SolarTime, SunPositionMethod, Switch, ToneCurve, Visibility,
 };
 use super::*;
 use crate::cli::{Command, parse};
 use crate::daylight::irradiance::IrradianceMethod;
 use crate::daylight::sampling::rnd;
-use crate::scene::{Bounds, NamedCamera, Scene};
+use crate::scene::{Bounds, NamedCamera, NamedMoment, Scene};
 
 fn pairs(list: &[(&str, &str)]) -> Vec<(String, String)> {
     list.iter()
@@ -27,6 +27,10 @@ fn loaded(options: &[(&str, &str)]) -> Loaded {
         cameras: vec![NamedCamera {
             name: "the \"old\" porch's".into(),
             options: pairs(&[("eye", "-1,1,1"), ("fov", "33")]),
+        }],
+        moments: vec![NamedMoment {
+            name: "dusk".into(),
+            options: pairs(&[("sun", "290,3"), ("turbidity", "4"), ("ev100", "9")]),
         }],
     }
 }
@@ -48,8 +52,13 @@ struct Random(u32);
 impl Random {
     fn within(&mut self, low: f64, high: f64) -> f64 {
         // Numbers with all their digits, and round ones.
-        let value = low + (high - low) * (rnd(&mut self.0) + rnd(&mut self.0) / 16_777_216.0).min(1.0);
-        if self.often() { value } else { value.trunc() }
+        let value =
+            low + (high - low) * (rnd(&mut self.0) + rnd(&mut self.0) / 16_777_216.0).min(1.0);
+        if self.often() {
+            value
+        } else {
+            value.trunc().max(low)
+        }
     }
 
     fn below(&mut self, count: usize) -> usize {
@@ -96,13 +105,21 @@ impl Random {
                 height: r.within(1.0, 16_384.0) as u32,
             }),
             samples: self.count(1, 65_536),
+            visibility: self.one::<Visibility>(),
+            filter: self.one::<Filter>(),
+            seed: self.count(0, u32::MAX),
+            dome_directions: self.count(1, 16),
+            dome_size: self.count(64, 4096),
+            without: self.one::<Optional>(),
             show: self.one::<Show>(),
             layers: self.often(),
             preset: self.one::<Preset>(),
-            place: self.maybe(|r| Place {
-                latitude: r.within(-90.0, 90.0),
-                longitude: r.within(-180.0, 180.0),
-            }).filter(|_| kind != 0),
+            place: self
+                .maybe(|r| Place {
+                    latitude: r.within(-90.0, 90.0),
+                    longitude: r.within(-180.0, 180.0),
+                })
+                .filter(|_| kind != 0),
             when: (kind == 1).then(|| self.moment()),
             sun: (kind == 0).then(|| Direction {
                 azimuth_deg: self.within(0.0, 359.9),
@@ -145,6 +162,13 @@ impl Random {
             shadow_size: self.count(64, 16_384),
             smooth: self.number(0.0, 180.0),
             device: self.maybe(|_| "-llvmpipe $HOME 'x'".to_owned()),
+            fresnel: self.one::<Fresnel>(),
+            moment: self.maybe(|_| "dusk".to_owned()),
+            allow_outside: self.often(),
+            max_triangles: self.count(1, u32::MAX),
+            max_texture_edge: self.count(1, 65_536),
+            max_texture_mib: self.count(1, u32::MAX),
+            max_file_mib: self.count(1, u32::MAX),
             quiet: self.often(),
             validate: self.often(),
         }
@@ -156,7 +180,12 @@ fn a_line_gives_the_settings_it_was_made_of() {
     let scenes = [
         loaded(&[]),
         loaded(&[("place", "10,-20"), ("turbidity", "7"), ("ev100", "14")]),
-        loaded(&[("sun", "90,5"), ("scale", "0.5"), ("eye", "1,2,3"), ("sky", "hosek")]),
+        loaded(&[
+            ("sun", "90,5"),
+            ("scale", "0.5"),
+            ("eye", "1,2,3"),
+            ("sky", "hosek"),
+        ]),
     ];
     let mut random = Random(1);
     let (mut equal, mut lost) = (0, 0);
@@ -183,7 +212,9 @@ fn a_line_gives_the_settings_it_was_made_of() {
             }
         }
     }
-    println!("{equal} lines gave their settings again; {lost} had a value that cannot be taken back");
+    println!(
+        "{equal} lines gave their settings again; {lost} had a value that cannot be taken back"
+    );
     assert!(equal > 4000, "{equal}");
 }
 
@@ -196,11 +227,18 @@ fn only_what_differs_is_written() {
         settings.command_line(None, &scene).expect("a line")
     };
     assert_eq!(
-        line(&[("place", "10,20"), ("when", "2026-01-01T12:00Z"), ("sky", "hosek")]),
+        line(&[
+            ("place", "10,20"),
+            ("when", "2026-01-01T12:00Z"),
+            ("sky", "hosek")
+        ]),
         "skylight render --sky hosek --place 10,20 --when 2026-01-01T12:00:00+00:00"
     );
     // The scene's own 7 goes without saying, the default 3 does not.
-    assert_eq!(line(&[("sun", "90,-5"), ("turbidity", "7")]), "skylight render --sun 90,-5");
+    assert_eq!(
+        line(&[("sun", "90,-5"), ("turbidity", "7")]),
+        "skylight render --sun 90,-5"
+    );
     assert_eq!(
         line(&[("sun", "90,5"), ("turbidity", "3")]),
         "skylight render --turbidity 3 --sun 90,5"
@@ -221,11 +259,17 @@ fn a_camera_keeps_its_bits_and_few_digits() {
         near: 0.01,
     };
     let bare = Settings::resolve(Options::default(), &scene).expect("good");
-    let line = bare.with_camera(&camera).command_line(None, &scene).expect("a line");
+    let line = bare
+        .with_camera(&camera)
+        .command_line(None, &scene)
+        .expect("a line");
     assert!(line.contains("--eye 0.1,0.33333334,-0.0000002"), "{line}");
     let (_, again) = read(&line, &scene);
     let seen = again.camera(&Bounds::EMPTY);
-    assert_eq!((seen.eye, seen.target, seen.fov_deg), (camera.eye, camera.target, camera.fov_deg));
+    assert_eq!(
+        (seen.eye, seen.target, seen.fov_deg),
+        (camera.eye, camera.target, camera.fov_deg)
+    );
 }
 
 #[test]
@@ -238,10 +282,18 @@ fn odd_paths_come_through() {
         ("$(reboot) `x`;&|\n*.obj", "$(reboot) `x`;&|\n*.obj"),
         ("høj/сад.obj", "høj/сад.obj"),
     ] {
-        let line = settings.command_line(Some(Path::new(path)), &scene).expect("a line");
+        let line = settings
+            .command_line(Some(Path::new(path)), &scene)
+            .expect("a line");
         assert_eq!(read(&line, &scene).0.as_deref(), Some(read_path), "{line}");
     }
     let lost = loaded(&[("gamma", "2")]);
-    let error = settings.command_line(None, &lost).expect_err("gamma").to_string();
-    assert!(error.contains("gamma") && error.lines().count() == 1, "{error}");
+    let error = settings
+        .command_line(None, &lost)
+        .expect_err("gamma")
+        .to_string();
+    assert!(
+        error.contains("gamma") && error.lines().count() == 1,
+        "{error}"
+    );
 }

@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 
-use super::{Exposure, Settings, SunInput};
+use super::{Exposure, Settings, SunInput, Visibility};
 
 impl Settings {
     /// What decided the picture, by option name: for the metadata of files.
@@ -10,7 +10,7 @@ impl Settings {
         let mut list = vec![
             ("size", format!("{}x{}", self.size.width, self.size.height)),
             ("samples", self.samples.to_string()),
-            ("visibility", name(self.visibility)),
+            ("visibility", visibility(self.visibility)),
             ("filter", name(self.filter)),
             ("seed", self.seed.to_string()),
             ("show", name(self.show)),
@@ -40,8 +40,20 @@ impl Settings {
         list.extend(illuminance.map(|v| ("sky-illuminance", v.to_string())));
         list.extend(self.gamma.map(|v| ("gamma", v.to_string())));
         list.extend(self.scale.map(|v| ("scale", v.to_string())));
+        let colours = self.false_colour.filter(|q| self.show.holds(*q));
+        list.extend(colours.map(|v| ("false-colour", name(v))));
+        let range = self.false_colour_range;
+        list.extend(range.map(|r| ("false-colour-range", format!("{},{}", r.min, r.max))));
         list
     }
+}
+
+/// The picture at rest is the same by both: only how it gets there differs.
+fn visibility(visibility: Visibility) -> String {
+    name(match visibility {
+        Visibility::Progressive => Visibility::Dome,
+        other => other,
+    })
 }
 
 pub(crate) fn name(value: impl ValueEnum) -> String {

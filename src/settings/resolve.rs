@@ -4,9 +4,9 @@ use chrono::{DateTime, FixedOffset};
 use glam::Vec3;
 
 use super::{
-    AoResolution, Direction, Filter, Fresnel, IrradianceMethod, Options, Place, Preset,
-    SettingsError, Show, Size, SkyModel, SolarTime, SunPositionMethod, Switch, ToneCurve,
-    Visibility, values,
+    AoResolution, Direction, Filter, Fresnel, IrradianceMethod, Options, Place, Preset, Quantity,
+    Range, SettingsError, Show, Size, SkyModel, SolarTime, SunPositionMethod, Switch, ToneCurve,
+    Visibility, name, values,
 };
 use crate::error::Error;
 use crate::gpu::Optional;
@@ -96,6 +96,21 @@ pub struct CameraParts {
     pub name: Option<String>,
 }
 
+/// What a scene was allowed when it was loaded; none where the program's own limit held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Limits {
+    /// Whether its files may lie outside of its folder tree.
+    pub allow_outside: bool,
+    /// Most triangles, instances counted.
+    pub max_triangles: Option<u32>,
+    /// Longest edge of a texture, texels.
+    pub max_texture_edge: Option<u32>,
+    /// Most memory of all textures, MiB.
+    pub max_texture_mib: Option<u32>,
+    /// Largest file, MiB.
+    pub max_file_mib: Option<u32>,
+}
+
 /// Everything that decides a picture, besides the scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
@@ -135,6 +150,10 @@ pub struct Settings {
     pub scale: Option<f64>,
     /// What the picture shows.
     pub show: Show,
+    /// What of it false colours show.
+    pub false_colour: Option<Quantity>,
+    /// From where to where they go.
+    pub false_colour_range: Option<Range>,
     /// How the light of the sky is integrated.
     pub irradiance: IrradianceMethod,
     /// Most samples of the irradiance cube.
@@ -163,6 +182,8 @@ pub struct Settings {
     pub dome_directions: u32,
     /// Edge of the map of each, texels.
     pub dome_size: u32,
+    /// What a scene may take and read.
+    pub limits: Limits,
     /// Part of a device's name, or its number.
     pub device: Option<String>,
     /// No progress, no warnings.
@@ -230,6 +251,7 @@ impl Settings {
             Visibility::Ssao
         };
         let dome = DomeSettings::default();
+        let show = shown(&o)?;
         let (sky, turbidity) = (o.sky.unwrap_or_default(), o.turbidity.unwrap_or(3.0));
         Ok(Self {
             sun: sun(&o)?,
@@ -257,7 +279,9 @@ impl Settings {
             tone_curve: o.tonemap.unwrap_or_default(),
             gamma: o.gamma,
             scale: o.scale,
-            show: o.show.unwrap_or_default(),
+            show,
+            false_colour: o.false_colour,
+            false_colour_range: o.false_colour_range,
             irradiance: o.irradiance.unwrap_or_default(),
             irradiance_samples: o.irradiance_samples.unwrap_or(1024),
             irradiance_error: o.irradiance_error.unwrap_or(0.1),
@@ -272,6 +296,13 @@ impl Settings {
             shadow_size: o.shadow_size.unwrap_or(2048),
             dome_directions: o.dome_directions.unwrap_or(dome.directions),
             dome_size: o.dome_size.unwrap_or(dome.map_edge),
+            limits: Limits {
+                allow_outside: o.allow_outside,
+                max_triangles: o.max_triangles,
+                max_texture_edge: o.max_texture_edge,
+                max_texture_mib: o.max_texture_mib,
+                max_file_mib: o.max_file_mib,
+            },
             device: o.device,
             quiet: o.quiet,
             validate: o.validate,
@@ -292,6 +323,19 @@ impl Settings {
             bounds,
             aspect,
         )
+    }
+}
+
+/// What the picture shows: where nothing is said, what false colours ask for.
+fn shown(o: &Options) -> Result<Show, SettingsError> {
+    match (o.false_colour, o.show) {
+        (Some(Quantity::Illuminance), None) => Ok(Show::Irradiance),
+        (Some(quantity), Some(show)) if !show.holds(quantity) => Err(SettingsError(format!(
+            "--false-colour {} has no meaning for --show {}; leave one out",
+            name(quantity),
+            show.name()
+        ))),
+        _ => Ok(o.show.unwrap_or_default()),
     }
 }
 

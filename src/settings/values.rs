@@ -6,6 +6,7 @@ use chrono::{DateTime, FixedOffset, NaiveDate};
 use clap::ValueEnum;
 
 use crate::daylight::cities;
+use crate::daylight::false_colour::Range;
 pub use crate::passes::lighting::Show;
 
 /// Width and height of a picture, pixels, 1..16 384 each.
@@ -172,6 +173,18 @@ pub(super) fn place(text: &str) -> Result<Place, String> {
         latitude,
         longitude,
     })
+}
+
+/// `MIN,MAX` of false colours.
+pub(super) fn colour_range(text: &str) -> Result<Range, String> {
+    let [min, max] = list(text, "MIN,MAX, for instance 100,10000")?;
+    for value in [min, max] {
+        within("a value of the range", "", 1e-9..=1e12, value)?;
+    }
+    if min >= max {
+        return Err("the first value of the range must be less than the second".to_owned());
+    }
+    Ok(Range { min, max })
 }
 
 /// `AZIMUTH,ELEVATION`, degrees.
@@ -341,6 +354,18 @@ mod tests {
         };
         assert_eq!(place(" lisboa"), Ok(lisbon));
         assert_eq!(place("38.72,-9.14"), Ok(lisbon));
+        assert_eq!(
+            colour_range("10,2e3"),
+            Ok(Range {
+                min: 10.0,
+                max: 2000.0
+            })
+        );
+        for text in [
+            "10", "0,10", "-1,10", "10,10", "20,10", "1,inf", "a,b", "1,2,3",
+        ] {
+            assert!(colour_range(text).is_err(), "{text}");
+        }
         for text in ["0,12", "367,12", "1.5,12", "172,25", "172"] {
             assert!(solar(text).is_err(), "{text}");
         }

@@ -226,6 +226,7 @@ pub fn settings(width: u32, height: u32) -> FrameSettings {
             white: REINHARD_WHITE,
             gamma: None,
             depth_scale: 10.0,
+            false_colour: None,
         },
     }
 }

@@ -26,7 +26,7 @@ pub(super) fn save(stage: &mut Stage, document: &Document) -> Result<String> {
 
 /// `skylight-SCENE-N`, with the first number that no file has.
 fn free_name(document: &Document) -> PathBuf {
-    let scene = document.path.as_deref().and_then(Path::file_stem);
+    let scene = document.job.path.as_deref().and_then(Path::file_stem);
     let scene = scene.map_or("bundled".into(), |s| s.to_string_lossy());
     let mut number = 1;
     loop {

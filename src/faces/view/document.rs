@@ -24,8 +24,6 @@ pub(super) const REST_SAMPLES: u32 = 64;
 pub(super) struct Document {
     /// Scene, settings, light. Who changes the settings calls [`Document::follow`].
     pub(super) job: Job,
-    /// Where from; none for the bundled scene.
-    pub(super) path: Option<PathBuf>,
     /// The camera in the hand.
     pub(super) controls: Controls,
     /// Places to come back to.
@@ -70,7 +68,6 @@ impl Document {
             followed: job.settings.clone(),
             frame,
             job,
-            path,
             drawn: None,
             averaged: 0,
             frames: 0,
@@ -236,13 +233,16 @@ impl Document {
     }
 
     /// The command that renders this picture, for a shell.
-    pub(super) fn command(&self) -> String {
-        self.job.command(self.path.as_deref())
+    ///
+    /// # Errors
+    /// What no option can say.
+    pub(super) fn command(&self) -> Result<String> {
+        self.job.command_line()
     }
 
     /// Name of the scene, without its folder.
     pub(super) fn title(&self) -> String {
-        let name = self.path.as_deref().and_then(|p| p.file_name());
+        let name = self.job.path.as_deref().and_then(|p| p.file_name());
         name.map_or("bundled scene".to_owned(), |n| {
             n.to_string_lossy().into_owned()
         })

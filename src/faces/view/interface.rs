@@ -19,6 +19,7 @@ pub(super) use notes::Notes;
 use egui::{Align2, CollapsingHeader, Panel, ScrollArea, Ui};
 use glam::DVec3;
 
+use crate::output::print;
 use crate::passes::probe::Reading;
 
 use super::document::Document;
@@ -145,11 +146,14 @@ impl Interface {
             Action::ToggleSunPath => self.sky_dome.toggle(),
             Action::CopyCommand => {
                 let command = document.command();
-                self.say("copied the command that renders this picture");
-                if let Err(error) = crate::output::print(&format!("{command}\n")) {
-                    self.complain(&error.to_string());
+                let printed = command.and_then(|line| print(&format!("{line}\n")).map(|()| line));
+                match printed {
+                    Ok(line) => {
+                        self.say("copied the command that renders this picture");
+                        wishes.push(Wish::Copy(line));
+                    }
+                    Err(error) => self.complain(&error.to_string()),
                 }
-                wishes.push(Wish::Copy(command));
             }
             other => document.act(other, &mut self.notes),
         }

@@ -41,7 +41,7 @@ layout(set = 0, binding = 9, scalar) uniform Dome {
     vec4 light[16];   // share of the irradiance at normal incidence, klx; a: 1 of the sky, 0 of the ground
 } dome;
 
-layout(set = 0, binding = 10) uniform sampler2D occlusion;
+layout(set = 0, binding = 10) uniform usampler2D occlusion;
 
 layout(push_constant, scalar) uniform Push {
     vec3 ground;     // radiance below the horizon, kcd/m^2

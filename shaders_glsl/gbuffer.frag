@@ -8,10 +8,11 @@
 layout(location = 0) in vec3 from_eye;
 layout(location = 1) in vec3 shading_normal;
 layout(location = 2) in vec2 surface_uv;
+layout(location = 3) flat in float thickness; // behind the surface, metres
 
 layout(location = 0) out vec2 normal;        // world, octahedral
 layout(location = 1) out vec4 albedo;        // rgb: rho_d; a: factor on rho_s
-layout(location = 2) out uint material;      // index into the table of materials
+layout(location = 2) out uint material;      // lower half: index into the table of materials; upper: of the thickness' bits
 
 layout(constant_id = 0) const bool DIFFUSE_MAP = true;
 layout(constant_id = 1) const bool SPECULAR_MAP = true;
@@ -24,5 +25,5 @@ void main() {
     albedo = vec4(push.diffuse, 1.0);
     if (DIFFUSE_MAP) albedo.rgb *= texture(diffuse_map, surface_uv, -push.sharpen).rgb;
     if (SPECULAR_MAP) albedo.a = dot(texture(specular_map, surface_uv, -push.sharpen).rgb, vec3(1.0 / 3.0));
-    material = push.material;
+    material = push.material | (floatBitsToUint(thickness) & 0xffff0000u);
 }

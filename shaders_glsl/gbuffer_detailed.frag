@@ -12,10 +12,11 @@ layout(location = 1) in vec3 shading_normal;
 layout(location = 2) in vec2 surface_uv;
 layout(location = 3) in vec4 surface_colour;  // linear RGBA
 layout(location = 4) in vec4 surface_tangent; // w: sign of the bitangent
+layout(location = 5) flat in float thickness; // behind the surface, metres
 
 layout(location = 0) out vec2 normal;        // world, octahedral
 layout(location = 1) out vec4 albedo;        // rgb: rho_d; a: factor on rho_s
-layout(location = 2) out uint material;      // index into the table of materials
+layout(location = 2) out uint material;      // lower half: index into the table of materials; upper: of the thickness' bits
 
 layout(constant_id = 0) const bool DIFFUSE_MAP = true;
 layout(constant_id = 1) const bool SPECULAR_MAP = true;
@@ -45,5 +46,5 @@ void main() {
     if (CUT_OUT && surface.a < push.cutoff) discard;
     normal = octahedral_encode(n);
     albedo = vec4(surface.rgb, gloss);
-    material = push.material;
+    material = push.material | (floatBitsToUint(thickness) & 0xffff0000u);
 }

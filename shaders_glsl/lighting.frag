@@ -36,7 +36,7 @@ layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform sampler2D normal;
 layout(set = 0, binding = 2) uniform sampler2D albedo;
 layout(set = 0, binding = 3) uniform usampler2D material;
-layout(set = 0, binding = 4) uniform sampler2D occlusion;
+layout(set = 0, binding = 4) uniform usampler2D occlusion;
 layout(set = 0, binding = 5) uniform sampler2D shadow_map; // reversed: 1 is nearest the sun
 layout(set = 0, binding = 6) uniform samplerCube sky_irradiance; // E, klx
 layout(set = 0, binding = 7) uniform samplerCube sky_radiance;   // L, kcd/m^2, without the disc
@@ -132,7 +132,7 @@ void main() {
     if (SUN) sum += surface.rgb / PI * sun_irradiance;
     if (SKY) sum += surface.rgb / PI * irradiance;
     if (SUN_SPECULAR || SKY_SPECULAR) {
-        Material m = materials[texelFetch(material, pixel, 0).r];
+        Material m = materials[texelFetch(material, pixel, 0).r & 0xffffu];
         vec3 rho_s = m.specular * (surface.a * sun.specular_scale);
         vec3 toward = normalize(world_ray);
         if (FRESNEL && any(greaterThan(rho_s, vec3(0.0)))) rho_s = grazing(rho_s, m.shininess, -dot(toward, n));

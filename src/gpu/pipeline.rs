@@ -362,6 +362,7 @@ fn vertex_streams(
 
 fn vertex_size(format: vk::Format) -> u32 {
     match format {
+        vk::Format::R32G32B32A32_SFLOAT => 16,
         vk::Format::R32G32B32_SFLOAT => 12,
         vk::Format::R32G32_SFLOAT => 8,
         vk::Format::R16G16_SNORM => 4,

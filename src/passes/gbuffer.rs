@@ -53,7 +53,8 @@ pub struct Surfaces {
     pub normal: Image,
     /// ρ_d, and a factor on ρ_s.
     pub albedo: Image,
-    /// Number of the material.
+    /// Number of the material (lower half), and how thick the body is behind the surface (upper half: that of a float's
+    /// bits, metres).
     pub material: Image,
     /// Reversed depth: near / distance; 0 is background.
     pub depth: Image,
@@ -88,13 +89,16 @@ fn pipeline(
     diffuse_map: bool,
     specular_map: bool,
 ) -> Result<Pipeline> {
-    let float3 = Format::R32G32B32_SFLOAT;
     Pipeline::new(
         context,
         &PipelineDesc {
             name: "G-buffer",
             stages: &[&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG],
-            vertex: &[float3, float3, Format::R32G32_SFLOAT],
+            vertex: &[
+                Format::R32G32B32_SFLOAT,
+                Format::R32G32B32A32_SFLOAT,
+                Format::R32G32_SFLOAT,
+            ],
             colors: formats,
             depth: Depth::Write {
                 format: Format::D32_SFLOAT,
@@ -116,7 +120,7 @@ impl Gbuffer {
     pub fn new(context: &Arc<Context>, geometry: &Geometry, size: [u32; 2]) -> Result<Self> {
         // 16 bits a component hold a direction to 0.003°; half floats, which every device renders to, to 0.03°.
         let normal = context.supported_format(&[Format::R16G16_SNORM, Format::R16G16_SFLOAT])?;
-        let formats = [normal, Format::R16G16B16A16_SFLOAT, Format::R16_UINT];
+        let formats = [normal, Format::R16G16B16A16_SFLOAT, Format::R32_UINT];
         let pipelines = [(false, false), (false, true), (true, false), (true, true)]
             .map(|(diffuse, specular)| pipeline(context, &formats, diffuse, specular));
         let [plain, specular, diffuse, both] = pipelines;

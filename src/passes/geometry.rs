@@ -6,7 +6,7 @@ use crate::gpu::{
     Buffer, BufferKind, Draws, Format, Image, ImageDesc, ImageKind, Recorder, Result,
     upload_buffer, upload_texture,
 };
-use crate::scene::{Bounds, Encoding, Material, Scene, Texture};
+use crate::scene::{Bodies, Body, Bounds, Encoding, Material, Scene, Texture};
 
 /// What is drawn with one material.
 #[derive(Debug, Clone, Copy)]
@@ -82,6 +82,7 @@ pub struct Bound<'g> {
 /// The uploaded scene.
 pub struct Geometry {
     positions: Buffer,
+    /// Normal, and how thick the body is behind the surface, metres.
     normals: Buffer,
     texcoords: Buffer,
     indices: Buffer,
@@ -109,6 +110,7 @@ impl Geometry {
             upload_buffer(recorder, name, BufferKind::Vertex, bytes)
         };
         let indices = bytemuck::cast_slice(&scene.indices);
+        let normals = normals_and_thickness(scene, &Bodies::of(scene));
         let table: Vec<[f32; 4]> = scene.materials.iter().map(table_row).collect();
         let surfaces: Vec<Surface> = scene.materials.iter().map(surface).collect();
         let textures: Result<Vec<Image>> = scene
@@ -141,7 +143,7 @@ impl Geometry {
                 "positions",
                 bytemuck::cast_slice(&scene.positions),
             )?,
-            normals: vertex(recorder, "normals", bytemuck::cast_slice(&scene.normals))?,
+            normals: vertex(recorder, "normals", bytemuck::cast_slice(&normals))?,
             texcoords: vertex(
                 recorder,
                 "texcoords",
@@ -321,6 +323,15 @@ fn upload_details(recorder: &mut Recorder, scene: &Scene) -> Result<[Buffer; 2]>
         upload_buffer(recorder, "colours", BufferKind::Vertex, colours)?,
         upload_buffer(recorder, "tangents", BufferKind::Vertex, tangents)?,
     ])
+}
+
+fn normals_and_thickness(scene: &Scene, bodies: &Bodies) -> Vec<[f32; 4]> {
+    let thickness: Vec<f32> = bodies.list.iter().map(Body::thickness).collect();
+    let body = bodies.of_vertex.iter();
+    let vertices = scene.normals.iter().zip(body);
+    vertices
+        .map(|([x, y, z], body)| [*x, *y, *z, thickness[*body as usize]])
+        .collect()
 }
 
 fn table_row(material: &Material) -> [f32; 4] {

@@ -12,6 +12,13 @@ use super::gbuffer::Surfaces;
 use super::view::View;
 
 gpu_struct! {
+    /// Of the occluders.
+    pub struct PackPush {
+        near: f32,
+    }
+}
+
+gpu_struct! {
     /// Radius and noise.
     pub struct Push {
         radius: f32,
@@ -26,9 +33,7 @@ pub struct SsaoSettings {
     pub radius: f32,
     /// Pixels of the picture to one of the occlusion, each way: 1 or 2.
     pub downscale: u32,
-    /// Slices through the view direction.
-    pub slices: u32,
-    /// Depth samples on each side of a slice.
+    /// Samples on each side of the slice.
     pub steps: u32,
 }
 
@@ -37,8 +42,7 @@ impl Default for SsaoSettings {
         Self {
             radius: 5.0,
             downscale: 2,
-            slices: 2,
-            steps: 6,
+            steps: 12,
         }
     }
 }
@@ -46,14 +50,16 @@ impl Default for SsaoSettings {
 /// The passes and their images.
 pub struct Ssao {
     settings: SsaoSettings,
+    pack: Pipeline,
     trace: Pipeline,
     blur: Pipeline,
+    occluders: Image,
     noisy: Image,
     smooth: Image,
 }
 
-/// A in the first channel, distance along the view axis (m) in the second, for depth-aware filters.
-const FORMAT: Format = Format::R16G16_SFLOAT;
+/// Two numbers to a word, see `include/occluder.glsl`.
+const FORMAT: Format = Format::R32_UINT;
 
 impl Ssao {
     /// For pictures of `size` pixels.
@@ -61,17 +67,21 @@ impl Ssao {
     /// # Errors
     /// When the device refuses.
     pub fn new(context: &Arc<Context>, size: [u32; 2], settings: SsaoSettings) -> Result<Self> {
-        let constants = [
-            ("SLICES", settings.slices),
-            ("STEPS", settings.steps),
-            ("DOWNSCALE", settings.downscale),
-        ];
+        let constants = [("STEPS", settings.steps), ("DOWNSCALE", settings.downscale)];
         let half = size.map(|edge| edge.div_ceil(settings.downscale));
         let image = |name| Image::new(context, &ImageDesc::flat(name, FORMAT, half));
         Ok(Self {
             settings,
             trace: fullscreen(context, "SSAO", &shaders::SSAO_FRAG, FORMAT, &constants)?,
             blur: fullscreen(context, "SSAO blur", &shaders::SSAO_BLUR_FRAG, FORMAT, &[])?,
+            pack: fullscreen(
+                context,
+                "SSAO occluders",
+                &shaders::SSAO_OCCLUDERS_FRAG,
+                FORMAT,
+                &[("DOWNSCALE", settings.downscale)],
+            )?,
+            occluders: image("occluders")?,
             noisy: image("occlusion, noisy")?,
             smooth: image("occlusion")?,
         })
@@ -91,17 +101,26 @@ impl Ssao {
         phase: f32,
     ) -> &Image {
         if self.settings.radius <= 0.0 {
-            // Nothing occludes: every texel is A = 1 (the distance only steers filters, which find no edges).
+            // Nothing occludes: a word of 0 is A = 1 (the distance only steers filters, which find no edges).
             recorder
                 .pass("SSAO off", &self.blur)
                 .sample("noisy_occlusion", &self.noisy, Sampler::Nearest)
-                .color(&self.smooth, Load::Clear([1.0, 0.0, 0.0, 0.0]))
+                .color(&self.smooth, Load::Clear([0.0; 4]))
                 .draws(|_| ());
             return &self.smooth;
         }
         recorder
-            .pass("SSAO", &self.trace)
+            .pass("SSAO occluders", &self.pack)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
+            .sample("material", &surfaces.material, Sampler::Nearest)
+            .push(&PackPush {
+                near: view.camera.near,
+            })
+            .color(&self.occluders, Load::Discard)
+            .draw();
+        recorder
+            .pass("SSAO", &self.trace)
+            .sample("occluders", &self.occluders, Sampler::Nearest)
             .sample("normal", &surfaces.normal, Sampler::Nearest)
             .uniform("view", &view.block())
             .push(&Push {
@@ -128,5 +147,7 @@ mod tests {
     fn host_and_shader_agree() {
         let push = shaders::SSAO_FRAG.push.expect("push");
         assert_eq!(check_layout(Push::FIELDS, push), Ok(()));
+        let push = shaders::SSAO_OCCLUDERS_FRAG.push.expect("push");
+        assert_eq!(check_layout(PackPush::FIELDS, push), Ok(()));
     }
 }

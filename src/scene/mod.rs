@@ -4,6 +4,7 @@
 //! indices, ready to be uploaded. World space is right-handed, metres, +Y up, +X east, −Z north.
 
 mod arena;
+mod bodies;
 mod bounds;
 mod builder;
 mod bundled;
@@ -37,6 +38,7 @@ use std::path::{Path, PathBuf};
 use glam::Affine3A;
 use serde::{Deserialize, Serialize};
 
+pub use bodies::{Bodies, Body};
 pub use bounds::Bounds;
 pub use bundled::bundled;
 pub use camera::{Camera, DEFAULT_FOV_DEG};

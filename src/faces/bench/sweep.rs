@@ -99,11 +99,11 @@ impl Sweep {
                     step(texels, label, &|s| s.settings.shadow_resolution = edge)
                 })
                 .collect(),
-            Self::Ssao => [1, 2, 4, 8]
+            Self::Ssao => [4, 8, 16, 32]
                 .into_iter()
-                .map(|slices| {
-                    let samples = 2 * slices * base().settings.ssao.steps;
-                    let change = |s: &mut Subject<'j>| s.settings.ssao.slices = slices;
+                .map(|steps| {
+                    let samples = 2 * steps;
+                    let change = |s: &mut Subject<'j>| s.settings.ssao.steps = steps;
                     step(f64::from(samples), samples.to_string(), &change)
                 })
                 .collect(),

@@ -9,6 +9,10 @@ use super::view::View;
 /// Share of the extent by which the fit may grow before the map changes its scale: the extent is rounded up to a power of this.
 const SCALE_STEP: f32 = 1.25;
 
+/// Share of the extent in whose steps the map follows the view, at the price of as much margin: between two steps a moving
+/// camera needs no new map.
+const CENTRE_STEP: f32 = 1.0 / 16.0;
+
 /// A fitted map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShadowView {
@@ -41,7 +45,8 @@ fn axes(sun_direction: Vec3) -> [Vec3; 3] {
 /// Fits the map of `resolution` texels a side to the part of `bounds` that `view` sees and that may lie in the shadow of
 /// what is within `casters`.
 ///
-/// The centre moves in whole texels and the extent in steps, so that shadows do not swim under a moving camera.
+/// The centre moves in steps of whole texels and the extent in steps too, so that shadows do not swim under a moving camera
+/// and the map seldom changes. A map as large as the scene stays where it is.
 pub fn fit(
     sun_direction: Vec3,
     bounds: &Bounds,
@@ -72,16 +77,26 @@ pub fn fit(
         .truncate()
         .max_element()
         .max(1e-3);
-    // Two texels of margin on each side for the filter and the snapping.
     let stepped = SCALE_STEP.powf((extent.ln() / SCALE_STEP.ln()).ceil());
     let whole = (casters.max - casters.min)
         .truncate()
         .max_element()
         .max(1e-3);
-    let side = stepped.min(whole.max(extent)) * (1.0 + 4.0 / resolution as f32);
+    let follows = stepped * (1.0 + CENTRE_STEP) < whole;
+    let (covered, side) = if follows {
+        (receivers, stepped * (1.0 + CENTRE_STEP))
+    } else {
+        (casters, whole)
+    };
+    // Two texels of margin on each side for the filter and the rounding.
+    let side = side * (1.0 + 4.0 / resolution as f32);
     let texel = side / resolution as f32;
-    let centre = 0.5 * (receivers.min + receivers.max).truncate();
-    let centre = (centre / texel).round() * texel;
+    let step = if follows {
+        texel * (CENTRE_STEP * resolution as f32).floor().max(1.0)
+    } else {
+        texel
+    };
+    let centre = (covered.centre().truncate() / step).round() * step;
     ShadowView {
         shadow_from_world: orthographic([right, up, toward], centre, side, &casters),
         texel,
@@ -339,6 +354,29 @@ mod tests {
                 |v: &ShadowView| v.shadow_from_world.transform_point3(p).truncate() * 512.0;
             let moved = texels(&a) - texels(&b);
             assert!((moved - moved.round()).length() < 0.02, "{moved}");
+        }
+    }
+
+    #[test]
+    fn a_slow_walk_seldom_needs_a_new_map() {
+        for (eye, target) in [
+            (Vec3::new(6.0, 3.0, 5.0), Vec3::new(-4.0, 1.0, -6.0)),
+            (Vec3::new(1.0, 0.5, 1.0), Vec3::new(0.0, 0.0, 0.5)),
+        ] {
+            let maps: Vec<ShadowView> = (0..200)
+                .map(|i| {
+                    let along = Vec3::X * (i as f32 * 0.002);
+                    fit(
+                        suns()[1],
+                        &scene(),
+                        &scene(),
+                        &view(eye + along, target + along),
+                        1024,
+                    )
+                })
+                .collect();
+            let changes = maps.windows(2).filter(|pair| pair[0] != pair[1]).count();
+            assert!(changes < 10, "{changes} maps on 0.4 m");
         }
     }
 

@@ -165,6 +165,8 @@ impl Random {
             fresnel: self.one::<Fresnel>(),
             moment: self.maybe(|_| "dusk".to_owned()),
             allow_outside: self.often(),
+            // Of no consequence for the picture, so no part of the command.
+            no_cache: self.often(),
             max_triangles: self.count(1, u32::MAX),
             max_texture_edge: self.count(1, 65_536),
             max_texture_mib: self.count(1, u32::MAX),

@@ -4,6 +4,7 @@
 mod air;
 mod clock;
 mod help;
+mod legend;
 mod light;
 mod notes;
 mod picture;
@@ -169,6 +170,7 @@ impl Interface {
                 self.panel(ui, document, &mut wishes);
                 self.probe.show(ui, document);
                 self.timings.show(ui, document);
+                legend::show(ui, &document.job.settings);
             }
             help::show(ui, &mut self.help);
         }

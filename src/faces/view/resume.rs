@@ -38,7 +38,7 @@ fn fnv1a(bytes: &[u8]) -> u64 {
 /// # Errors
 /// When the state folder cannot be written to.
 pub(super) fn keep(document: &Document) -> Result<()> {
-    let Some(file) = file_of(document.path.as_deref()) else {
+    let Some(file) = file_of(document.job.path.as_deref()) else {
         return Ok(());
     };
     let failed = |reason: String| Error::Write {

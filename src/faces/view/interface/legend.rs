@@ -3,14 +3,20 @@
 use egui::{Align2, Color32, FontId, Mesh, Rect, Sense, Ui, pos2, vec2};
 
 use super::corner;
-use crate::daylight::false_colour::{Quantity, Range};
+use crate::daylight::false_colour::Range;
+use crate::settings::Settings;
 
 /// Size of the bar, points.
 const BAR: [f32; 2] = [18.0, 220.0];
 /// Steps of colour in it.
 const STEPS: u32 = 48;
 
-pub(super) fn show(ui: &Ui, quantity: Quantity, range: Range) {
+/// Of the false colours that are shown, when they are.
+pub(super) fn show(ui: &Ui, settings: &Settings) {
+    let Some(quantity) = settings.false_colour.filter(|q| settings.show.holds(*q)) else {
+        return;
+    };
+    let range = settings.false_colour_range.unwrap_or(quantity.daytime());
     corner(ui, "legend", Align2::RIGHT_CENTER, [-12.0, 0.0], |ui| {
         ui.strong(quantity.unit());
         ui.add_space(8.0);
@@ -21,7 +27,8 @@ pub(super) fn show(ui: &Ui, quantity: Quantity, range: Range) {
             let y = at(bar, tick.share);
             let text = pos2(bar.right() + 8.0, y);
             let font = FontId::proportional(12.0);
-            ui.painter().hline(bar.right()..=bar.right() + 5.0, y, (1.0, Color32::WHITE));
+            ui.painter()
+                .hline(bar.right()..=bar.right() + 5.0, y, (1.0, Color32::WHITE));
             ui.painter()
                 .text(text, Align2::LEFT_CENTER, &tick.label, font, Color32::WHITE);
         }

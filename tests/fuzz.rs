@@ -9,7 +9,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRunner};
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use skylight::cli::{self, CliExit};
 use skylight::scene::{LoadOptions, Scene, load};
 
@@ -29,16 +29,24 @@ const OPTIONS: LoadOptions = LoadOptions {
     cache: None,
 };
 
-/// Runs a property with as many cases as asked for; failures are made small and shown, not stored.
+/// Runs a property with as many cases as asked for, or with those of the short run, which are always the same; failures are
+/// made small and shown, not stored.
 fn run<S: Strategy>(strategy: S, property: impl Fn(S::Value)) {
     let asked = std::env::var("SKYLIGHT_FUZZ_CASES").ok();
-    let cases = asked.map_or(SHORT_RUN, |n| n.parse().expect("a number of cases"));
-    let mut runner = TestRunner::new(Config {
-        cases,
+    let is_short = asked.is_none();
+    let config = Config {
+        cases: asked.map_or(SHORT_RUN, |n| n.parse().expect("a number of cases")),
         failure_persistence: None,
         max_shrink_iters: 2_000,
         ..Config::default()
-    });
+    };
+    let cases = config.cases;
+    let mut runner = if is_short {
+        let same = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+        TestRunner::new_with_rng(config, same)
+    } else {
+        TestRunner::new(config)
+    };
     let started = Instant::now();
     let result = runner.run(&strategy, |value| {
         property(value);
@@ -333,6 +341,28 @@ fn gltf_json_and_chunks() {
             try_files(folder.path(), &[("m.glb", &file)]);
         },
     );
+}
+
+/// What a longer run has found.
+#[test]
+fn crashes_of_old() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let (json, binary) = gltf_seed();
+    for (sound, broken) in [
+        ("\"accessors\"", "\"accessorz\""),
+        ("\"POSITION\":0", "\"POSITION\":99"),
+    ] {
+        let json = json.replace(sound, broken);
+        let file = glb(json.as_bytes(), &binary);
+        try_files(folder.path(), &[("m.glb", &file)]);
+        let error = load(&folder.path().join("m.glb"), &OPTIONS)
+            .expect_err(broken)
+            .to_string();
+        assert!(
+            error.contains("names an accessor that does not exist"),
+            "{error}"
+        );
+    }
 }
 
 const TOML: &str = "[[mesh]]\nfile = \"m.obj\"\ntranslate = [1, 2.5, -3]\nrotate = [0, 90, 0]\nscale = 2\nup = \"z\"\nsmooth = 30\n\

@@ -33,7 +33,7 @@ pub(super) fn append_gltf(
         path: path.to_owned(),
         what: format!("is no glTF that can be shown ({what}); export it again"),
     };
-    let gltf = gltf::Gltf::from_slice(&bytes).map_err(|e| unsound(one_line(&e.to_string())))?;
+    let gltf = parse(&bytes).map_err(|what| unsound(one_line(&what)))?;
     drop(bytes);
     let buffers = Buffers::read(builder, path, &gltf).map_err(unsound)?;
     builder.progress.at(0.2, "reading materials");
@@ -58,6 +58,21 @@ pub(super) fn append_gltf(
     let empty = builder.scene.triangles() == drawn_before;
     model.odd.report(builder, path, empty)?;
     Ok(model.cameras)
+}
+
+/// The document and its binary chunk, every number of the document that names something in range.
+fn parse(bytes: &[u8]) -> Result<gltf::Gltf, String> {
+    let unchecked = gltf::Gltf::from_slice_without_validation(bytes);
+    let gltf::Gltf { document, blob } = unchecked.map_err(|e| e.to_string())?;
+    let root = document.into_json();
+    // The crate's own check looks the accessor of positions up before it checks its number.
+    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let mut named = primitives.flat_map(|primitive| primitive.attributes.values());
+    if named.any(|accessor| accessor.value() >= root.accessors.len()) {
+        return Err("a mesh names an accessor that does not exist".to_owned());
+    }
+    let document = gltf::Document::from_json(root).map_err(|e| e.to_string())?;
+    Ok(gltf::Gltf { document, blob })
 }
 
 /// The nodes of the default scene (or of the first, or of none: all roots), each once, with their places.

@@ -348,21 +348,22 @@ fn gltf_json_and_chunks() {
 fn crashes_of_old() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let (json, binary) = gltf_seed();
-    for (sound, broken) in [
-        ("\"accessors\"", "\"accessorz\""),
-        ("\"POSITION\":0", "\"POSITION\":99"),
-    ] {
-        let json = json.replace(sound, broken);
+    let load = |json: &str| {
         let file = glb(json.as_bytes(), &binary);
         try_files(folder.path(), &[("m.glb", &file)]);
-        let error = load(&folder.path().join("m.glb"), &OPTIONS)
-            .expect_err(broken)
-            .to_string();
-        assert!(
-            error.contains("names an accessor that does not exist"),
-            "{error}"
-        );
+        load(&folder.path().join("m.glb"), &OPTIONS).map_err(|error| error.to_string())
+    };
+    for (sound, broken, part) in [
+        ("\"accessors\"", "\"accessorz\"", "names an accessor"),
+        ("\"POSITION\":0", "\"POSITION\":99", "names an accessor"),
+        ("[{\"bufferView\":4,", "[{", "image 0 has neither"),
+    ] {
+        let error = load(&json.replace(sound, broken)).expect_err(broken);
+        assert!(error.contains(part), "{error}");
     }
+    let untyped =
+        load(&json.replace(",\"mimeType\":\"image/png\"", "")).expect("a picture without a type");
+    assert_eq!(untyped.scene.textures.len(), 2);
 }
 
 const TOML: &str = "[[mesh]]\nfile = \"m.obj\"\ntranslate = [1, 2.5, -3]\nrotate = [0, 90, 0]\nscale = 2\nup = \"z\"\nsmooth = 30\n\

@@ -64,12 +64,22 @@ pub(super) fn append_gltf(
 fn parse(bytes: &[u8]) -> Result<gltf::Gltf, String> {
     let unchecked = gltf::Gltf::from_slice_without_validation(bytes);
     let gltf::Gltf { document, blob } = unchecked.map_err(|e| e.to_string())?;
-    let root = document.into_json();
+    let mut root = document.into_json();
     // The crate's own check looks the accessor of positions up before it checks its number.
     let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let mut named = primitives.flat_map(|primitive| primitive.attributes.values());
     if named.any(|accessor| accessor.value() >= root.accessors.len()) {
         return Err("a mesh names an accessor that does not exist".to_owned());
+    }
+    for (number, image) in root.images.iter_mut().enumerate() {
+        if image.buffer_view.is_none() && image.uri.is_none() {
+            return Err(format!(
+                "image {number} has neither a URI nor a buffer view"
+            ));
+        }
+        // The crate insists on a type; the content tells it better.
+        let unknown = || gltf::json::image::MimeType("image/png".to_owned());
+        image.mime_type.get_or_insert_with(unknown);
     }
     let document = gltf::Document::from_json(root).map_err(|e| e.to_string())?;
     Ok(gltf::Gltf { document, blob })

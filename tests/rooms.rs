@@ -111,7 +111,12 @@ fn scene_and_daylight_know_no_vulkan() {
         let faults: Vec<String> = files
             .iter()
             .flat_map(|f| code(f).map(move |(n, line)| (f, n, line)))
-            .filter(|(_, _, line)| line.contains("ash::") || line.contains("vk::"))
+            .filter(|(_, _, line)| {
+                // As a word: std::hash:: is no Vulkan.
+                let names = |c: char| !c.is_alphanumeric() && c != '_' && c != ':';
+                let mut paths = line.split(names);
+                paths.any(|path| path.starts_with("ash::") || path.starts_with("vk::"))
+            })
             .map(|(f, n, _)| format!("{}:{n}", f.path))
             .collect();
         none(room, files.len(), &faults);

@@ -8,7 +8,6 @@ use super::view::View;
 
 /// Share of the extent by which the fit may grow before the map changes its scale: the extent is rounded up to a power of this.
 const SCALE_STEP: f32 = 1.25;
-
 /// Share of the extent in whose steps the map follows the view, at the price of as much margin: between two steps a moving
 /// camera needs no new map.
 const CENTRE_STEP: f32 = 1.0 / 16.0;

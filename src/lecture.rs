@@ -14,7 +14,7 @@
 //! | Gamut mapping | Y = 0.2126 R + 0.7152 G + 0.0722 B | [`luminance`](crate::daylight::colour::luminance) | `include/constants.glsl`: `luminance` | `white_is_white` |
 //! | Tone mapping | (s R)^(1/γ) | [`linear_gamma`](crate::daylight::tone_curve::linear_gamma) | `tone_map.frag`: `inverse_gamma` | `tone_curves` |
 //! | Tone mapping | (1 - e^(-R))^(1/γ) | [`exponential`](crate::daylight::tone_curve::exponential) | `include/tone_curve.glsl`: `tone_exponential` | `tone_curves` |
-//! | Analytical sky models | Preetham's L(θ, γ) | [`Preetham`](crate::daylight::preetham::Preetham), [`perez`](crate::daylight::preetham::perez) | `sky_preetham.frag`: `perez` | `preetham_sky` |
+//! | Analytical sky models | Preetham's L(θ, γ) | [`Preetham`](crate::daylight::preetham::Preetham), [`perez`](crate::daylight::preetham::perez) | `include/sky_preetham.glsl`: `perez` | `preetham_sky` |
 //! | Analytical sky models | θ_s = π/2 - asin(sin ℓ sin δ - cos ℓ cos δ cos(π t/12)) | [`lecture`](crate::daylight::sun_position::lecture) | – | `lecture_formulas` |
 //! | Analytical sky models | φ_s, corrected (below) | [`lecture`](crate::daylight::sun_position::lecture) | – | `the_printed_azimuth_mirrors_a_summer_sunrise` |
 //! | Analytical sky models | δ(J), t from the clock | [`declination`](crate::daylight::sun_position::declination), [`solar_time`](crate::daylight::sun_position::solar_time) | – | `declination_and_equation_of_time` |

@@ -408,7 +408,10 @@ fn bad_scenes_end_with_1_and_touch_nothing() {
         (&["empty.obj"], &["empty.obj has no triangles"]),
         (&["cut.obj"], &["cut.obj, line 3"]),
         (&["cut-vertex.obj"], &["cut-vertex.obj, line 5"]),
-        (&["model.gltf"], &["model.gltf", "not supported", "OBJ"]),
+        (
+            &["model.gltf"],
+            &["model.gltf", "no glTF", "export it again"],
+        ),
         (&["text.txt"], &["text.txt", ".obj"]),
         (&["key.toml"], &["key.toml", "\"turbidty\"", "turbidity"]),
         (

@@ -25,8 +25,8 @@
 //! | Environment mapping | r = i - 2 (n·i) n | [`Show::SkySpecular`](crate::settings::Show::SkySpecular) | `lighting.frag`: `reflect(` | `each_addend_is_in_the_picture_once` |
 //! | Filling the background | i_w = V⁻¹ P⁻¹ p_n | [`Camera`](crate::scene::Camera) | `include/view.glsl`: `view_ray` | – |
 //! | Sky irradiance and A | E ≈ A E_sky | [`Show::Sky`](crate::settings::Show::Sky) | `lighting.frag`: `ambient_occlusion` | `each_addend_is_in_the_picture_once` |
-//! | Integrating skylight | E_N = 1/N Σ L cos θ/pdf | [`monte_carlo`](crate::daylight::irradiance::monte_carlo) | `irradiance.frag`: `MONTE_CARLO` | `monte_carlo_meets_its_own_standard_error` |
-//! | Integrating skylight | (θ, φ) = (acos √(1 - ξ1), 2π ξ2) | [`cosine_hemisphere`](crate::daylight::sampling::cosine_hemisphere) | `irradiance.frag`: `random_direction` | `the_warps_have_the_moments_of_their_densities` |
+//! | Integrating skylight | E_N = 1/N Σ L cos θ/pdf | [`monte_carlo`](crate::daylight::irradiance::monte_carlo) | `include/irradiance.glsl`: `MONTE_CARLO` | `monte_carlo_meets_its_own_standard_error` |
+//! | Integrating skylight | (θ, φ) = (acos √(1 - ξ1), 2π ξ2) | [`cosine_hemisphere`](crate::daylight::sampling::cosine_hemisphere) | `include/irradiance.glsl`: `random_direction` | `the_warps_have_the_moments_of_their_densities` |
 //! | Integrating skylight | frame of n (below) | [`frisvad`](crate::daylight::frame::frisvad), [`duff`](crate::daylight::frame::duff) | `include/frame.glsl`: `frame_from_normal` | `tangent_frames` |
 //! | Irradiance environment map | six faces by gl_Layer | [`IrradianceMethod`](crate::daylight::IrradianceMethod) | `cube_faces.geom`: `gl_Layer` | `exact_of_a_64_cube` |
 //! | Irradiance environment map | rnd(t) | [`rnd`](crate::daylight::sampling::rnd), [`tea`](crate::daylight::sampling::tea) | `include/random.glsl`: `rnd` | `rnd_is_uniform` |

@@ -6,7 +6,7 @@ use ash::vk;
 
 use super::access::{self, Use};
 use super::buffer::Buffer;
-use super::draws::Draws;
+use super::draws::{Draws, Faces};
 use super::image::{Image, is_depth};
 use super::layout::{GpuStruct, check_layout};
 use super::pipeline::{Pipeline, block_size};
@@ -74,6 +74,7 @@ pub struct Pass<'r> {
     push: ArrayVec<u8, MAX_PUSH>,
     /// Part of the target, when not all of it is drawn to.
     area: Option<vk::Rect2D>,
+    pub(super) faces: Faces,
     /// Bytes of the buffers and textures that are read.
     pub(super) buffer_bytes: u64,
 }
@@ -96,6 +97,7 @@ impl<'r> Pass<'r> {
             depth: None,
             push: ArrayVec::new(),
             area: None,
+            faces: Faces::Both,
             buffer_bytes: 0,
         }
     }
@@ -394,6 +396,20 @@ impl<'r> Pass<'r> {
                 vk::PipelineBindPoint::GRAPHICS,
                 self.pipeline.raw(),
             );
+        }
+        if self.pipeline.writes_depth {
+            self.set_faces();
+        }
+    }
+
+    /// Sets the faces that are drawn; every pipeline that writes depth leaves them to the command buffer.
+    pub(super) fn set_faces(&self) {
+        let (cull, front) = self.faces.state();
+        let (raw, command) = (self.recorder.context.raw(), self.recorder.command);
+        // SAFETY: the command buffer is inside the rendering of this pass; both states are dynamic in its pipelines.
+        unsafe {
+            raw.cmd_set_cull_mode(command, cull);
+            raw.cmd_set_front_face(command, front);
         }
     }
 

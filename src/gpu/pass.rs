@@ -72,6 +72,8 @@ pub struct Pass<'r> {
     colors: ArrayVec<(&'r Image, Load), MAX_COLORS>,
     depth: Option<(&'r Image, Load)>,
     push: ArrayVec<u8, MAX_PUSH>,
+    /// Whether the next draw needs the push constants: set anew, or never given to the command buffer.
+    pushed_anew: bool,
     /// Part of the target, when not all of it is drawn to.
     area: Option<vk::Rect2D>,
     pub(super) faces: Faces,
@@ -96,6 +98,7 @@ impl<'r> Pass<'r> {
             colors: ArrayVec::new(),
             depth: None,
             push: ArrayVec::new(),
+            pushed_anew: true,
             area: None,
             faces: Faces::Both,
             buffer_bytes: 0,
@@ -290,6 +293,7 @@ impl<'r> Pass<'r> {
         };
         self.check_block("push", T::FIELDS, fields);
         self.push.clear();
+        self.pushed_anew = true;
         let fits = self
             .push
             .try_extend_from_slice(bytemuck::bytes_of(value))
@@ -425,7 +429,9 @@ impl<'r> Pass<'r> {
             self.flush_descriptors();
         }
         self.changed = false;
-        if let Some((fields, stages)) = self.pipeline.push {
+        if let Some((fields, stages)) = self.pipeline.push
+            && std::mem::take(&mut self.pushed_anew)
+        {
             assert_eq!(
                 self.push.len() as u32,
                 block_size(fields),

@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::{Bodies, Bounds, Scene};
 
 /// Most triangles of a cluster.
-const MOST: usize = 64;
+const MOST: usize = 128;
 /// Triangles from which halves are worth a thread of their own.
 const LARGE: usize = 1 << 15;
 

@@ -18,7 +18,7 @@ layout(constant_id = 1) const int DOWNSCALE = 2; // pixels of the G-buffer to on
 layout(constant_id = 2) const bool SPARSE = true; // every second of the occluders, as the black fields of a chessboard
 
 layout(set = 0, binding = 0) uniform usampler2D occluders;
-layout(set = 0, binding = 1) uniform sampler2D normal;
+layout(set = 0, binding = 1) uniform usampler2D normal;
 layout(set = 0, binding = 2, scalar) uniform View { VIEW_BLOCK } view;
 
 layout(push_constant, scalar) uniform Push {
@@ -44,7 +44,7 @@ vec3 point(ivec2 texel, float distance) {
 }
 
 vec3 normal_at(ivec2 texel) {
-    return octahedral_decode(texelFetch(normal, texel * DOWNSCALE, 0).rg) * view.world_from_view;
+    return normal_unpack(texelFetch(normal, texel * DOWNSCALE, 0).r) * view.world_from_view;
 }
 
 /// Half of a slice: the side of the view direction toward which its axis points.

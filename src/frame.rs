@@ -348,7 +348,7 @@ impl Frame {
     /// Refines the sky's irradiance without drawing a picture; `recorder` must be recording.
     pub fn record_light(&mut self, rec: &mut Recorder, daylight: &Daylight) {
         let sky = self.sky_cube.record(rec, daylight);
-        self.irradiance.record(rec, &sky, daylight);
+        self.irradiance.refine(rec, &sky, daylight);
     }
 
     /// Whether the sky's irradiance has all its samples.

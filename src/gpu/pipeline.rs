@@ -8,6 +8,7 @@ use ash::vk;
 use super::compute;
 use super::context::Context;
 use super::error::{During, Result};
+use super::pipeline_state::{depth_state, rasterization, vertex_streams};
 use super::shader::{Binding, Field, Shader};
 use super::stages::{Constants, Modules};
 
@@ -345,67 +346,4 @@ impl Drop for Pipeline {
                 .destroy_descriptor_set_layout(self.set_layout, None);
         }
     }
-}
-
-fn vertex_streams(
-    formats: &[vk::Format],
-) -> (
-    Vec<vk::VertexInputBindingDescription>,
-    Vec<vk::VertexInputAttributeDescription>,
-) {
-    let stream = |(i, format): (usize, &vk::Format)| {
-        let index = i as u32;
-        let binding = vk::VertexInputBindingDescription {
-            binding: index,
-            stride: vertex_size(*format),
-            input_rate: vk::VertexInputRate::VERTEX,
-        };
-        let attribute = vk::VertexInputAttributeDescription {
-            location: index,
-            binding: index,
-            format: *format,
-            offset: 0,
-        };
-        (binding, attribute)
-    };
-    formats.iter().enumerate().map(stream).unzip()
-}
-
-fn vertex_size(format: vk::Format) -> u32 {
-    match format {
-        vk::Format::R32G32B32A32_SFLOAT => 16,
-        vk::Format::R32G32B32_SFLOAT => 12,
-        vk::Format::R32G32_SFLOAT => 8,
-        vk::Format::R16G16_SNORM => 4,
-        vk::Format::R16G16B16A16_UNORM | vk::Format::R16G16B16A16_SNORM => 8,
-        other => unreachable!("vertex format {other:?} has no size here"),
-    }
-}
-
-fn rasterization(depth: Depth) -> vk::PipelineRasterizationStateCreateInfo<'static> {
-    let base = vk::PipelineRasterizationStateCreateInfo::default()
-        .polygon_mode(vk::PolygonMode::FILL)
-        .cull_mode(vk::CullModeFlags::NONE)
-        .line_width(1.0);
-    match depth {
-        Depth::Write { slope_bias, .. } if slope_bias != 0.0 => {
-            // Reversed depth: away from the viewer is down.
-            base.depth_bias_enable(true)
-                .depth_bias_slope_factor(-slope_bias)
-        }
-        _ => base,
-    }
-}
-
-fn depth_state(depth: Depth) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
-    let compare = match depth {
-        // A full-screen triangle has depth 0, which is less than that of any surface.
-        Depth::Surface(_) => vk::CompareOp::LESS,
-        Depth::Background(_) => vk::CompareOp::EQUAL,
-        Depth::Off | Depth::Write { .. } => vk::CompareOp::GREATER,
-    };
-    vk::PipelineDepthStencilStateCreateInfo::default()
-        .depth_test_enable(depth != Depth::Off)
-        .depth_write_enable(matches!(depth, Depth::Write { .. }))
-        .depth_compare_op(compare)
 }

@@ -4,15 +4,14 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use crate::gpu::{
-    Buffer, BufferKind, Draws, Faces, Format, Image, ImageDesc, ImageKind, Recorder, Result,
-    upload_buffer, upload_texture,
-};
-use crate::scene::{
-    self, Bodies, Body, Bounds, Cluster, Clusters, Encoding, Material, Scene, Texture,
-};
+use crate::gpu::{Buffer, BufferKind, Draws, Image, Recorder, Result, upload_buffer};
+use crate::scene::{self, Bodies, Bounds, Cluster, Clusters, Scene};
 
 use super::cull::Cull;
+use super::draw_runs::Runs;
+use super::geometry_upload::{
+    normals_and_thickness, surface, upload, upload_details, upload_materials, white,
+};
 
 /// What is drawn with one material.
 #[derive(Debug, Clone)]
@@ -51,13 +50,13 @@ impl Kind {
 
 /// A material as draws need it.
 #[derive(Debug, Clone, Copy)]
-struct Surface {
-    diffuse: Vec3,
-    diffuse_map: Option<usize>,
-    specular_map: Option<usize>,
-    normal_map: Option<usize>,
-    normal_scale: f32,
-    cutoff: Option<f32>,
+pub(super) struct Surface {
+    pub diffuse: Vec3,
+    pub diffuse_map: Option<usize>,
+    pub specular_map: Option<usize>,
+    pub normal_map: Option<usize>,
+    pub normal_scale: f32,
+    pub cutoff: Option<f32>,
 }
 
 /// What a draw binds: a material with its maps.
@@ -289,74 +288,6 @@ impl Geometry {
     }
 }
 
-/// A run of indices that is drawn at once.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Run {
-    first: u32,
-    count: u32,
-    faces: Faces,
-}
-
-impl Run {
-    fn draw(&self, draws: &mut Draws<'_, '_>) {
-        draws.faces(self.faces);
-        draws.indexed(self.first, self.count);
-    }
-}
-
-impl Run {
-    /// Whether both are better drawn as one, with what lies between them.
-    fn is_followed_by(&self, next: &Self) -> bool {
-        self.faces == next.faces && next.first - (self.first + self.count) <= BRIDGED
-    }
-}
-
-/// Indices that are drawn in vain rather than in two draws: a draw costs a CPU 10 to 30 µs, which is what 200 triangles cost.
-const BRIDGED: u32 = 3 * 200;
-
-/// Runs of the clusters that are seen: those that nearly follow each other are drawn at once.
-struct Runs<'c, I> {
-    clusters: I,
-    cull: &'c Cull,
-    open: Option<Run>,
-}
-
-impl<'c, I: Iterator<Item = &'c Cluster>> Runs<'c, I> {
-    fn new(clusters: impl IntoIterator<Item = &'c Cluster, IntoIter = I>, cull: &'c Cull) -> Self {
-        Self {
-            clusters: clusters.into_iter(),
-            cull,
-            open: None,
-        }
-    }
-}
-
-impl<'c, I: Iterator<Item = &'c Cluster>> Iterator for Runs<'c, I> {
-    type Item = Run;
-
-    fn next(&mut self) -> Option<Run> {
-        for cluster in self.clusters.by_ref().filter(|c| self.cull.sees(c)) {
-            let next = Run {
-                first: cluster.first,
-                count: cluster.count,
-                faces: self.cull.faces(cluster),
-            };
-            match &mut self.open {
-                Some(run) if run.is_followed_by(&next) => {
-                    run.count = next.first + next.count - run.first;
-                }
-                open => {
-                    let done = open.replace(next);
-                    if done.is_some() {
-                        return done;
-                    }
-                }
-            }
-        }
-        self.open.take()
-    }
-}
-
 /// The parts of a scene in the order in which they are drawn, and their clusters.
 fn parts(scene: &Scene, bodies: &Bodies, surfaces: &[Surface]) -> (Vec<Part>, Clusters) {
     let casting = scene.casting();
@@ -388,96 +319,4 @@ impl Surface {
             specular_map: self.specular_map.is_some(),
         }
     }
-}
-
-/// Colours and tangents for every vertex: white and none where the scene has none.
-fn upload_details(recorder: &mut Recorder, scene: &Scene) -> Result<[Buffer; 2]> {
-    let vertices = scene.positions.len();
-    let (white, none) = (vec![[u16::MAX; 4]; vertices], vec![[0i16; 4]; vertices]);
-    let given = |length: usize| length == vertices;
-    let colours = if given(scene.colours.len()) {
-        &scene.colours
-    } else {
-        &white
-    };
-    let tangents = if given(scene.tangents.len()) {
-        &scene.tangents
-    } else {
-        &none
-    };
-    let colours = bytemuck::cast_slice(colours);
-    let tangents = bytemuck::cast_slice(tangents);
-    Ok([
-        upload_buffer(recorder, "colours", BufferKind::Vertex, colours)?,
-        upload_buffer(recorder, "tangents", BufferKind::Vertex, tangents)?,
-    ])
-}
-
-fn normals_and_thickness(scene: &Scene, bodies: &Bodies) -> Vec<[f32; 4]> {
-    let thickness: Vec<f32> = bodies.list.iter().map(Body::thickness).collect();
-    let body = bodies.of_vertex.iter();
-    let vertices = scene.normals.iter().zip(body);
-    vertices
-        .map(|([x, y, z], body)| [*x, *y, *z, thickness[*body as usize]])
-        .collect()
-}
-
-/// Materials in a row of the table of materials.
-const MATERIAL_COLUMNS: usize = 1024;
-
-/// The table of `include/materials.glsl`.
-fn upload_materials(recorder: &mut Recorder, materials: &[Material]) -> Result<Image> {
-    let rows = 2 * materials.len().div_ceil(MATERIAL_COLUMNS).max(1);
-    let mut table = vec![[0.0f32; 4]; rows * MATERIAL_COLUMNS];
-    for (i, material) in materials.iter().enumerate() {
-        let at = i / MATERIAL_COLUMNS * 2 * MATERIAL_COLUMNS + i % MATERIAL_COLUMNS;
-        let ([r, g, b], [x, y, z]) = (material.diffuse, material.specular);
-        table[at] = [r, g, b, 0.0];
-        table[at + MATERIAL_COLUMNS] = [x, y, z, material.shininess];
-    }
-    let size = [MATERIAL_COLUMNS as u32, rows as u32];
-    let desc = ImageDesc::flat("materials", Format::R32G32B32A32_SFLOAT, size);
-    upload_texture(recorder, &desc, &[bytemuck::cast_slice(&table)])
-}
-
-fn surface(material: &Material) -> Surface {
-    Surface {
-        diffuse: material.diffuse.into(),
-        diffuse_map: material.diffuse_texture,
-        specular_map: material.specular_texture,
-        normal_map: material.normal_texture,
-        normal_scale: material.normal_scale,
-        // The opacity of the material multiplies that of the map: the same test with one factor less.
-        cutoff: material
-            .alpha_cutoff
-            .map(|c| c / material.dissolve.max(1e-6)),
-    }
-}
-
-fn white() -> Texture {
-    Texture {
-        name: "white".into(),
-        width: 1,
-        height: 1,
-        rgba8: vec![255; 4],
-        encoding: Encoding::Srgb,
-    }
-}
-
-fn upload(recorder: &mut Recorder, texture: &Texture) -> Result<Image> {
-    let smaller = texture.mip_levels();
-    let levels: Vec<&[u8]> = std::iter::once(texture.rgba8.as_slice())
-        .chain(smaller.iter().map(|t| t.rgba8.as_slice()))
-        .collect();
-    let desc = ImageDesc {
-        name: &texture.name,
-        format: match texture.encoding {
-            Encoding::Srgb => Format::R8G8B8A8_SRGB,
-            Encoding::Linear => Format::R8G8B8A8_UNORM,
-        },
-        size: [texture.width, texture.height],
-        kind: ImageKind::Flat,
-        levels: levels.len() as u32,
-    };
-    upload_texture(recorder, &desc, &levels)
 }

@@ -21,8 +21,8 @@ pub struct Body {
 }
 
 impl Body {
-    /// How far matter reaches behind its surface, metres: [`Body::mean_chord`], of a solid (of which all is known) three
-    /// quarters of it. What lies behind a sheet is not known: it hides as much as its smaller side is long.
+    /// How far matter reaches behind its surface, metres: [`Body::mean_chord`], of a solid (of which all is known) less
+    /// than that. What lies behind a sheet is not known: it hides as much as its smaller side is long.
     pub fn thickness(&self) -> f32 {
         let mut extents = self.bounds.extent().to_array();
         extents.sort_by(f32::total_cmp);
@@ -35,8 +35,8 @@ impl Body {
     }
 }
 
-/// Share of the mean chord that counts of a solid. The occlusion doubles it: 1.5 mean chords are a sphere's diameter.
-const SOLID: f32 = 0.75;
+/// Share of the mean chord that counts of a solid. The occlusion doubles it: a little over a sphere's diameter, which is 1.5.
+const SOLID: f32 = 0.8;
 
 /// Mean chord over largest extent below which a body is a sheet.
 const FLAT: f32 = 1e-3;

@@ -209,7 +209,7 @@ mod tests {
     fn every_triangle_is_in_one_cluster_and_lies_in_its_box() {
         let scene = sheet(150);
         let count = scene.indices.len() as u32;
-        let runs = [(0, 600), (600, count - 600)];
+        let runs = [(0, 300), (300, count - 300)];
         let clusters = Clusters::of(&scene, &Bodies::of(&scene), &runs);
         assert_eq!(triangles(&clusters.indices), triangles(&scene.indices));
         assert_eq!(clusters.of_run[0], 0..1);
@@ -234,10 +234,10 @@ mod tests {
         let scene = sheet(64);
         let count = scene.indices.len() as u32;
         let clusters = Clusters::of(&scene, &Bodies::of(&scene), &[(0, count)]);
-        // 8192 triangles in 32 clusters of 256: patches of 8 x 16 quads, not rows of 128.
-        assert_eq!(clusters.list.len(), 32);
+        // 8192 triangles in 64 clusters of 128: patches of 8 x 8 quads, not rows of 64.
+        assert_eq!(clusters.list.len(), 64);
         for cluster in &clusters.list {
-            assert!(cluster.bounds.extent().max_element() <= 18.0, "{cluster:?}");
+            assert!(cluster.bounds.extent().max_element() <= 10.0, "{cluster:?}");
         }
     }
 

@@ -66,6 +66,7 @@ pub fn context_options(
         validate,
         without: without.into_iter().collect(),
         cache_folder: dirs::cache_dir().map(|folder| folder.join("skylight")),
+        fault: std::env::var("SKYLIGHT_FAULT").ok(),
     }
 }
 

@@ -9,6 +9,7 @@ use super::access::Use;
 use super::buffer::{Buffer, BufferKind};
 use super::context::Context;
 use super::error::{During, GpuError, Result};
+use super::fault::Call;
 use super::image::Image;
 use super::pass::Pass;
 use super::pipeline::Pipeline;
@@ -135,9 +136,10 @@ impl Recorder {
     fn begin_commands(&self) -> Result<()> {
         let info = vk::CommandBufferBeginInfo::default()
             .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+        let begin = "begin a command buffer";
+        self.context.faults.at(Call::Record).during(begin)?;
         // SAFETY: the command buffer is not pending.
-        unsafe { self.context.raw().begin_command_buffer(self.command, &info) }
-            .during("begin a command buffer")
+        unsafe { self.context.raw().begin_command_buffer(self.command, &info) }.during(begin)
     }
 
     /// Submits what was recorded and waits until it is done.
@@ -172,6 +174,7 @@ impl Recorder {
         unsafe {
             raw.end_command_buffer(self.command)
                 .during("end a command buffer")?;
+            self.context.faults.at(Call::Submit).during("submit work")?;
             raw.queue_submit2(self.context.queue, &submit, self.fence)
                 .during("submit work")?;
         }
@@ -185,6 +188,11 @@ impl Recorder {
     /// When the device is lost, or a pass could not be recorded.
     pub fn wait(&mut self) -> Result<()> {
         let waited = self.wait_for_fence();
+        if waited.is_err() {
+            // Memory may have been out for the waiting only: what the work uses must outlive it all the same.
+            // SAFETY: the queue is used by one thread at a time. A lost device has nothing to wait for.
+            let _ = unsafe { self.context.raw().device_wait_idle() };
+        }
         self.kept.clear();
         if let Some(fault) = self.fault.take() {
             return Err(fault);
@@ -207,6 +215,8 @@ impl Recorder {
             return Ok(false);
         }
         let raw = self.context.raw();
+        let planned = self.context.faults.at(Call::Wait);
+        planned.during("wait for the device")?;
         // SAFETY: the fence belongs to the one pending submission.
         unsafe {
             raw.wait_for_fences(&[self.fence], true, u64::MAX)

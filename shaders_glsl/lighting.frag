@@ -49,6 +49,7 @@ layout(set = 0, binding = 9, scalar) uniform Sun {
     float max_radiance;   // largest value the target holds, kcd/m^2
     float specular_scale; // factor on every rho_s
     mat4 planes;          // inverse transpose of shadow_from_world
+    ivec2 occlusion_from; // pixel of the occlusion's picture that is this one's first
 } sun;
 
 struct Material {
@@ -117,7 +118,7 @@ void main() {
         if (PLANE_SHADOW) V = plane_visibility(world, face_normal(pixel, texelFetch(depth, pixel, 0).r, n));
         else V = visibility(world, n, n_dot_l);
     }
-    float A = AMBIENT ? ambient_occlusion(occlusion, OCCLUSION_DOWNSCALE, pixel, distance) : 0.0;
+    float A = AMBIENT ? ambient_occlusion(occlusion, OCCLUSION_DOWNSCALE, pixel + sun.occlusion_from, distance) : 0.0;
     vec3 sun_irradiance = max(n_dot_l, 0.0) * V * sun.illuminance;
     vec3 irradiance = AMBIENT ? A * textureLod(sky_irradiance, n, 0.0).rgb : vec3(0.0);
 

@@ -2,6 +2,7 @@
 
 mod converging;
 mod develop;
+mod parts;
 mod sample;
 mod settings;
 
@@ -35,6 +36,7 @@ use crate::passes::view::View;
 use crate::scene::{Camera, Scene};
 
 use self::converging::Converging;
+use self::parts::Parts;
 use self::sample::Sample;
 
 /// What the newest frame was drawn with, for passes that look at it afterwards.
@@ -68,6 +70,7 @@ pub struct Frame {
     tone_map: ToneMap,
     probe: Option<Probe>,
     drawn: Option<Drawn>,
+    parts: Parts,
 }
 
 impl Frame {
@@ -103,6 +106,7 @@ impl Frame {
                 tone_map: made(tone_map)?,
                 probe: None,
                 drawn: None,
+                parts: Parts::default(),
                 settings,
                 context: context.clone(),
             })
@@ -185,6 +189,7 @@ impl Frame {
             size: self.settings.size,
             jitter: sample.jitter,
             sharpen: if converging.is_some() { SHARPEN } else { 0.0 },
+            window: self.parts.window,
         };
 
         let sky = self.sky_cube.record(rec, daylight);
@@ -209,7 +214,10 @@ impl Frame {
         let surfaces = self.gbuffer.record(rec, &self.geometry, &view);
         let occlusion = match (&dome, index) {
             (Some(dome), Some(index)) if !dome.begins_with_occlusion(index) => self.ssao.image(),
-            _ => self.ssao.record(rec, surfaces, &view, sample.phase),
+            _ => match self.parts.occlusion(index) {
+                Some(of_whole) => of_whole,
+                None => self.ssao.record(rec, surfaces, &view, sample.phase),
+            },
         };
 
         let light = Light {

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use clap::ValueEnum;
-use glam::Vec3;
+use glam::{IVec2, Vec3};
 use serde::Deserialize;
 
 use crate::daylight::false_colour::Quantity;
@@ -32,6 +32,7 @@ gpu_struct! {
         max_radiance: f32,
         specular_scale: f32,
         planes: [[f32; 4]; 4],
+        occlusion_from: IVec2,
     }
 }
 
@@ -329,12 +330,12 @@ impl Lighting {
             .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
             .storage("Materials", materials)
             .uniform("view", &view.block())
-            .uniform("sun", &self.sun_block(light))
+            .uniform("sun", &self.sun_block(light, view))
             .color(&self.radiance, Load::Discard)
             .depth_test(&surfaces.depth)
     }
 
-    fn sun_block(&self, light: &Light<'_>) -> SunBlock {
+    fn sun_block(&self, light: &Light<'_>, view: &View) -> SunBlock {
         let shadow = light.shadow_view;
         let normal_offset = if self.is_converging {
             BIAS_TEXELS * shadow.texel_depth
@@ -349,6 +350,8 @@ impl Lighting {
             max_radiance: self.settings.precision.max_radiance(),
             specular_scale: self.settings.specular_scale,
             planes: shadow.planes().to_cols_array_2d(),
+            // Parts of a picture share the occlusion of the whole.
+            occlusion_from: view.window.map_or(IVec2::ZERO, |w| w.origin.as_ivec2()),
         }
     }
 

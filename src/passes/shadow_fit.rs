@@ -173,7 +173,8 @@ fn clip(mut polygon: Vec<Vec3>, planes: &[Plane]) -> Vec<Vec3> {
 
 /// Directions of the pyramid's four edges, in order around it.
 fn edges(view: &View) -> [Vec3; 4] {
-    let block = view.block();
+    // Parts of a picture share their maps.
+    let block = view.whole().block();
     [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
         .map(|(x, y)| block.world_from_view * (Vec2::new(x, y) * block.ray_scale).extend(-1.0))
 }
@@ -289,6 +290,7 @@ mod tests {
             size: UVec2::new(640, 360),
             jitter: Vec2::ZERO,
             sharpen: 0.0,
+            window: None,
         }
     }
 

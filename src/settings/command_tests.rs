@@ -101,9 +101,10 @@ impl Random {
         let kind = self.below(3);
         Options {
             size: self.maybe(|r| Size {
-                width: r.within(1.0, 16_384.0) as u32,
-                height: r.within(1.0, 16_384.0) as u32,
+                width: r.within(1.0, 32_768.0) as u32,
+                height: r.within(1.0, 32_768.0) as u32,
             }),
+            tile: self.count(64, 16_384),
             samples: self.count(1, 65_536),
             visibility: self.one::<Visibility>(),
             filter: self.one::<Filter>(),

@@ -116,6 +116,8 @@ pub struct Limits {
 pub struct Settings {
     /// Of the picture.
     pub size: Size,
+    /// Edge of the tiles that large pictures are drawn in, if asked for, pixels.
+    pub tile: Option<u32>,
     /// Frames to accumulate, at least 1.
     pub samples: u32,
     /// What hides the sky.
@@ -255,6 +257,7 @@ impl Settings {
         let (sky, turbidity) = (o.sky.unwrap_or_default(), o.turbidity.unwrap_or(3.0));
         Ok(Self {
             sun: sun(&o)?,
+            tile: o.tile,
             size: o.size.unwrap_or(Size {
                 width: 1280,
                 height: 720,

@@ -219,8 +219,8 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
     let form = || "write WIDTHxHEIGHT in pixels, for instance 1280x720".to_owned();
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(form)?;
     let edge = |text: &str| match text.trim().parse::<u32>() {
-        Ok(edge @ 1..=16_384) => Ok(edge),
-        Ok(_) => Err("width and height must be 1 to 16384 pixels".to_owned()),
+        Ok(edge @ 1..=32_768) => Ok(edge),
+        Ok(_) => Err("width and height must be 1 to 32768 pixels".to_owned()),
         Err(_) => Err(form()),
     };
     Ok(Size {

@@ -50,7 +50,16 @@ fn tiles_are_the_picture_that_is_drawn_at_once() {
             "--visibility",
             "ssao",
         ],
-        &["--size", "320x180", "--samples", "16", "--ev100", "14"],
+        &[
+            "--size",
+            "320x180",
+            "--samples",
+            "2",
+            "--visibility",
+            "dome",
+            "--ev100",
+            "14",
+        ],
         &[
             "--size",
             "333x190",

@@ -91,6 +91,21 @@ impl<'p> Builder<'p> {
         })
     }
 
+    /// Whether this many triangles may be read, drawn or not: a file may name the same ones again and again.
+    ///
+    /// # Errors
+    /// When they are too many.
+    pub fn check_read(&self, path: &Path, triangles: usize) -> Result<(), SceneError> {
+        if triangles <= self.max_triangles {
+            return Ok(());
+        }
+        Err(SceneError::TooMany {
+            path: path.to_owned(),
+            triangles,
+            limit: self.max_triangles,
+        })
+    }
+
     /// Corners of triangles that may still be added.
     pub fn corners_left(&self) -> usize {
         let triangles = self.max_triangles.saturating_sub(self.scene.triangles());

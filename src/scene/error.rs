@@ -32,6 +32,14 @@ pub enum SceneError {
         /// The limit, bytes.
         limit: u64,
     },
+    /// All files together are larger than [`LoadOptions::max_file_bytes`](super::LoadOptions::max_file_bytes).
+    #[error("{}: with it the files of the scene have more than {limit} bytes; name fewer or raise --max-file-mib", path.display())]
+    TooMuch {
+        /// The file that is too much.
+        path: PathBuf,
+        /// The limit, bytes.
+        limit: u64,
+    },
     /// More triangles than [`LoadOptions::max_triangles`](super::LoadOptions::max_triangles) or than 32-bit numbers count.
     #[error("{}: {triangles} triangles, the limit is {limit}; simplify it or raise --max-triangles", path.display())]
     TooMany {

@@ -31,6 +31,10 @@ layout(constant_id = 11) const bool FRESNEL = false;
 layout(constant_id = 12) const bool AMBIENT = true;
 // One comparison of the shadow map in the plane of the face, for frames whose mean softens its edges.
 layout(constant_id = 13) const bool PLANE_SHADOW = false;
+// Maps of the sun, side by side.
+layout(constant_id = 14) const int CASCADES = 1;
+// Penumbrae as wide as the sun's disc makes them.
+layout(constant_id = 15) const bool PCSS = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform sampler2D normal;
@@ -61,6 +65,7 @@ layout(set = 0, binding = 10, scalar) readonly buffer Materials {
 };
 
 #include "face.glsl"
+#include "sun_shadow.glsl"
 
 /// V of one point of the sun's disc: what is left to error is the map's texel, which the mean over many maps makes even.
 float plane_visibility(vec3 world, vec3 face) {
@@ -116,6 +121,7 @@ void main() {
     float V = 0.0;
     if (n_dot_l > 0.0) {
         if (PLANE_SHADOW) V = plane_visibility(world, face_normal(pixel, texelFetch(depth, pixel, 0).r, n));
+        else if (CASCADES > 1 || PCSS) V = sun_visibility(world, n, n_dot_l);
         else V = visibility(world, n, n_dot_l);
     }
     float A = AMBIENT ? ambient_occlusion(occlusion, OCCLUSION_DOWNSCALE, pixel + sun.occlusion_from, distance) : 0.0;

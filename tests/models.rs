@@ -12,7 +12,7 @@ use skylight::daylight::{Conditions, Daylight, ToneCurve};
 use skylight::frame::{Frame, FrameSettings};
 use skylight::gpu::{Context, ContextOptions, Recorder, Timing, read_back};
 use skylight::passes::irradiance::IrradianceSettings;
-use skylight::passes::lighting::{LightingSettings, Precision, Show};
+use skylight::passes::lighting::{LightingSettings, Precision, Shadows, Show};
 use skylight::passes::ssao::SsaoSettings;
 use skylight::passes::tone_map::{Scale, ToneSettings};
 use skylight::scene::{Camera, LoadOptions, Scene, load};
@@ -58,6 +58,7 @@ fn settings() -> FrameSettings {
             specular_scale: 1.0,
             limb_darkening: 0.0,
             fresnel: false,
+            shadows: Shadows::default(),
             occlusion_downscale: SsaoSettings::default().downscale,
         },
         tone: ToneSettings {

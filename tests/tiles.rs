@@ -81,7 +81,7 @@ fn tiles_are_the_picture_that_is_drawn_at_once() {
             more * 100.0
         );
         // Vertices of another projection are rounded to other sixteenths of a pixel's sixteenth: a few edges move by that.
-        assert!(flip < 2e-4 && more < 1e-3, "{words:?}: {flip} {more}");
+        assert!(flip < 5e-4 && more < 1e-3, "{words:?}: {flip} {more}");
     }
 }
 

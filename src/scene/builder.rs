@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::error::SceneError;
+use super::error::{SceneError, printable};
 use super::files::Files;
 use super::material::Material;
 use super::picture::{TextureStore, Wanted};
@@ -63,7 +63,8 @@ impl<'p> Builder<'p> {
             .file_name()
             .unwrap_or(path.as_os_str())
             .to_string_lossy();
-        self.scene.warnings.push(format!("{name}: {what}"));
+        let line = printable(&format!("{name}: {what}"));
+        self.scene.warnings.push(line);
     }
 
     /// Notes that a file was left alone.

@@ -45,6 +45,7 @@ pub use bundled::bundled;
 pub use camera::{Camera, DEFAULT_FOV_DEG};
 pub use clusters::{Cluster, Clusters, Solid};
 pub use error::SceneError;
+pub(crate) use error::shown;
 pub use material::Material;
 pub use progress::Progress;
 pub use scene_file::{NamedCamera, NamedMoment, NamedOptions};

@@ -79,6 +79,31 @@ pub enum Fresnel {
     Schlick,
 }
 
+/// How wide the edges of the sun's shadow are in a single frame.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Penumbra {
+    /// As wide as a texel of the map; the mean of several samples has the true ones.
+    #[default]
+    Map,
+    /// As wide as the sun's disc makes them, from the distance of what casts them.
+    Sun,
+}
+
+/// What a scene was allowed when it was loaded; none where the program's own limit held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Limits {
+    /// Whether its files may lie outside of its folder tree.
+    pub allow_outside: bool,
+    /// Most triangles, instances counted.
+    pub max_triangles: Option<u32>,
+    /// Longest edge of a texture, texels.
+    pub max_texture_edge: Option<u32>,
+    /// Most memory of all textures, MiB.
+    pub max_texture_mib: Option<u32>,
+    /// Largest file, MiB.
+    pub max_file_mib: Option<u32>,
+}
+
 /// How finely ambient occlusion is computed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum AoResolution {
@@ -325,7 +350,7 @@ mod tests {
         for text in [
             "0x0",
             "0x720",
-            "16385x1",
+            "32769x1",
             "12",
             "axb",
             "-1x5",

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "constants.glsl"
+#include "materials.glsl"
 #include "occlusion.glsl"
 #include "octahedral.glsl"
 #include "view.glsl"
@@ -31,14 +32,16 @@ layout(constant_id = 11) const bool FRESNEL = false;
 layout(constant_id = 12) const bool AMBIENT = true;
 // One comparison of the shadow map in the plane of the face, for frames whose mean softens its edges.
 layout(constant_id = 13) const bool PLANE_SHADOW = false;
+// rho_d of each pixel is in an image; else the scene has no maps, and that of the material is that of the pixel.
+layout(constant_id = 14) const bool ALBEDO_IMAGE = true;
 // Maps of the sun, side by side.
-layout(constant_id = 14) const int CASCADES = 1;
+layout(constant_id = 15) const int CASCADES = 1;
 // Penumbrae as wide as the sun's disc makes them.
-layout(constant_id = 15) const bool PCSS = false;
+layout(constant_id = 16) const bool PCSS = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform sampler2D normal;
-layout(set = 0, binding = 2) uniform sampler2D albedo;
+layout(set = 0, binding = 1) uniform usampler2D normal;
+layout(set = 0, binding = 2) uniform sampler2D albedo;      // with ALBEDO_IMAGE; else any
 layout(set = 0, binding = 3) uniform usampler2D material;
 layout(set = 0, binding = 4) uniform usampler2D occlusion;
 layout(set = 0, binding = 5) uniform sampler2D shadow_map; // reversed: 1 is nearest the sun
@@ -56,13 +59,7 @@ layout(set = 0, binding = 9, scalar) uniform Sun {
     ivec2 occlusion_from; // pixel of the occlusion's picture that is this one's first
 } sun;
 
-struct Material {
-    vec3 specular;   // rho_s
-    float shininess; // p
-};
-layout(set = 0, binding = 10, scalar) readonly buffer Materials {
-    Material materials[];
-};
+layout(set = 0, binding = 10) uniform sampler2D materials; // see materials.glsl
 
 #include "face.glsl"
 #include "sun_shadow.glsl"
@@ -114,8 +111,9 @@ void main() {
     // The depth test leaves only pixels with a surface: d > 0.
     float distance = view.near / texelFetch(depth, pixel, 0).r;
     vec3 world = view.eye + world_ray * distance;
-    vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-    vec4 surface = texelFetch(albedo, pixel, 0);
+    vec3 n = normal_unpack(texelFetch(normal, pixel, 0).r);
+    uint word = texelFetch(material, pixel, 0).r;
+    vec4 surface = pixel_albedo(ALBEDO_IMAGE, albedo, materials, word, pixel);
     float n_dot_l = dot(n, sun.direction);
 
     float V = 0.0;
@@ -139,13 +137,13 @@ void main() {
     if (SUN) sum += surface.rgb / PI * sun_irradiance;
     if (SKY) sum += surface.rgb / PI * irradiance;
     if (SUN_SPECULAR || SKY_SPECULAR) {
-        Material m = materials[texelFetch(material, pixel, 0).r & 0xffffu];
-        vec3 rho_s = m.specular * (surface.a * sun.specular_scale);
+        vec4 m = texelFetch(materials, material_specular(word), 0);
+        vec3 rho_s = m.rgb * (surface.a * sun.specular_scale);
         vec3 toward = normalize(world_ray);
-        if (FRESNEL && any(greaterThan(rho_s, vec3(0.0)))) rho_s = grazing(rho_s, m.shininess, -dot(toward, n));
+        if (FRESNEL && any(greaterThan(rho_s, vec3(0.0)))) rho_s = grazing(rho_s, m.a, -dot(toward, n));
         vec3 r = reflect(toward, n);
         float r_dot_l = max(dot(r, sun.direction), 0.0);
-        if (SUN_SPECULAR) sum += rho_s * (pow(r_dot_l, m.shininess) * V) * sun.illuminance;
+        if (SUN_SPECULAR) sum += rho_s * (pow(r_dot_l, m.a) * V) * sun.illuminance;
         if (SKY_SPECULAR) sum += rho_s * textureLod(sky_radiance, r, 0.0).rgb;
     }
     radiance = vec4(min(sum, sun.max_radiance), 1.0);

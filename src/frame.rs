@@ -249,6 +249,7 @@ impl Frame {
             (Some(dome), _, Some(index)) => {
                 let gathered = Gathered {
                     surfaces,
+                    materials,
                     frame,
                     sky_irradiance,
                     occlusion,

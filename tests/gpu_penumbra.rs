@@ -216,6 +216,8 @@ fn cascades_shade_near_and_far() {
             "eye {eye:?}: of {all} pixels {bad} are wrong with cascades, {bad_alone} with one map"
         );
         assert!(all > 5000 && bad * 500 < all, "{bad} of {all}");
-        assert!(bad_alone >= bad);
+        // From above one map is nearly as good; near the ground its texels are larger than the nearest shadow.
+        let needs_them = eye[1] < 2.0;
+        assert!(bad_alone >= if needs_them { 10 } else { bad });
     }
 }

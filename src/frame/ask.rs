@@ -53,6 +53,9 @@ impl Frame {
 
     /// The answer to the last [`Frame::ask`], once.
     pub fn reading(&mut self) -> Option<Reading> {
-        self.probe.as_mut()?.reading()
+        let geometry = &self.geometry;
+        self.probe
+            .as_mut()?
+            .reading(|material| geometry.diffuse(material))
     }
 }

@@ -54,7 +54,8 @@ impl FrameSettings {
         Shadow::cascaded(context, geometry, resolution, count)
     }
 
-    /// A scene without any ρ_s needs none of its lookups; a large one has several maps of the sun.
+    /// A scene without any ρ_s needs none of its lookups, one without maps no image of ρ_d; a large one has several maps of
+    /// the sun.
     pub(super) fn for_scene(mut self, context: &Context, geometry: &Geometry) -> Self {
         let shadows = &mut self.lighting.shadows;
         if shadows.cascades == 0 {
@@ -64,6 +65,7 @@ impl FrameSettings {
         if !geometry.is_specular() {
             self.lighting.specular_scale = 0.0;
         }
+        self.lighting.has_albedo = geometry.has_albedo();
         self
     }
 }

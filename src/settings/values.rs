@@ -82,10 +82,10 @@ pub enum Fresnel {
 /// How wide the edges of the sun's shadow are in a single frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum Penumbra {
-    /// As wide as a texel of the map; the mean of several samples has the true ones.
+    /// A texel of the map; the mean of several samples has the true ones.
     #[default]
     Map,
-    /// As wide as the sun's disc makes them, from the distance of what casts them.
+    /// As the sun's disc makes them.
     Sun,
 }
 

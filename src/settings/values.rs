@@ -248,10 +248,8 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
         Ok(_) => Err("width and height must be 1 to 32768 pixels".to_owned()),
         Err(_) => Err(form()),
     };
-    Ok(Size {
-        width: edge(width)?,
-        height: edge(height)?,
-    })
+    let (width, height) = (edge(width)?, edge(height)?);
+    Ok(Size { width, height })
 }
 
 /// RFC 3339 with its offset; seconds may be missing.

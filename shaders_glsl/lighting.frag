@@ -79,8 +79,9 @@ float visibility(vec3 world, vec3 n, float n_dot_l) {
     vec3 p = (sun.shadow_from_world * vec4(world + n * (sun.normal_offset * sine), 1.0)).xyz;
     ivec2 last = textureSize(shadow_map, 0) - 1;
     vec2 at = (p.xy * 0.5 + 0.5) * vec2(last + 1);
-    ivec2 centre = ivec2(floor(at));
-    vec2 f = at - vec2(centre);
+    // Inside the map's margin, so that each of the nine is a texel of it.
+    ivec2 centre = clamp(ivec2(at), ivec2(1), last - 1);
+    vec2 f = clamp(at - vec2(centre), 0.0, 1.0);
     // Behind all casters, and beside them, the map is empty: depth 0.
     float depth = max(p.z, 0.0);
     vec3 wx = vec3(1.0 - f.x, 1.0, f.x);
@@ -88,8 +89,7 @@ float visibility(vec3 world, vec3 n, float n_dot_l) {
     float lit = 0.0;
     for (int y = 0; y < 3; ++y) {
         for (int x = 0; x < 3; ++x) {
-            ivec2 texel = clamp(centre + ivec2(x - 1, y - 1), ivec2(0), last);
-            lit += wx[x] * wy[y] * step(texelFetch(shadow_map, texel, 0).r, depth);
+            lit += wx[x] * wy[y] * step(texelFetch(shadow_map, centre + ivec2(x - 1, y - 1), 0).r, depth);
         }
     }
     return lit * 0.25;

@@ -63,6 +63,11 @@ pub enum Error {
 }
 
 impl Error {
+    /// Whether nothing can be drawn any more.
+    pub fn is_device_lost(&self) -> bool {
+        matches!(self, Self::Gpu(error) if error.is_device_lost())
+    }
+
     /// 2 for wrong usage, 1 for everything else.
     pub fn exit_code(&self) -> u8 {
         match self {

@@ -86,6 +86,14 @@ pub enum GpuError {
     },
 }
 
+impl GpuError {
+    /// Whether the device is of no use any more.
+    pub fn is_device_lost(&self) -> bool {
+        let lost = vk::Result::ERROR_DEVICE_LOST;
+        matches!(self, Self::Vulkan { result, .. } if *result == lost)
+    }
+}
+
 fn describe(result: vk::Result) -> String {
     match result {
         vk::Result::ERROR_OUT_OF_DEVICE_MEMORY => "out of device memory; try a smaller --size, or close what else uses the device".into(),

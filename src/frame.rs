@@ -201,9 +201,6 @@ impl Frame {
             window: self.parts.window,
         };
 
-        let sky = self.sky_cube.record(rec, daylight);
-        let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
-
         let (shadow, lighting, dome) = match converging {
             Some(c) => (&mut c.shadow, &mut c.lighting, Some(&mut c.dome)),
             None => (&mut self.shadow, &mut self.lighting, None),
@@ -222,8 +219,13 @@ impl Frame {
                 SunViews::fit(sun, bounds, casters, &view, resolution, count)
             }
         };
-        let shadow_map = shadow.record(rec, &self.geometry, &sun_views);
 
+        // Nothing of these reads another's images: with no barrier in between they may run at the same time.
+        let shadow_target = shadow.is_stale(&sun_views).then(|| shadow.image());
+        rec.prepare(self.gbuffer.surfaces().images().chain(shadow_target));
+        let sky = self.sky_cube.record(rec, daylight);
+        let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
+        let shadow_map = shadow.record(rec, &self.geometry, &sun_views);
         let surfaces = self.gbuffer.record(rec, &self.geometry, &view);
         let occlusion = match (&dome, index) {
             (Some(dome), Some(index)) if !dome.begins_with_occlusion(index) => self.ssao.image(),
@@ -315,7 +317,7 @@ impl Frame {
     /// Refines the sky's irradiance without drawing a picture; `recorder` must be recording.
     pub fn record_light(&mut self, rec: &mut Recorder, daylight: &Daylight) {
         let sky = self.sky_cube.record(rec, daylight);
-        self.irradiance.record(rec, &sky, daylight);
+        self.irradiance.refine(rec, &sky, daylight);
     }
 
     /// Whether the sky's irradiance has all its samples.

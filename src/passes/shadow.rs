@@ -190,6 +190,11 @@ impl Shadow {
         self.depth.size()[1]
     }
 
+    /// Whether the maps of these views must be drawn anew.
+    pub fn is_stale(&self, views: &SunViews) -> bool {
+        self.drawn.as_ref() != Some(views)
+    }
+
     /// Draws the map if the sun or the fit changed.
     pub fn record(
         &mut self,
@@ -197,7 +202,7 @@ impl Shadow {
         geometry: &Geometry,
         views: &SunViews,
     ) -> &Image {
-        if self.drawn.as_ref() != Some(views) {
+        if self.is_stale(views) {
             let edge = self.resolution();
             let origins = (0..).map(|k| [k * edge, 0]);
             let tile = |(view, origin): (&ShadowView, _)| Tile {

@@ -34,6 +34,10 @@ layout(constant_id = 12) const bool AMBIENT = true;
 layout(constant_id = 13) const bool PLANE_SHADOW = false;
 // rho_d of each pixel is in an image; else the scene has no maps, and that of the material is that of the pixel.
 layout(constant_id = 14) const bool ALBEDO_IMAGE = true;
+// Maps of the sun, side by side.
+layout(constant_id = 15) const int CASCADES = 1;
+// Penumbrae as wide as the sun's disc makes them.
+layout(constant_id = 16) const bool PCSS = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform usampler2D normal;
@@ -52,11 +56,13 @@ layout(set = 0, binding = 9, scalar) uniform Sun {
     float max_radiance;   // largest value the target holds, kcd/m^2
     float specular_scale; // factor on every rho_s
     mat4 planes;          // inverse transpose of shadow_from_world
+    ivec2 occlusion_from; // pixel of the occlusion's picture that is this one's first
 } sun;
 
 layout(set = 0, binding = 10) uniform sampler2D materials; // see materials.glsl
 
 #include "face.glsl"
+#include "sun_shadow.glsl"
 
 /// V of one point of the sun's disc: what is left to error is the map's texel, which the mean over many maps makes even.
 float plane_visibility(vec3 world, vec3 face) {
@@ -113,9 +119,10 @@ void main() {
     float V = 0.0;
     if (n_dot_l > 0.0) {
         if (PLANE_SHADOW) V = plane_visibility(world, face_normal(pixel, texelFetch(depth, pixel, 0).r, n));
+        else if (CASCADES > 1 || PCSS) V = sun_visibility(world, n, n_dot_l);
         else V = visibility(world, n, n_dot_l);
     }
-    float A = AMBIENT ? ambient_occlusion(occlusion, OCCLUSION_DOWNSCALE, pixel, distance) : 0.0;
+    float A = AMBIENT ? ambient_occlusion(occlusion, OCCLUSION_DOWNSCALE, pixel + sun.occlusion_from, distance) : 0.0;
     vec3 sun_irradiance = max(n_dot_l, 0.0) * V * sun.illuminance;
     vec3 irradiance = AMBIENT ? A * textureLod(sky_irradiance, n, 0.0).rgb : vec3(0.0);
 

@@ -261,7 +261,7 @@ mod tests {
         for (line, part) in [
             ("", "no command given"),
             ("paint", "'paint'"),
-            ("render --size 0x0", "1 to 16384"),
+            ("render --size 0x0", "1 to 32768"),
             ("render --size", "--size"),
             ("render --turbidity abc", "not a number"),
             ("render --turbidity nan", "finite"),

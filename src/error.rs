@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::daylight::sun_position::SunPositionError;
 use crate::gpu::GpuError;
-use crate::scene::SceneError;
+use crate::scene::{SceneError, shown};
 use crate::settings::SettingsError;
 
 /// Result of the faces.
@@ -29,7 +29,7 @@ pub enum Error {
     #[error("no display to open a window on ({0}); skylight render writes pictures without one")]
     NoDisplay(String),
     /// A file that cannot be written.
-    #[error("cannot write {}: {reason}", path.display())]
+    #[error("cannot write {}: {reason}", shown(path))]
     Write {
         /// The file.
         path: PathBuf,
@@ -37,7 +37,7 @@ pub enum Error {
         reason: String,
     },
     /// A picture that cannot be read.
-    #[error("cannot read {}: {reason}", path.display())]
+    #[error("cannot read {}: {reason}", shown(path))]
     Read {
         /// The file.
         path: PathBuf,
@@ -63,6 +63,11 @@ pub enum Error {
 }
 
 impl Error {
+    /// Whether nothing can be drawn any more.
+    pub fn is_device_lost(&self) -> bool {
+        matches!(self, Self::Gpu(error) if error.is_device_lost())
+    }
+
     /// 2 for wrong usage, 1 for everything else.
     pub fn exit_code(&self) -> u8 {
         match self {

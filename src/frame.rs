@@ -1,7 +1,9 @@
 //! The frame: owns the passes; [`Frame::record`] is the whole pipeline in reading order.
 
+mod ask;
 mod converging;
 mod develop;
+mod parts;
 mod sample;
 mod settings;
 
@@ -18,6 +20,7 @@ use crate::daylight::sky::Daylight;
 use crate::gpu::{Context, Image, Recorder, Result};
 use crate::passes::accumulate::Accumulate;
 use crate::passes::background::Background;
+use crate::passes::cascades::SunViews;
 use crate::passes::dome::Gathered;
 use crate::passes::dome_fit::{self, Receivers};
 use crate::passes::exposure::Exposure;
@@ -25,9 +28,8 @@ use crate::passes::gbuffer::Gbuffer;
 use crate::passes::geometry::Geometry;
 use crate::passes::irradiance::Irradiance;
 use crate::passes::lighting::{Light, Lighting, Show};
-use crate::passes::probe::{Probe, Reading};
+use crate::passes::probe::Probe;
 use crate::passes::shadow::Shadow;
-use crate::passes::shadow_fit::{self, ShadowView};
 use crate::passes::sky_cube::SkyCube;
 use crate::passes::ssao::Ssao;
 use crate::passes::tone_map::ToneMap;
@@ -35,6 +37,7 @@ use crate::passes::view::View;
 use crate::scene::{Camera, Scene};
 
 use self::converging::Converging;
+use self::parts::Parts;
 use self::sample::Sample;
 
 /// What the newest frame was drawn with, for passes that look at it afterwards.
@@ -42,7 +45,7 @@ use self::sample::Sample;
 struct Drawn {
     view: View,
     sun_direction: Vec3,
-    shadow_view: ShadowView,
+    sun_views: SunViews,
     /// Whether it is part of an average.
     is_averaged: bool,
 }
@@ -68,6 +71,7 @@ pub struct Frame {
     tone_map: ToneMap,
     probe: Option<Probe>,
     drawn: Option<Drawn>,
+    parts: Parts,
 }
 
 impl Frame {
@@ -85,11 +89,11 @@ impl Frame {
             let tone_map = scope.spawn(move || ToneMap::new(device, size, asked.tone));
             let exposure = scope.spawn(move || Exposure::new(device));
             let geometry = Geometry::new(recorder, scene)?;
-            let settings = asked.for_scene(&geometry);
+            let settings = asked.for_scene(device, &geometry);
             let lighting = scope.spawn(move || Lighting::new(device, size, settings.lighting));
             let background = scope.spawn(move || Background::new(device, settings.lighting));
             Ok(Self {
-                shadow: Shadow::new(device, &geometry, settings.shadow_resolution)?,
+                shadow: settings.shadow(device, &geometry)?,
                 gbuffer: Gbuffer::new(device, &geometry, size)?,
                 converging: Converging::new(device, &geometry, &settings)?,
                 geometry,
@@ -103,6 +107,7 @@ impl Frame {
                 tone_map: made(tone_map)?,
                 probe: None,
                 drawn: None,
+                parts: Parts::default(),
                 settings,
                 context: context.clone(),
             })
@@ -115,7 +120,10 @@ impl Frame {
     /// # Errors
     /// When the device refuses or has no memory left; the frame is as it was, or partly new, and can be drawn.
     pub fn apply(&mut self, recorder: &mut Recorder, settings: FrameSettings) -> Result<()> {
-        let (old, new) = (self.settings, settings.for_scene(&self.geometry));
+        let (old, new) = (
+            self.settings,
+            settings.for_scene(&self.context, &self.geometry),
+        );
         let context = self.context.clone();
         let size = new.size.to_array();
         let resized = new.size != old.size;
@@ -125,8 +133,8 @@ impl Frame {
         if new.irradiance != old.irradiance {
             self.irradiance = Irradiance::new(recorder, new.irradiance)?;
         }
-        if new.shadow_resolution != old.shadow_resolution {
-            self.shadow = Shadow::new(&context, &self.geometry, new.shadow_resolution)?;
+        if new.shadow_maps() != old.shadow_maps() {
+            self.shadow = new.shadow(&context, &self.geometry)?;
         }
         if resized {
             self.gbuffer = Gbuffer::new(&context, &self.geometry, size)?;
@@ -174,17 +182,23 @@ impl Frame {
     ) {
         let converging = self.converging.as_mut().filter(|_| index.is_some());
         let sun = daylight.sun_direction.as_vec3();
-        let sample = match index {
+        let mut sample = match index {
             Some(index) if converging.is_some() || self.settings.averages() => {
                 Sample::new(sun, index, &self.settings.sampling)
             }
             _ => Sample::central(sun),
         };
+        let count = self.settings.lighting.shadows.cascades;
+        if self.settings.lighting.shadows.penumbrae && converging.is_none() {
+            // The map's lookup sees the whole disc: its points would be another disc.
+            sample.sun_direction = sun;
+        }
         let view = View {
             camera: *camera,
             size: self.settings.size,
             jitter: sample.jitter,
             sharpen: if converging.is_some() { SHARPEN } else { 0.0 },
+            window: self.parts.window,
         };
 
         let (shadow, lighting, dome) = match converging {
@@ -193,31 +207,38 @@ impl Frame {
         };
         let (bounds, casters) = (self.geometry.bounds(), self.geometry.casters());
         let resolution = shadow.resolution();
-        let shadow_view = match dome {
+        let sun_views = match dome {
             Some(_) => {
                 let receivers = Receivers::new(bounds, &view);
                 let shift = sample.jitter + 0.5;
-                dome_fit::fit(sample.sun_direction, bounds, &receivers, resolution, shift)
+                let sun = sample.sun_direction;
+                SunViews::one(dome_fit::fit(sun, bounds, &receivers, resolution, shift))
             }
-            None => shadow_fit::fit(sample.sun_direction, bounds, casters, &view, resolution),
+            None => {
+                let sun = sample.sun_direction;
+                SunViews::fit(sun, bounds, casters, &view, resolution, count)
+            }
         };
 
         // Nothing of these reads another's images: with no barrier in between they may run at the same time.
-        let shadow_target = shadow.is_stale(&shadow_view).then(|| shadow.image());
+        let shadow_target = shadow.is_stale(&sun_views).then(|| shadow.image());
         rec.prepare(self.gbuffer.surfaces().images().chain(shadow_target));
         let sky = self.sky_cube.record(rec, daylight);
         let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
-        let shadow_map = shadow.record(rec, &self.geometry, &shadow_view);
+        let shadow_map = shadow.record(rec, &self.geometry, &sun_views);
         let surfaces = self.gbuffer.record(rec, &self.geometry, &view);
         let occlusion = match (&dome, index) {
             (Some(dome), Some(index)) if !dome.begins_with_occlusion(index) => self.ssao.image(),
-            _ => self.ssao.record(rec, surfaces, &view, sample.phase),
+            _ => match self.parts.occlusion(index) {
+                Some(of_whole) => of_whole,
+                None => self.ssao.record(rec, surfaces, &view, sample.phase),
+            },
         };
 
         let light = Light {
             daylight,
             sun_direction: sample.sun_direction,
-            shadow_view: &shadow_view,
+            sun_views: &sun_views,
             shadow_map,
             sky_irradiance,
             sky_radiance: sky.radiance,
@@ -243,7 +264,7 @@ impl Frame {
         self.drawn = Some(Drawn {
             view,
             sun_direction: sample.sun_direction,
-            shadow_view,
+            sun_views,
             is_averaged: index.is_some(),
         });
 
@@ -275,58 +296,6 @@ impl Frame {
             (None, Some(accumulate)) if is_averaged => accumulate.image(),
             _ => self.lighting.image(),
         }
-    }
-
-    /// Records the question what one pixel of the newest frame shows; [`Frame::reading`] has the answer when the work is
-    /// done. Without a frame, or outside of it, nothing is asked.
-    ///
-    /// # Errors
-    /// When the device has no memory left.
-    pub fn ask(&mut self, rec: &mut Recorder, daylight: &Daylight, pixel: [u32; 2]) -> Result<()> {
-        let size = self.settings.size.to_array();
-        let Some(drawn) = self
-            .drawn
-            .filter(|_| pixel[0] < size[0] && pixel[1] < size[1])
-        else {
-            return Ok(());
-        };
-        let mut probe = match self.probe.take() {
-            Some(probe) => probe,
-            None => Probe::new(&self.context, size, self.settings.lighting)?,
-        };
-        let light = Light {
-            daylight,
-            sun_direction: drawn.sun_direction,
-            shadow_view: &drawn.shadow_view,
-            shadow_map: self.shadow.image(),
-            sky_irradiance: self.irradiance.image(),
-            sky_radiance: self.sky_cube.image(),
-        };
-        let (surfaces, occlusion) = (self.gbuffer.surfaces(), self.ssao.image());
-        let materials = self.geometry.materials();
-        let shown = (self.radiance(), self.settings.lighting.show);
-        let near = drawn.view.camera.near;
-        probe.record(rec, pixel, shown, surfaces, near, |lighting, rec| {
-            lighting.record_pixel(
-                rec,
-                surfaces,
-                materials,
-                occlusion,
-                &light,
-                &drawn.view,
-                pixel,
-            );
-        });
-        self.probe = Some(probe);
-        Ok(())
-    }
-
-    /// The answer to the last [`Frame::ask`], once.
-    pub fn reading(&mut self) -> Option<Reading> {
-        let geometry = &self.geometry;
-        self.probe
-            .as_mut()?
-            .reading(|material| geometry.diffuse(material))
     }
 
     /// Samples of the sky's irradiance so far, and in all.

@@ -15,9 +15,10 @@ pub use crate::frame::{Filter, Visibility};
 pub use crate::gpu::Optional;
 use crate::passes::dome::MOST_DIRECTIONS;
 pub(crate) use parameters::name;
-pub use resolve::{CameraParts, Exposure, Limits, Settings, SunInput};
+pub use resolve::{CameraParts, Exposure, Settings, SunInput};
 pub use values::{
-    AoResolution, Direction, ExposureMode, Fresnel, Place, Preset, Show, Size, SolarTime, Switch,
+    AoResolution, Direction, ExposureMode, Fresnel, Limits, Penumbra, Place, Preset, Show, Size,
+    SolarTime, Switch,
 };
 pub(crate) use values::{exposure_factor, ratio, sun as direction};
 
@@ -32,6 +33,10 @@ pub struct Options {
     /// Size of the picture, pixels [default: 1280x720].
     #[arg(long, value_name = "WxH", value_parser = values::size, help_heading = "Picture")]
     pub size: Option<Size>,
+    /// Edge of the tiles in which pictures are drawn that are too large to be drawn at once, pixels, 64 to 16384
+    /// [default: 2048 above 36 million pixels or what the device can do; render only].
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(64..=16_384), help_heading = "Picture")]
+    pub tile: Option<u32>,
     /// Frames to accumulate: anti-aliasing, soft sun, less noise [default: 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536), help_heading = "Picture")]
     pub samples: Option<u32>,
@@ -153,6 +158,9 @@ pub struct Options {
     /// Edge of the shadow map, texels, 64 to 16384 [default: 2048].
     #[arg(long, value_name = "TEXELS", value_parser = clap::value_parser!(u32).range(64..=16_384), help_heading = "Light")]
     pub shadow_size: Option<u32>,
+    /// Edges of the sun's shadow in a single frame: a texel of the map, or the penumbra of the sun's disc [default: map].
+    #[arg(long, value_enum, value_name = "HOW", help_heading = "Light")]
+    pub penumbra: Option<Penumbra>,
     /// Directions of the sky in each sample of --visibility dome, 1 to 16 [default: 8].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_DIRECTIONS)), help_heading = "Light")]
     pub dome_directions: Option<u32>,
@@ -243,7 +251,7 @@ impl Options {
             (base.ev100, base.exposure, base.scale) = (None, None, None);
         }
         first_of!(self, base;
-            size samples visibility filter seed show preset place when sun solar sun_position sky turbidity sky_illuminance refraction ground_albedo camera eye target fov
+            size tile penumbra samples visibility filter seed show preset place when sun solar sun_position sky turbidity sky_illuminance refraction ground_albedo camera eye target fov
             ev100 exposure tonemap gamma scale false_colour false_colour_range irradiance irradiance_samples irradiance_error ao_radius ao_resolution specular shadow_size
             dome_directions dome_size smooth device without max_triangles max_texture_edge max_texture_mib max_file_mib fresnel moment;
             layers limb_darkening quiet validate allow_outside no_cache)

@@ -305,7 +305,7 @@ fn bad_words_end_with_2_and_touch_nothing() {
     let cases: [(&[&str], &[&str]); 17] = [
         (
             &["render", "-o", "old.png", "--size", "0x0"],
-            &["0x0", "1 to 16384"],
+            &["0x0", "1 to 32768"],
         ),
         (
             &["render", "-o", "old.png", "--size", "12"],

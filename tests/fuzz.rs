@@ -361,6 +361,15 @@ fn crashes_of_old() {
         let error = load(&json.replace(sound, broken)).expect_err(broken);
         assert!(error.contains(part), "{error}");
     }
+    let toml = folder.path().join("s.toml");
+    fs::write(&toml, "[[mesh]]\nfile = \"\"\"\na\nb\"\"\"\n").expect("a scratch file");
+    let error = skylight::scene::load(&toml, &OPTIONS)
+        .expect_err("no such file")
+        .to_string();
+    assert!(
+        error.lines().count() == 1 && error.contains("a\\nb"),
+        "{error}"
+    );
     let untyped =
         load(&json.replace(",\"mimeType\":\"image/png\"", "")).expect("a picture without a type");
     assert_eq!(untyped.scene.textures.len(), 2);

@@ -46,6 +46,7 @@ fn texel(scene: &Scene, day: &Daylight, camera: &Camera) -> f64 {
         size: UVec2::new(SIZE.0, SIZE.1),
         jitter: Vec2::ZERO,
         sharpen: 0.0,
+        window: None,
     };
     let sun = day.sun_direction.as_vec3();
     f64::from(

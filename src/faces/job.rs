@@ -19,11 +19,11 @@ use crate::gpu::{Context, ContextOptions, Optional};
 use crate::passes::cube_route::CubeRoute;
 use crate::passes::dome::DomeSettings;
 use crate::passes::irradiance::IrradianceSettings;
-use crate::passes::lighting::{LightingSettings, Precision, Show};
+use crate::passes::lighting::{LightingSettings, Precision, Shadows, Show};
 use crate::passes::ssao::SsaoSettings;
 use crate::passes::tone_map::{Scale, ToneSettings};
 use crate::scene::{self, Camera, LoadOptions, Loaded, Scene};
-use crate::settings::{AoResolution, Exposure, Fresnel, Options, Preset, Settings};
+use crate::settings::{AoResolution, Exposure, Fresnel, Options, Penumbra, Preset, Settings};
 
 /// How a scene is to be loaded.
 pub fn load_options(options: &Options) -> LoadOptions {
@@ -66,6 +66,7 @@ pub fn context_options(
         validate,
         without: without.into_iter().collect(),
         cache_folder: dirs::cache_dir().map(|folder| folder.join("skylight")),
+        fault: std::env::var("SKYLIGHT_FAULT").ok(),
     }
 }
 
@@ -199,6 +200,10 @@ impl Job {
                 has_albedo: true,
                 occlusion_downscale: downscale,
                 fresnel: s.fresnel == Fresnel::Schlick,
+                shadows: Shadows {
+                    cascades: 0,
+                    penumbrae: s.penumbra == Penumbra::Sun,
+                },
             },
             tone: ToneSettings {
                 show,

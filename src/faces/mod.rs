@@ -15,6 +15,7 @@ mod sky;
 mod sky_report;
 mod sky_table;
 mod startup;
+mod tiled;
 pub mod view;
 
 pub use bake::{BakeWishes, Layout, Map};

@@ -6,6 +6,7 @@ use indicatif::ProgressBar;
 
 use super::job::Job;
 use super::progress;
+use super::tiled::Tiled;
 use crate::daylight::colour::luminance;
 use crate::daylight::exposure::automatic;
 use crate::daylight::false_colour::{Quantity, Range};
@@ -13,7 +14,7 @@ use crate::error::Result;
 use crate::frame::Frame;
 use crate::gpu::{Recorder, Timing, read_back};
 use crate::output::{
-    Channels, Encoding, Layer, check_writable, draw_legend, print, write_exr, write_png,
+    Channels, Encoding, Layer, LayerKind, check_writable, draw_legend, print, write_exr, write_png,
 };
 use crate::passes::lighting::{Precision, Show};
 use crate::passes::tone_map::ToneSettings;
@@ -34,6 +35,21 @@ pub fn run(scene: Option<&Path>, output: &Path, options: Options) -> Result<()> 
     check_writable(output)?;
     let job = Job::new(scene, options)?;
     let context = job.context()?;
+    let precision = if exr {
+        Precision::Float
+    } else {
+        Precision::Half
+    };
+    if let Some(tiled) = Tiled::new(&job, &context, precision)? {
+        let summary = if exr {
+            let (shows, kinds): (Vec<Show>, Vec<_>) = wanted_layers(&job).unzip();
+            tiled.save_exr(output, &shows, &kinds)
+        } else {
+            tiled.save_png(output)
+        }?;
+        context.check_validation()?;
+        return print(&format!("{}: {summary}\n", output.display()));
+    }
     let mut renderer = Renderer::new(&job, Recorder::new(&context, Timing::Off)?, exr)?;
     let summary = if exr {
         renderer.save_exr(output)
@@ -198,6 +214,14 @@ impl<'j> Renderer<'j> {
 /// The layers beside the picture.
 fn extra_layers() -> impl Iterator<Item = Show> {
     Show::ADDENDS.into_iter().chain(Show::INPUTS)
+}
+
+/// The picture, and the layers beside it that are asked for.
+fn wanted_layers(job: &Job) -> impl Iterator<Item = (Show, LayerKind)> {
+    let shown = job.settings.show;
+    let others = extra_layers().filter(|_| job.settings.layers);
+    std::iter::once((shown, ("", channels(shown, ""))))
+        .chain(others.map(|show| (show, (show.name(), channels(show, show.name())))))
 }
 
 /// The picture itself is always RGB, so that every program shows it.

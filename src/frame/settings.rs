@@ -1,11 +1,16 @@
 //! How frames are drawn.
 
+use std::sync::Arc;
+
 use glam::UVec2;
 
 use super::{Sampling, Visibility};
+use crate::gpu::{Context, Result};
+use crate::passes::cascades;
 use crate::passes::geometry::Geometry;
 use crate::passes::irradiance::IrradianceSettings;
 use crate::passes::lighting::LightingSettings;
+use crate::passes::shadow::Shadow;
 use crate::passes::ssao::SsaoSettings;
 use crate::passes::tone_map::ToneSettings;
 
@@ -38,8 +43,25 @@ impl FrameSettings {
         self.samples > 1 && self.sampling.visibility == Visibility::Ssao
     }
 
-    /// A scene without any ρ_s needs none of its lookups, one without maps no image of ρ_d.
-    pub(super) fn for_scene(mut self, geometry: &Geometry) -> Self {
+    /// What the sun's maps are made for.
+    pub(super) fn shadow_maps(&self) -> (u32, u32) {
+        (self.shadow_resolution, self.lighting.shadows.cascades)
+    }
+
+    /// The sun's maps.
+    pub(super) fn shadow(&self, context: &Arc<Context>, geometry: &Geometry) -> Result<Shadow> {
+        let (resolution, count) = self.shadow_maps();
+        Shadow::cascaded(context, geometry, resolution, count)
+    }
+
+    /// A scene without any ρ_s needs none of its lookups, one without maps no image of ρ_d; a large one has several maps of
+    /// the sun.
+    pub(super) fn for_scene(mut self, context: &Context, geometry: &Geometry) -> Self {
+        let shadows = &mut self.lighting.shadows;
+        if shadows.cascades == 0 {
+            let most = context.summary().max_image_edge;
+            shadows.cascades = cascades::count(geometry.casters(), self.shadow_resolution, most);
+        }
         if !geometry.is_specular() {
             self.lighting.specular_scale = 0.0;
         }

@@ -7,7 +7,8 @@ use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 
 use super::context::Context;
-use super::error::{During, GpuError, Result};
+use super::error::{During, Result};
+use super::fault::Call;
 
 /// What a buffer is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,6 +73,7 @@ impl Buffer {
         let info = vk::BufferCreateInfo::default()
             .size(size)
             .usage(kind.usage());
+        context.faults.at(Call::Buffer).during("create a buffer")?;
         // SAFETY: the info has no pointers; the handle goes into its owner at once.
         let raw = unsafe { context.raw().create_buffer(&info, None) }.during("create a buffer")?;
         let mut buffer = Self {
@@ -83,19 +85,13 @@ impl Buffer {
         context.name(raw, name);
         // SAFETY: `raw` was just created by this device.
         let requirements = unsafe { context.raw().get_buffer_memory_requirements(raw) };
-        let allocation = context
-            .allocator()
-            .allocate(&AllocationCreateDesc {
-                name,
-                requirements,
-                location: kind.location(),
-                linear: true,
-                allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-            })
-            .map_err(|e| GpuError::Memory {
-                what: name.into(),
-                reason: e.to_string(),
-            })?;
+        let allocation = context.allocate(&AllocationCreateDesc {
+            name,
+            requirements,
+            location: kind.location(),
+            linear: true,
+            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+        })?;
         // SAFETY: the allocation was made for these requirements and is owned by the buffer.
         let bound = unsafe {
             context

@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use ash::{ext, khr, vk};
-use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, Allocator, AllocatorCreateDesc};
 
 use super::error::{During, GpuError, Result};
+use super::fault::{Call, Faults};
 use super::instance::{InstanceGuard, has_instance_extension, load};
 use super::pipeline_cache::{CacheState, Key, PipelineCache};
 use super::sampler::{self, Sampler};
@@ -27,6 +28,8 @@ pub struct ContextOptions {
     pub without: Vec<Optional>,
     /// Where the driver's pipeline cache is kept between runs; nowhere without it.
     pub cache_folder: Option<PathBuf>,
+    /// For tests: a call that is to fail, for instance `submit@3=device-lost`.
+    pub fault: Option<String>,
 }
 
 /// A logical device destroyed on drop.
@@ -50,6 +53,7 @@ pub struct Context {
     allocator: ManuallyDrop<Arc<Mutex<Allocator>>>,
     samplers: [vk::Sampler; Sampler::COUNT],
     cache: PipelineCache,
+    pub(super) faults: Faults,
     pub(super) startup: Startup,
     device: DeviceGuard,
     pub(super) push_descriptor: Option<khr::push_descriptor::Device>,
@@ -94,6 +98,7 @@ impl Context {
         window: Option<Arc<dyn WindowHandles>>,
     ) -> Result<(Arc<Self>, Option<RawSurface>)> {
         let mut startup = Startup::new();
+        let faults = Faults::new(options.fault.as_deref())?;
         let entry = load()?;
         startup.done("Vulkan loader");
         let windows = window
@@ -140,6 +145,7 @@ impl Context {
             allocator: ManuallyDrop::new(Arc::new(Mutex::new(allocator))),
             samplers,
             cache,
+            faults,
             startup,
             device,
             push_descriptor,
@@ -261,6 +267,24 @@ impl Context {
             .unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Memory for a buffer or an image, which owns it from then on.
+    pub(super) fn allocate(&self, desc: &AllocationCreateDesc<'_>) -> Result<Allocation> {
+        let refused = |reason: String| GpuError::Memory {
+            what: desc.name.into(),
+            reason,
+        };
+        self.faults.at(Call::Memory).map_err(|fault| match fault {
+            vk::Result::ERROR_OUT_OF_DEVICE_MEMORY => refused("out of device memory".into()),
+            result => GpuError::Vulkan {
+                what: "allocate memory",
+                result,
+            },
+        })?;
+        self.allocator()
+            .allocate(desc)
+            .map_err(|e| refused(e.to_string().trim_end_matches('.').to_lowercase()))
+    }
+
     pub(super) fn sampler(&self, sampler: Sampler) -> vk::Sampler {
         self.samplers[sampler as usize]
     }
@@ -288,8 +312,10 @@ impl Context {
     /// # Errors
     /// When the device is lost.
     pub fn wait_idle(&self) -> Result<()> {
+        let planned = self.faults.at(Call::Wait);
         // SAFETY: the queue is used by one thread at a time (recorders are not shared).
-        unsafe { self.raw().device_wait_idle() }.during("wait for the device")
+        let waited = unsafe { self.raw().device_wait_idle() };
+        planned.and(waited).during("wait for the device")
     }
 }
 

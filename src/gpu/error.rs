@@ -61,6 +61,9 @@ pub enum GpuError {
         /// The allocator's words.
         reason: String,
     },
+    /// A planned fault that names no call.
+    #[error("\"{0}\" is no fault; write CALL@NUMBER=ANSWER, for instance submit@1=device-lost")]
+    BadFault(String),
     /// Shaders that cannot be reloaded, a line each.
     #[error("{0}")]
     Shaders(String),
@@ -68,7 +71,9 @@ pub enum GpuError {
     #[error("the window cannot be drawn to: {0}")]
     Window(String),
     /// A size beyond what the device can do.
-    #[error("{what} of {asked} exceeds what \"{device}\" supports ({limit})")]
+    #[error(
+        "{what} of {asked} exceeds what \"{device}\" supports ({limit}); choose a smaller --size"
+    )]
     TooLarge {
         /// Name of the image.
         what: String,
@@ -81,11 +86,21 @@ pub enum GpuError {
     },
 }
 
+impl GpuError {
+    /// Whether the device is of no use any more.
+    pub fn is_device_lost(&self) -> bool {
+        let lost = vk::Result::ERROR_DEVICE_LOST;
+        matches!(self, Self::Vulkan { result, .. } if *result == lost)
+    }
+}
+
 fn describe(result: vk::Result) -> String {
     match result {
-        vk::Result::ERROR_OUT_OF_DEVICE_MEMORY => "out of device memory".into(),
-        vk::Result::ERROR_OUT_OF_HOST_MEMORY => "out of host memory".into(),
-        vk::Result::ERROR_DEVICE_LOST => "the device was lost (driver fault or reset)".into(),
+        vk::Result::ERROR_OUT_OF_DEVICE_MEMORY => "out of device memory; try a smaller --size, or close what else uses the device".into(),
+        vk::Result::ERROR_OUT_OF_HOST_MEMORY => "out of host memory; close other programs, or try a smaller --size".into(),
+        vk::Result::ERROR_DEVICE_LOST => {
+            "the device was lost (driver fault or reset); start again, or choose another with --device".into()
+        },
         other => format!("{other:?}"),
     }
 }

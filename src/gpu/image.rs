@@ -10,6 +10,7 @@ use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 use super::access::{self, Use};
 use super::context::Context;
 use super::error::{During, GpuError, Result};
+use super::fault::Call;
 
 /// Shape of an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -156,6 +157,7 @@ impl Image {
             .array_layers(desc.layers())
             .samples(vk::SampleCountFlags::TYPE_1)
             .usage(usage(desc));
+        context.faults.at(Call::Image).during("create an image")?;
         // SAFETY: the info has no pointers; the handle goes into its owner at once.
         let raw = unsafe { context.raw().create_image(&info, None) }.during("create an image")?;
         let mut image = Self {
@@ -213,20 +215,13 @@ impl Image {
     fn allocate(&mut self) -> Result<()> {
         // SAFETY: `raw` was just created by this device.
         let requirements = unsafe { self.context.raw().get_image_memory_requirements(self.raw) };
-        let allocation = self
-            .context
-            .allocator()
-            .allocate(&AllocationCreateDesc {
-                name: &self.name,
-                requirements,
-                location: MemoryLocation::GpuOnly,
-                linear: false,
-                allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-            })
-            .map_err(|e| GpuError::Memory {
-                what: self.name.clone(),
-                reason: e.to_string(),
-            })?;
+        let allocation = self.context.allocate(&AllocationCreateDesc {
+            name: &self.name,
+            requirements,
+            location: MemoryLocation::GpuOnly,
+            linear: false,
+            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+        })?;
         // SAFETY: the allocation was made for these requirements and is owned by the image.
         let bound = unsafe {
             self.context

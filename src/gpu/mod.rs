@@ -18,6 +18,7 @@ mod compute;
 mod context;
 mod draws;
 mod error;
+mod fault;
 #[cfg(feature = "hot-reload")]
 mod hot_reload;
 mod image;

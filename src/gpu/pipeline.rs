@@ -8,6 +8,7 @@ use ash::vk;
 use super::compute;
 use super::context::Context;
 use super::error::{During, Result};
+use super::fault::Call;
 use super::pipeline_state::{depth_state, rasterization, vertex_streams};
 use super::shader::{Binding, Field, Shader};
 use super::stages::{Constants, Modules};
@@ -218,6 +219,8 @@ impl Pipeline {
     }
 
     fn create(&self, desc: &PipelineDesc<'_>, modules: &Modules) -> Result<vk::Pipeline> {
+        let what = "compile a pipeline";
+        self.context.faults.at(Call::Pipeline).during(what)?;
         let constants: Vec<Constants> = desc
             .stages
             .iter()
@@ -293,9 +296,7 @@ impl Pipeline {
                 None,
             )
         };
-        made.map(|p| p[0])
-            .map_err(|(_, result)| result)
-            .during("compile a pipeline")
+        made.map(|p| p[0]).map_err(|(_, r)| r).during(what)
     }
 
     /// Whether another pipeline can be used in the same pass with the same bindings.

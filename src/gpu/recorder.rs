@@ -8,6 +8,7 @@ use bytemuck::Pod;
 use super::buffer::{Buffer, BufferKind};
 use super::context::Context;
 use super::error::{During, GpuError, Result};
+use super::fault::Call;
 use super::pass::Pass;
 use super::pipeline::Pipeline;
 use super::timings::{PassTime, Queries, Stopwatch, Timing, Timings};
@@ -133,9 +134,10 @@ impl Recorder {
     fn begin_commands(&self) -> Result<()> {
         let info = vk::CommandBufferBeginInfo::default()
             .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+        let begin = "begin a command buffer";
+        self.context.faults.at(Call::Record).during(begin)?;
         // SAFETY: the command buffer is not pending.
-        unsafe { self.context.raw().begin_command_buffer(self.command, &info) }
-            .during("begin a command buffer")
+        unsafe { self.context.raw().begin_command_buffer(self.command, &info) }.during(begin)
     }
 
     /// Submits what was recorded and waits until it is done.
@@ -170,6 +172,7 @@ impl Recorder {
         unsafe {
             raw.end_command_buffer(self.command)
                 .during("end a command buffer")?;
+            self.context.faults.at(Call::Submit).during("submit work")?;
             raw.queue_submit2(self.context.queue, &submit, self.fence)
                 .during("submit work")?;
         }
@@ -183,6 +186,11 @@ impl Recorder {
     /// When the device is lost, or a pass could not be recorded.
     pub fn wait(&mut self) -> Result<()> {
         let waited = self.wait_for_fence();
+        if waited.is_err() {
+            // Memory may have been out for the waiting only: what the work uses must outlive it all the same.
+            // SAFETY: the queue is used by one thread at a time. A lost device has nothing to wait for.
+            let _ = unsafe { self.context.raw().device_wait_idle() };
+        }
         self.kept.clear();
         if let Some(fault) = self.fault.take() {
             return Err(fault);
@@ -205,6 +213,8 @@ impl Recorder {
             return Ok(false);
         }
         let raw = self.context.raw();
+        let planned = self.context.faults.at(Call::Wait);
+        planned.during("wait for the device")?;
         // SAFETY: the fence belongs to the one pending submission.
         unsafe {
             raw.wait_for_fences(&[self.fence], true, u64::MAX)

@@ -8,6 +8,7 @@ use raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 
 use super::context::Context;
 use super::error::{During, GpuError, Result};
+use super::fault::Call;
 
 /// A window, of whatever library.
 pub trait WindowHandles: HasDisplayHandle + HasWindowHandle {}
@@ -105,6 +106,7 @@ impl Surface {
     pub(super) fn capabilities(
         &self,
     ) -> std::result::Result<vk::SurfaceCapabilitiesKHR, vk::Result> {
+        self.context.faults.at(Call::Surface)?;
         // SAFETY: device and surface belong to one instance.
         unsafe {
             self.surface

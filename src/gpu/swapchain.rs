@@ -7,6 +7,7 @@ use ash::{khr, vk};
 use super::access::Use;
 use super::context::Context;
 use super::error::{During, GpuError, Result};
+use super::fault::Call;
 use super::image::Image;
 use super::surface::Surface;
 
@@ -122,11 +123,12 @@ impl Swapchain {
     fn try_acquire(&mut self, acquired: vk::Semaphore) -> Result<Acquired> {
         // A window system that gives no image for a second is busy elsewhere (a hidden window, a locked screen).
         let patience = 1_000_000_000;
+        let planned = self.context().faults.at(Call::Acquire);
         // SAFETY: the semaphore is unsignalled and nothing waits for it.
-        let got = unsafe {
+        let got = planned.and_then(|()| unsafe {
             self.loader
                 .acquire_next_image(self.raw, patience, acquired, vk::Fence::null())
-        };
+        });
         match got {
             Ok((index, is_suboptimal)) => {
                 // The image is good for this frame; the next one gets better ones.
@@ -153,7 +155,9 @@ impl Swapchain {
             .wait_semaphores(&waits);
         let queue = self.context().queue;
         // SAFETY: the image was acquired and brought to the layout of presentation by the submission that signals.
-        match unsafe { self.loader.queue_present(queue, &info) } {
+        let shown = unsafe { self.loader.queue_present(queue, &info) };
+        // Even a present that fails has waited for its semaphore: a planned fault comes after it.
+        match self.context().faults.at(Call::Present).and(shown) {
             Ok(is_suboptimal) => self.is_stale |= is_suboptimal,
             Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => self.is_stale = true,
             Err(vk::Result::ERROR_SURFACE_LOST_KHR) => self.replace_surface()?,

@@ -27,7 +27,7 @@ pub enum Channels {
 }
 
 impl Channels {
-    const fn names(self) -> &'static [&'static str] {
+    pub(super) const fn names(self) -> &'static [&'static str] {
         match self {
             Self::Rgb => &["R", "G", "B"],
             Self::Xyz => &["X", "Y", "Z"],
@@ -70,10 +70,18 @@ pub fn encode_exr(
 }
 
 /// The form that every reader knows: ZIP, rows from the top.
-const ENCODING: Encoding = Encoding {
+pub(super) const ENCODING: Encoding = Encoding {
     compression: Compression::ZIP16,
     blocks: Blocks::ScanLines,
     line_order: LineOrder::Increasing,
+};
+
+/// The primaries and white of all our colours.
+pub(super) const BT709: Chromaticities = Chromaticities {
+    red: Vec2(0.64, 0.33),
+    green: Vec2(0.30, 0.60),
+    blue: Vec2(0.15, 0.06),
+    white: Vec2(0.3127, 0.3290),
 };
 
 fn encode(
@@ -90,16 +98,33 @@ fn encode(
                 .iter()
                 .enumerate()
                 .map(|(i, channel)| {
-                    let name = if layer.name.is_empty() {
-                        (*channel).to_owned()
-                    } else {
-                        format!("{}.{channel}", layer.name)
-                    };
+                    let name = full_name(layer.name, channel);
                     let samples = layer.texels.iter().map(|t| t[i]).collect();
                     AnyChannel::new(name.as_str(), FlatSamples::F32(samples))
                 })
         })
         .collect();
+    let size = Vec2(size[0] as usize, size[1] as usize);
+    let attributes = attributes(metadata);
+    let layer = exr::image::Layer::new(size, attributes, ENCODING, AnyChannels::sort(channels));
+    let mut image = Image::from_layer(layer);
+    image.attributes.chromaticities = Some(BT709);
+    let mut bytes = Cursor::new(Vec::new());
+    image.write().to_buffered(&mut bytes)?;
+    Ok(bytes.into_inner())
+}
+
+/// Name of a channel in the file.
+pub(super) fn full_name(layer: &str, channel: &str) -> String {
+    if layer.is_empty() {
+        channel.to_owned()
+    } else {
+        format!("{layer}.{channel}")
+    }
+}
+
+/// The parameters, and what wrote them.
+pub(super) fn attributes(metadata: &Metadata) -> LayerAttributes {
     let mut attributes = LayerAttributes {
         white_luminance: None,
         ..LayerAttributes::default()
@@ -112,18 +137,7 @@ fn encode(
             .other
             .insert(Text::from(format!("skylight:{key}").as_str()), value);
     }
-    let size = Vec2(size[0] as usize, size[1] as usize);
-    let layer = exr::image::Layer::new(size, attributes, ENCODING, AnyChannels::sort(channels));
-    let mut image = Image::from_layer(layer);
-    image.attributes.chromaticities = Some(Chromaticities {
-        red: Vec2(0.64, 0.33),
-        green: Vec2(0.30, 0.60),
-        blue: Vec2(0.15, 0.06),
-        white: Vec2(0.3127, 0.3290),
-    });
-    let mut bytes = Cursor::new(Vec::new());
-    image.write().to_buffered(&mut bytes)?;
-    Ok(bytes.into_inner())
+    attributes
 }
 
 #[cfg(test)]

@@ -1,17 +1,21 @@
 //! Pictures to files: whole or not at all.
 
 mod exr;
+mod exr_rows;
 mod hdr;
 mod legend;
 mod png;
+mod rows;
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 pub use self::exr::{Channels, Layer, encode_exr, write_exr};
+pub use self::exr_rows::{LayerKind, write_exr_rows};
 pub use self::hdr::encode_hdr;
 pub use self::legend::draw_legend;
 pub use self::png::{Encoding, write_png};
+pub use self::rows::PngRows;
 
 use crate::error::{Error, Result};
 

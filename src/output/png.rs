@@ -36,7 +36,24 @@ fn encode(
     metadata: &Metadata,
 ) -> std::result::Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
+    let rgb: Vec<u8> = rgba
+        .chunks_exact(4)
+        .flat_map(|p| [p[0], p[1], p[2]])
+        .collect();
+    let mut writer = head(&mut bytes, size, encoding, metadata)?;
+    writer.write_image_data(&rgb)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+/// Begins a file: all that comes before the pixels.
+pub(super) fn head<W: std::io::Write>(
+    target: W,
+    size: [u32; 2],
+    encoding: Encoding,
+    metadata: &Metadata,
+) -> std::result::Result<png::Writer<W>, png::EncodingError> {
+    let mut encoder = png::Encoder::new(target, size[0], size[1]);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     match encoding {
@@ -49,14 +66,7 @@ fn encode(
         // Keys are ours and short; values may hold any language (a path).
         encoder.add_itxt_chunk(key.clone(), value.clone())?;
     }
-    let rgb: Vec<u8> = rgba
-        .chunks_exact(4)
-        .flat_map(|p| [p[0], p[1], p[2]])
-        .collect();
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(&rgb)?;
-    writer.finish()?;
-    Ok(bytes)
+    encoder.write_header()
 }
 
 #[cfg(test)]

@@ -136,6 +136,7 @@ mod tests {
             size: UVec2::new(640, 360),
             jitter: Vec2::ZERO,
             sharpen: 0.0,
+            window: None,
         };
         // The corner of the picture lies 36.6 degrees off its centre.
         let off =

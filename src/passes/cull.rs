@@ -30,7 +30,10 @@ impl Cull {
     pub fn camera(view: &View) -> Self {
         let clip_from_world = view.clip_from_world();
         let eye = view.camera.eye;
-        let corner = view.block().ray_scale.extend(1.0).length();
+        let block = view.block();
+        let corner = (block.ray_scale.abs() + block.ray_offset.abs())
+            .extend(1.0)
+            .length();
         let viewer = Viewer::At {
             eye,
             reach: view.camera.near * corner,

@@ -140,6 +140,7 @@ mod tests {
             size: UVec2::new(640, 360),
             jitter: Vec2::ZERO,
             sharpen: 0.0,
+            window: None,
         };
         Receivers::new(&bounds(), &view)
     }

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use clap::ValueEnum;
-use glam::Vec3;
+use glam::{IVec2, Vec3};
 use serde::Deserialize;
 
 use crate::daylight::false_colour::Quantity;
@@ -16,10 +16,10 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
+use super::cascades::SunViews;
 use super::dome::BIAS_TEXELS;
 use super::gbuffer::Surfaces;
 use super::kilo;
-use super::shadow_fit::ShadowView;
 use super::view::View;
 
 gpu_struct! {
@@ -32,8 +32,11 @@ gpu_struct! {
         max_radiance: f32,
         specular_scale: f32,
         planes: [[f32; 4]; 4],
+        occlusion_from: IVec2,
     }
 }
+
+pub use super::precision::Precision;
 
 /// What is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, ValueEnum, Deserialize)]
@@ -148,32 +151,6 @@ impl Show {
     }
 }
 
-/// Precision of the picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Precision {
-    /// Half floats: for the screen. The sun's disc is cut at 65 504 kcd/m².
-    Half,
-    /// 32-bit floats: for files and sums.
-    Float,
-}
-
-impl Precision {
-    pub(super) fn format(self) -> Format {
-        match self {
-            Self::Half => Format::R16G16B16A16_SFLOAT,
-            Self::Float => Format::R32G32B32A32_SFLOAT,
-        }
-    }
-
-    /// Largest radiance that the format holds, kcd/m².
-    pub(super) fn max_radiance(self) -> f32 {
-        match self {
-            Self::Half => 65_504.0,
-            Self::Float => f32::MAX,
-        }
-    }
-}
-
 /// How surfaces are lit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LightingSettings {
@@ -191,6 +168,17 @@ pub struct LightingSettings {
     pub has_albedo: bool,
     /// Whether ρ_s grows toward grazing angles (Schlick's approximation of Fresnel's equations).
     pub fresnel: bool,
+    /// How the sun's shadow is looked up.
+    pub shadows: Shadows,
+}
+
+/// How the sun's shadow is looked up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Shadows {
+    /// Number of maps, 1 to 4; 0: by the extent of the scene, which [`crate::frame::Frame`] knows.
+    pub cascades: u32,
+    /// Penumbrae as wide as the sun's disc makes them, in a single frame.
+    pub penumbrae: bool,
 }
 
 /// What light there is: images and numbers of the moment.
@@ -200,9 +188,9 @@ pub struct Light<'a> {
     pub daylight: &'a Daylight,
     /// Unit vector toward the point of the sun's disc that this frame samples.
     pub sun_direction: Vec3,
-    /// The sun's view.
-    pub shadow_view: &'a ShadowView,
-    /// Its depth.
+    /// The sun's views.
+    pub sun_views: &'a SunViews,
+    /// Their depth.
     pub shadow_map: &'a Image,
     /// E, klx.
     pub sky_irradiance: &'a Image,
@@ -259,6 +247,8 @@ impl Lighting {
         constants.push(("ALBEDO_IMAGE", settings.has_albedo.into()));
         constants.push(("AMBIENT", (!is_converging).into()));
         constants.push(("PLANE_SHADOW", is_converging.into()));
+        constants.push(("CASCADES", settings.shadows.cascades.max(1)));
+        constants.push(("PCSS", settings.shadows.penumbrae.into()));
         let pipeline = Pipeline::new(
             context,
             &PipelineDesc {
@@ -334,13 +324,14 @@ impl Lighting {
             .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
             .sample("materials", materials, Sampler::Nearest)
             .uniform("view", &view.block())
-            .uniform("sun", &self.sun_block(light))
+            .uniform("sun", &self.sun_block(light, view))
+            .uniform("cascades", &light.sun_views.block())
             .color(&self.radiance, Load::Discard)
             .depth_test(&surfaces.depth)
     }
 
-    fn sun_block(&self, light: &Light<'_>) -> SunBlock {
-        let shadow = light.shadow_view;
+    fn sun_block(&self, light: &Light<'_>, view: &View) -> SunBlock {
+        let shadow = light.sun_views.first();
         let normal_offset = if self.is_converging {
             BIAS_TEXELS * shadow.texel_depth
         } else {
@@ -354,6 +345,8 @@ impl Lighting {
             max_radiance: self.settings.precision.max_radiance(),
             specular_scale: self.settings.specular_scale,
             planes: shadow.planes().to_cols_array_2d(),
+            // Parts of a picture share the occlusion of the whole.
+            occlusion_from: view.window.map_or(IVec2::ZERO, |w| w.origin.as_ivec2()),
         }
     }
 

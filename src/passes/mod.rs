@@ -4,6 +4,7 @@
 
 pub mod accumulate;
 pub mod background;
+pub mod cascades;
 pub mod cube_route;
 pub mod cull;
 pub mod details;
@@ -16,6 +17,7 @@ pub mod geometry;
 mod geometry_upload;
 pub mod irradiance;
 pub mod lighting;
+mod precision;
 pub mod present;
 pub mod probe;
 pub mod shadow;

@@ -8,6 +8,7 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
+use super::cascades::{MOST, SunViews};
 use super::geometry::Geometry;
 use super::shadow_fit::ShadowView;
 
@@ -135,7 +136,7 @@ fn pipeline(context: &Arc<Context>, name: &str, slope_bias: f32, holes: bool) ->
 pub struct Shadow {
     casters: Casters,
     depth: Image,
-    drawn: Option<ShadowView>,
+    drawn: Option<SunViews>,
 }
 
 impl Shadow {
@@ -144,7 +145,20 @@ impl Shadow {
     /// # Errors
     /// When the device refuses.
     pub fn new(context: &Arc<Context>, geometry: &Geometry, resolution: u32) -> Result<Self> {
-        Self::with(context, geometry, resolution, SLOPE_BIAS)
+        Self::with(context, geometry, resolution, 1, SLOPE_BIAS)
+    }
+
+    /// `count` maps side by side.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn cascaded(
+        context: &Arc<Context>,
+        geometry: &Geometry,
+        resolution: u32,
+        count: u32,
+    ) -> Result<Self> {
+        Self::with(context, geometry, resolution, count, SLOPE_BIAS)
     }
 
     /// The same for comparisons in the plane of the receiver, which need no bias of casters.
@@ -152,16 +166,17 @@ impl Shadow {
     /// # Errors
     /// When the device refuses.
     pub fn unbiased(context: &Arc<Context>, geometry: &Geometry, resolution: u32) -> Result<Self> {
-        Self::with(context, geometry, resolution, 0.0)
+        Self::with(context, geometry, resolution, 1, 0.0)
     }
 
     fn with(
         context: &Arc<Context>,
         geometry: &Geometry,
         resolution: u32,
+        count: u32,
         slope_bias: f32,
     ) -> Result<Self> {
-        let size = [resolution, resolution];
+        let size = [resolution * count.max(1), resolution];
         let desc = ImageDesc::flat("shadow map", Format::D32_SFLOAT, size);
         Ok(Self {
             casters: Casters::new(context, geometry, slope_bias)?,
@@ -172,12 +187,12 @@ impl Shadow {
 
     /// Texels a side.
     pub fn resolution(&self) -> u32 {
-        self.depth.size()[0]
+        self.depth.size()[1]
     }
 
-    /// Whether the map of this view must be drawn anew.
-    pub fn is_stale(&self, view: &ShadowView) -> bool {
-        self.drawn.as_ref() != Some(view)
+    /// Whether the maps of these views must be drawn anew.
+    pub fn is_stale(&self, views: &SunViews) -> bool {
+        self.drawn.as_ref() != Some(views)
     }
 
     /// Draws the map if the sun or the fit changed.
@@ -185,17 +200,21 @@ impl Shadow {
         &mut self,
         recorder: &mut Recorder,
         geometry: &Geometry,
-        view: &ShadowView,
+        views: &SunViews,
     ) -> &Image {
-        if self.is_stale(view) {
-            let tile = Tile {
+        if self.is_stale(views) {
+            let edge = self.resolution();
+            let origins = (0..).map(|k| [k * edge, 0]);
+            let tile = |(view, origin): (&ShadowView, _)| Tile {
                 view: *view,
-                origin: [0, 0],
-                edge: self.resolution(),
+                origin,
+                edge,
             };
+            let tiles: arrayvec::ArrayVec<Tile, MOST> =
+                views.iter().zip(origins).map(tile).collect();
             self.casters
-                .record(recorder, "shadow map", geometry, &[tile], &self.depth);
-            self.drawn = Some(*view);
+                .record(recorder, "shadow map", geometry, &tiles, &self.depth);
+            self.drawn = Some(*views);
         }
         &self.depth
     }

@@ -100,6 +100,11 @@ impl Ssao {
         })
     }
 
+    /// A as it was last computed, to be kept when the passes are not.
+    pub fn into_image(self) -> Image {
+        self.smooth
+    }
+
     /// A as it was last computed.
     pub fn image(&self) -> &Image {
         &self.smooth

@@ -27,17 +27,53 @@ pub struct View {
     pub jitter: Vec2,
     /// Mip levels by which textures are sharper than one sample a pixel wants: many samples filter better than mip maps.
     pub sharpen: f32,
+    /// The part of a larger picture that this one is; the whole without it.
+    pub window: Option<Window>,
+}
+
+/// A part of a picture, in pixels of the part.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    /// Its upper left corner in the picture.
+    pub origin: UVec2,
+    /// Width and height of the whole picture; not whole numbers where the part is coarser than the picture.
+    pub picture: Vec2,
 }
 
 impl View {
-    /// Width over height.
+    /// The view of the whole picture, whose part this is.
+    pub fn whole(&self) -> Self {
+        let picture = self.window.map(|window| window.picture.ceil().as_uvec2());
+        Self {
+            size: picture.unwrap_or(self.size),
+            window: None,
+            ..*self
+        }
+    }
+
+    /// Width over height of the whole picture.
     pub fn aspect(&self) -> f32 {
-        self.size.x as f32 / self.size.y as f32
+        let picture = self.window.map_or(self.size.as_vec2(), |w| w.picture);
+        picture.x / picture.y
+    }
+
+    /// Takes x and y of the whole picture's clip space to the part's: a factor and a shift.
+    fn part(&self) -> (Vec2, Vec2) {
+        let Some(window) = self.window else {
+            return (Vec2::ONE, Vec2::ZERO);
+        };
+        let size = self.size.as_dvec2();
+        let scale = window.picture.as_dvec2() / size;
+        let shift = scale - 1.0 - 2.0 * window.origin.as_dvec2() / size;
+        (scale.as_vec2(), shift.as_vec2())
     }
 
     /// World to Vulkan clip space, jittered.
     pub fn clip_from_world(&self) -> Mat4 {
+        let (scale, shift) = self.part();
+        let part = Mat4::from_translation(shift.extend(0.0)) * Mat4::from_scale(scale.extend(1.0));
         self.jitter_matrix()
+            * part
             * self.camera.clip_from_view(self.aspect())
             * self.camera.view_from_world()
     }
@@ -61,12 +97,13 @@ impl View {
     pub fn block(&self) -> ViewBlock {
         let tan_y = (0.5 * self.camera.fov_deg.to_radians()).tan();
         // Vulkan's rows run down, the camera's y runs up.
-        let ray_scale = Vec2::new(tan_y * self.aspect(), -tan_y);
+        let (scale, shift) = self.part();
+        let ray_scale = Vec2::new(tan_y * self.aspect(), -tan_y) / scale;
         ViewBlock {
             world_from_view: Mat3::from_mat4(self.camera.world_from_view()),
             eye: self.camera.eye,
             ray_scale,
-            ray_offset: 2.0 * self.jitter / self.size.as_vec2() * ray_scale,
+            ray_offset: (2.0 * self.jitter / self.size.as_vec2() - shift) * ray_scale,
             near: self.camera.near,
         }
     }
@@ -89,6 +126,34 @@ mod tests {
             size: UVec2::new(640, 360),
             jitter,
             sharpen: 0.0,
+            window: None,
+        }
+    }
+
+    #[test]
+    fn parts_see_what_the_whole_sees() {
+        let whole = view(Vec2::new(0.25, -0.5));
+        let part = View {
+            size: UVec2::new(96, 40),
+            window: Some(Window {
+                origin: UVec2::new(288, 200),
+                picture: whole.size.as_vec2(),
+            }),
+            ..whole
+        };
+        assert_eq!(part.whole(), whole);
+        assert_eq!(part.aspect(), whole.aspect());
+        for point in [Vec3::new(-2.0, 1.2, -1.5), Vec3::new(0.5, 0.0, 2.0)] {
+            let pixel = |view: &View| {
+                let clip = view.clip_from_world() * point.extend(1.0);
+                let ndc = clip.truncate() / clip.w;
+                ((ndc.truncate() + 1.0) * 0.5 * view.size.as_vec2(), ndc.z)
+            };
+            let ((a, z), (b, part_z)) = (pixel(&whole), pixel(&part));
+            assert!((a - Vec2::new(288.0, 200.0) - b).length() < 1e-3, "{a} {b}");
+            assert_eq!(z, part_z);
+            let back = part.point(b, part.camera.near / z);
+            assert!((back - point).length() < 1e-3, "{back}");
         }
     }
 

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::error::SceneError;
+use super::error::{SceneError, printable};
 use super::files::Files;
 use super::material::Material;
 use super::picture::{TextureStore, Wanted};
@@ -63,7 +63,8 @@ impl<'p> Builder<'p> {
             .file_name()
             .unwrap_or(path.as_os_str())
             .to_string_lossy();
-        self.scene.warnings.push(format!("{name}: {what}"));
+        let line = printable(&format!("{name}: {what}"));
+        self.scene.warnings.push(line);
     }
 
     /// Notes that a file was left alone.
@@ -87,6 +88,21 @@ impl<'p> Builder<'p> {
         Err(SceneError::TooMany {
             path: path.to_owned(),
             triangles: all,
+            limit: self.max_triangles,
+        })
+    }
+
+    /// Whether this many triangles may be read, drawn or not: a file may name the same ones again and again.
+    ///
+    /// # Errors
+    /// When they are too many.
+    pub fn check_read(&self, path: &Path, triangles: usize) -> Result<(), SceneError> {
+        if triangles <= self.max_triangles {
+            return Ok(());
+        }
+        Err(SceneError::TooMany {
+            path: path.to_owned(),
+            triangles,
             limit: self.max_triangles,
         })
     }

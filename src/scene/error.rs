@@ -1,21 +1,21 @@
 //! What can be wrong with a scene: one line each, with the thing and the remedy.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Why a scene cannot be shown. Its text is one line that names the file and says what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// No such file.
-    #[error("{}: no such file; check the path", .0.display())]
+    #[error("{}: no such file; check the path", shown(.0))]
     Missing(PathBuf),
     /// A directory where a file is needed.
-    #[error("{} is a directory; name a .toml, .obj, .gltf or .glb file in it", .0.display())]
+    #[error("{} is a directory; name a .toml, .obj, .gltf or .glb file in it", shown(.0))]
     Directory(PathBuf),
     /// A pipe, a device, a socket.
-    #[error("{} is not a regular file; save it to disk first", .0.display())]
+    #[error("{} is not a regular file; save it to disk first", shown(.0))]
     NotAFile(PathBuf),
     /// The system refused to read it.
-    #[error("{}: cannot be read ({reason}); check its permissions", path.display())]
+    #[error("{}: cannot be read ({reason}); check its permissions", shown(path))]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -23,7 +23,10 @@ pub enum SceneError {
         reason: String,
     },
     /// Larger than [`LoadOptions::max_file_bytes`](super::LoadOptions::max_file_bytes).
-    #[error("{} has {bytes} bytes, the limit is {limit}; split it or raise --max-file-mib", path.display())]
+    #[error(
+        "{} has {bytes} bytes, the limit is {limit}; split it or raise --max-file-mib",
+        shown(path)
+    )]
     TooLarge {
         /// The file.
         path: PathBuf,
@@ -32,8 +35,22 @@ pub enum SceneError {
         /// The limit, bytes.
         limit: u64,
     },
+    /// All files together are larger than [`LoadOptions::max_file_bytes`](super::LoadOptions::max_file_bytes).
+    #[error(
+        "{}: with it the files of the scene have more than {limit} bytes; name fewer or raise --max-file-mib",
+        shown(path)
+    )]
+    TooMuch {
+        /// The file that is too much.
+        path: PathBuf,
+        /// The limit, bytes.
+        limit: u64,
+    },
     /// More triangles than [`LoadOptions::max_triangles`](super::LoadOptions::max_triangles) or than 32-bit numbers count.
-    #[error("{}: {triangles} triangles, the limit is {limit}; simplify it or raise --max-triangles", path.display())]
+    #[error(
+        "{}: {triangles} triangles, the limit is {limit}; simplify it or raise --max-triangles",
+        shown(path)
+    )]
     TooMany {
         /// The file.
         path: PathBuf,
@@ -43,7 +60,7 @@ pub enum SceneError {
         limit: usize,
     },
     /// A kind of file that is not read (yet).
-    #[error("{}: {what}", path.display())]
+    #[error("{}: {what}", shown(path))]
     Unsupported {
         /// The file.
         path: PathBuf,
@@ -51,7 +68,7 @@ pub enum SceneError {
         what: String,
     },
     /// A line of a model that makes no sense.
-    #[error("{}, line {line}: {what}", path.display())]
+    #[error("{}, line {line}: {what}", shown(path))]
     Malformed {
         /// The file.
         path: PathBuf,
@@ -61,7 +78,7 @@ pub enum SceneError {
         what: String,
     },
     /// Nothing to draw; `why` is empty or says what was left out, in brackets.
-    #[error("{} has no triangles{why}; export it with faces", path.display())]
+    #[error("{} has no triangles{why}; export it with faces", shown(path))]
     NoTriangles {
         /// The file.
         path: PathBuf,
@@ -69,11 +86,26 @@ pub enum SceneError {
         why: String,
     },
     /// A key or value of a scene file that makes no sense.
-    #[error("{}: {what}", path.display())]
+    #[error("{}: {what}", shown(path))]
     SceneFile {
         /// The file.
         path: PathBuf,
         /// What is wrong, with the known words.
         what: String,
     },
+}
+
+/// A path for a message: names may hold line breaks and worse.
+pub(crate) fn shown(path: &Path) -> String {
+    printable(&path.display().to_string())
+}
+
+/// Text for one line of a terminal.
+pub(crate) fn printable(text: &str) -> String {
+    let letter = |c: char| {
+        let escaped = c.is_control().then(|| c.escape_default());
+        let plain = escaped.is_none().then_some(c);
+        escaped.into_iter().flatten().chain(plain)
+    };
+    text.chars().flat_map(letter).collect()
 }

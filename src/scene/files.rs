@@ -1,7 +1,7 @@
 //! Where files come from: the disk, or the ones that are built into the program.
 
 use std::borrow::Cow;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
@@ -36,6 +36,8 @@ pub(super) struct Files {
     source: Source,
     /// What was read, if anybody wants to know.
     record: Option<RefCell<Vec<ReadFile>>>,
+    /// Bytes that may still be read: however often a scene names its files, loading it ends.
+    left: Cell<u64>,
     /// Of a model: what it names must lie in this folder tree. None: anywhere.
     confined_to: Option<PathBuf>,
 }
@@ -63,6 +65,7 @@ impl Files {
         Self {
             source: Source::Disk { max_bytes },
             record: None,
+            left: Cell::new(max_bytes),
             confined_to: None,
         }
     }
@@ -72,6 +75,7 @@ impl Files {
         Self {
             source: Source::Embedded(files),
             record: None,
+            left: Cell::new(u64::MAX),
             confined_to: None,
         }
     }
@@ -112,12 +116,25 @@ impl Files {
         let candidates = [folder.join(name), folder.join(&*forward), folder.join(last)];
         let mut there = candidates.iter().filter(|path| self.has(path));
         match there.clone().find(|path| self.is_inside(path)) {
-            Some(path) => Place::Found(path.clone()),
+            Some(path) => Place::Found(self.one_name(path)),
             None => there
                 .next()
                 .map_or(Place::Missing(candidates[1].clone()), |path| {
                     Place::Outside(path.clone())
                 }),
+        }
+    }
+
+    /// The one name of a file that can be spelled in many ways: a hostile model could have it read once for each.
+    fn one_name(&self, path: &Path) -> PathBuf {
+        // Without doubled separators and single dots.
+        let plain: PathBuf = path.components().collect();
+        let Source::Disk { .. } = self.source else {
+            return plain;
+        };
+        match (plain.canonicalize(), std::path::absolute(&plain)) {
+            (Ok(real), Ok(absolute)) if real != absolute => real,
+            _ => plain,
         }
     }
 
@@ -140,6 +157,11 @@ impl Files {
         match self.source {
             Source::Disk { max_bytes } => {
                 let bytes = read_disk(path, max_bytes)?;
+                let left = self.left.get().checked_sub(bytes.len() as u64);
+                self.left.set(left.ok_or_else(|| SceneError::TooMuch {
+                    path: path.to_owned(),
+                    limit: max_bytes,
+                })?);
                 if let Some(record) = &self.record {
                     record.borrow_mut().push(ReadFile {
                         path: path.to_owned(),
@@ -153,6 +175,17 @@ impl Files {
                 .find(|(name, _)| Path::new(name) == path)
                 .map(|(_, bytes)| bytes.to_vec())
                 .ok_or_else(|| SceneError::Missing(path.to_owned())),
+        }
+    }
+
+    /// BLAKE3 of a file's content, without holding it.
+    ///
+    /// # Errors
+    /// As [`Files::read`].
+    pub fn digest(&self, path: &Path) -> Result<Digest, SceneError> {
+        match self.source {
+            Source::Disk { max_bytes } => digest_disk(path, max_bytes),
+            Source::Embedded(_) => self.read(path).map(|bytes| digest(&bytes)),
         }
     }
 
@@ -187,7 +220,8 @@ impl Files {
     }
 }
 
-fn read_disk(path: &Path, limit: u64) -> Result<Vec<u8>, SceneError> {
+/// Opens a file of at most `limit` bytes; gives its length too.
+fn open_disk(path: &Path, limit: u64) -> Result<(std::fs::File, u64), SceneError> {
     let failed = |error: std::io::Error| unreadable(path, &error);
     let meta = std::fs::metadata(path).map_err(failed)?;
     if meta.is_dir() {
@@ -197,26 +231,43 @@ fn read_disk(path: &Path, limit: u64) -> Result<Vec<u8>, SceneError> {
     if !meta.is_file() {
         return Err(SceneError::NotAFile(path.to_owned()));
     }
-    let too_large = |bytes| SceneError::TooLarge {
+    if meta.len() > limit {
+        return Err(too_large(path, meta.len(), limit));
+    }
+    let file = std::fs::File::open(path).map_err(failed)?;
+    Ok((file, meta.len()))
+}
+
+fn too_large(path: &Path, bytes: u64, limit: u64) -> SceneError {
+    SceneError::TooLarge {
         path: path.to_owned(),
         bytes,
         limit,
-    };
-    if meta.len() > limit {
-        return Err(too_large(meta.len()));
     }
+}
+
+fn digest_disk(path: &Path, limit: u64) -> Result<Digest, SceneError> {
+    let (file, _) = open_disk(path, limit)?;
+    let mut hasher = blake3::Hasher::new();
+    let hashed = hasher.update_reader(file.take(limit));
+    hashed.map_err(|error| unreadable(path, &error))?;
+    Ok(*hasher.finalize().as_bytes())
+}
+
+fn read_disk(path: &Path, limit: u64) -> Result<Vec<u8>, SceneError> {
+    let failed = |error: std::io::Error| unreadable(path, &error);
+    let (file, length) = open_disk(path, limit)?;
     let mut bytes = Vec::new();
     bytes
-        .try_reserve_exact(meta.len() as usize)
+        .try_reserve_exact(length as usize)
         .map_err(|error| failed(error.into()))?;
-    let file = std::fs::File::open(path).map_err(failed)?;
     // The length above is a promise that files in /proc and growing ones do not keep.
     let read = file
         .take(limit.saturating_add(1))
         .read_to_end(&mut bytes)
         .map_err(failed)?;
     if read as u64 > limit {
-        return Err(too_large(read as u64));
+        return Err(too_large(path, read as u64, limit));
     }
     Ok(bytes)
 }

@@ -43,6 +43,7 @@ pub(super) fn append_gltf(
         materials: Materials::read(builder, path, &gltf, &buffers),
         buffers,
         known: HashMap::new(),
+        triangles: 0,
         odd: Odd::default(),
         cameras: Vec::new(),
     };
@@ -127,6 +128,8 @@ struct Model<'m> {
     materials: Materials,
     /// Meshes that were read, for their other instances.
     known: HashMap<usize, Rc<Vec<Mesh>>>,
+    /// That were read, drawn or not, instances not counted.
+    triangles: usize,
     odd: Odd,
     cameras: Vec<NamedCamera>,
 }
@@ -179,7 +182,8 @@ impl Model<'_> {
                 self.odd.not_faces += 1;
                 continue;
             };
-            builder.check_room(self.path, faces.indices.len() / 3)?;
+            self.triangles += faces.indices.len() / 3;
+            builder.check_read(self.path, self.triangles)?;
             meshes.extend(self.make_mesh(faces, surface));
         }
         Ok(meshes)

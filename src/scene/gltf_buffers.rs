@@ -1,7 +1,9 @@
 //! The buffers of a glTF file, and the numbers that accessors name in them. Every range is checked before anything is
 //! allocated.
 
+use std::collections::HashMap;
 use std::path::Path;
+use std::rc::Rc;
 
 use base64::Engine;
 use gltf::accessor::{Accessor, DataType, Dimensions};
@@ -9,10 +11,11 @@ use percent_encoding::percent_decode_str;
 
 use super::builder::Builder;
 use super::files::Place;
+use super::picture::Inner;
 
 /// The bytes of all buffers.
 #[derive(Debug)]
-pub(super) struct Buffers(Vec<Vec<u8>>);
+pub(super) struct Buffers(Vec<Rc<Vec<u8>>>);
 
 /// Where bytes that a URI names come from.
 pub(super) enum Uri {
@@ -38,18 +41,40 @@ pub(super) fn resolve(builder: &Builder, path: &Path, uri: &str) -> Result<Uri, 
 }
 
 impl Buffers {
-    pub fn read(builder: &Builder, path: &Path, gltf: &gltf::Gltf) -> Result<Self, String> {
-        let read = |buffer: gltf::Buffer<'_>| {
-            let bytes = match buffer.source() {
-                gltf::buffer::Source::Bin => gltf.blob.clone().ok_or("no binary chunk")?,
-                gltf::buffer::Source::Uri(uri) => read_uri(builder, path, uri)?,
+    pub fn read<'a>(builder: &Builder, path: &Path, gltf: &'a gltf::Gltf) -> Result<Self, String> {
+        // A thousand buffers may be the same bytes.
+        let mut known: HashMap<Option<&str>, Rc<Vec<u8>>> = HashMap::new();
+        let blob = gltf.blob.clone().map(|blob| (None, Rc::new(blob)));
+        known.extend(blob);
+        let mut read = |buffer: gltf::Buffer<'a>| {
+            let uri = match buffer.source() {
+                gltf::buffer::Source::Bin => None,
+                gltf::buffer::Source::Uri(uri) => Some(uri),
             };
+            let bytes = match (known.get(&uri), uri) {
+                (Some(bytes), _) => bytes.clone(),
+                (None, None) => return Err("no binary chunk".to_owned()),
+                (None, Some(text)) => Rc::new(read_uri(builder, path, text)?),
+            };
+            known.insert(uri, bytes.clone());
             if bytes.len() < buffer.length() {
                 return Err(format!("buffer {} is cut short", buffer.index()));
             }
             Ok(bytes)
         };
-        gltf.buffers().map(read).collect::<Result<_, _>>().map(Self)
+        gltf.buffers()
+            .map(&mut read)
+            .collect::<Result<_, _>>()
+            .map(Self)
+    }
+
+    /// The bytes of a view, and the buffer that they are part of.
+    pub fn part(&self, view: &gltf::buffer::View<'_>) -> Result<Inner, String> {
+        let length = self.view(view)?.len();
+        Ok(Inner {
+            bytes: self.0[view.buffer().index()].clone(),
+            range: view.offset()..view.offset() + length,
+        })
     }
 
     /// The bytes of a view.

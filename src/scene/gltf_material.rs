@@ -1,6 +1,7 @@
 //! Materials of glTF files, by [`phong_of`] as the lecture's ρ_d, ρ_s and p.
 
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use glam::{Affine2, Vec2};
 use gltf::material::AlphaMode;
@@ -9,7 +10,7 @@ use super::builder::Builder;
 use super::files::Place;
 use super::gltf_buffers::{Buffers, Uri, resolve};
 use super::material::{MTL_DEFAULT, Material, MetallicRoughness, phong_of};
-use super::picture::Wanted;
+use super::picture::{Inner, Wanted};
 use super::soup::NONE;
 
 /// A material as meshes use it.
@@ -174,16 +175,17 @@ impl Reader<'_, '_> {
         inner.push(format!(" image {}", image.index()));
         let inner = PathBuf::from(inner);
         let bytes = match image.source() {
-            gltf::image::Source::View { view, .. } => {
-                self.buffers.view(&view).map(|b| Some(b.to_vec()))
-            }
+            gltf::image::Source::View { view, .. } => self.buffers.part(&view).map(Some),
             gltf::image::Source::Uri { uri, .. } => match resolve(self.builder, self.path, uri) {
                 Ok(Uri::File(Place::Found(path) | Place::Missing(path))) => return Some(path),
                 Ok(Uri::File(Place::Outside(path))) => {
                     self.builder.warn_outside(self.path, &path);
                     Ok(None)
                 }
-                Ok(Uri::Data(bytes)) => Ok(Some(bytes)),
+                Ok(Uri::Data(bytes)) => Ok(Some(Inner {
+                    range: 0..bytes.len(),
+                    bytes: Rc::new(bytes),
+                })),
                 Err(what) => Err(what),
             },
         };

@@ -45,13 +45,14 @@ pub use bundled::bundled;
 pub use camera::{Camera, DEFAULT_FOV_DEG};
 pub use clusters::{Cluster, Clusters, Solid};
 pub use error::SceneError;
+pub(crate) use error::shown;
 pub use material::Material;
 pub use progress::Progress;
 pub use scene_file::{NamedCamera, NamedMoment, NamedOptions};
 pub use texture::{Encoding, Texture};
 
 use builder::Builder;
-use files::{Files, digest};
+use files::Files;
 use obj::{Placement, append_obj};
 use progress::Reporter;
 use scene_file::Said;
@@ -251,7 +252,7 @@ fn load_by_cache(
         return load_from(&mut files, path, options, progress);
     };
     progress(0.0, "looking in the cache");
-    let content = digest(&files.read(path)?);
+    let content = files.digest(path)?;
     let entry = cache::place(folder, path, content, options);
     if let Some(loaded) = cache::read(&entry, path) {
         progress(1.0, "loaded");

@@ -50,8 +50,9 @@ pub(super) fn append_obj(
         dangling,
         ..
     } = read;
+    // Before they are made: a polygon has few bytes for each of its triangles.
+    builder.check_room(path, soup.count())?;
     soup.triangulate();
-    builder.check_room(path, soup.triangles.len())?;
     finish_colours(&mut soup);
     let uses: Vec<Use> = materials
         .iter()

@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 use std::io::Cursor;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
@@ -39,10 +41,25 @@ pub(super) enum Wanted {
 pub(super) struct TextureStore {
     max_edge: u32,
     bytes_left: u64,
+    /// Texels that may still be decoded, in bytes: also for pictures that fail in the end, and for those that are no textures.
+    effort_left: u64,
     known: HashMap<Wanted, Option<usize>>,
     /// Pictures inside of models, by the names that the reader of the model made up for them.
-    inner: HashMap<PathBuf, Vec<u8>>,
+    inner: HashMap<PathBuf, Inner>,
+    means: HashMap<PathBuf, Result<[f32; 3], String>>,
 }
+
+/// A picture inside of a model.
+#[derive(Debug)]
+pub(super) struct Inner {
+    /// What it is a part of; many may be parts of the same.
+    pub bytes: Rc<Vec<u8>>,
+    /// Which part.
+    pub range: Range<usize>,
+}
+
+/// Times the bytes of all textures that decoding may take: nobody waits for thousands of pictures that fail.
+const EFFORT: u64 = 4;
 
 const PLAIN: &str = "; drawn in its plain colour";
 
@@ -51,14 +68,16 @@ impl TextureStore {
         Self {
             max_edge: options.max_texture_edge,
             bytes_left: options.max_texture_bytes,
+            effort_left: options.max_texture_bytes.saturating_mul(EFFORT),
+            means: HashMap::new(),
             known: HashMap::new(),
             inner: HashMap::new(),
         }
     }
 
     /// Makes a picture inside of a model known as `name`.
-    pub fn insert(&mut self, name: PathBuf, bytes: Vec<u8>) {
-        self.inner.insert(name, bytes);
+    pub fn insert(&mut self, name: PathBuf, picture: Inner) {
+        self.inner.insert(name, picture);
     }
 
     /// The number of the texture in `textures`. None if it failed before; an error says why the first time.
@@ -101,6 +120,15 @@ impl TextureStore {
 
     /// The mean red, green and blue of a picture that is no texture by itself, 0..1 as they stand.
     pub fn mean(&mut self, files: &Files, path: &Path) -> Result<[f32; 3], String> {
+        if let Some(mean) = self.means.get(path) {
+            return mean.clone();
+        }
+        let mean = self.compute_mean(files, path);
+        self.means.insert(path.to_owned(), mean.clone());
+        mean
+    }
+
+    fn compute_mean(&mut self, files: &Files, path: &Path) -> Result<[f32; 3], String> {
         let before = self.bytes_left;
         let texels = self.decode(files, path)?.into_rgba8();
         self.bytes_left = before;
@@ -129,7 +157,7 @@ impl TextureStore {
     fn decode(&mut self, files: &Files, path: &Path) -> Result<DynamicImage, String> {
         let read;
         let bytes = match self.inner.get(path) {
-            Some(bytes) => bytes,
+            Some(Inner { bytes, range }) => &bytes[range.clone()],
             None if !files.has(path) => {
                 return Err(format!("texture {} is missing{PLAIN}", path.display()));
             }
@@ -140,8 +168,14 @@ impl TextureStore {
                 &read
             }
         };
-        let (image, size) = decode_bounded(path, bytes, self.max_edge, self.bytes_left)
-            .map_err(|what| format!("texture {} {what}{PLAIN}", name_of(path)))?;
+        let fails = |what: String| format!("texture {} {what}{PLAIN}", name_of(path));
+        let (decoder, size) =
+            open_bounded(path, bytes, self.max_edge, self.bytes_left).map_err(fails)?;
+        let left = self.effort_left.checked_sub(size);
+        self.effort_left = left.ok_or_else(|| {
+            fails("is one picture too many to decode; raise --max-texture-mib".to_owned())
+        })?;
+        let image = DynamicImage::from_decoder(decoder).map_err(|e| fails(undecodable(&e)))?;
         self.bytes_left -= size;
         Ok(image)
     }
@@ -152,15 +186,18 @@ fn name_of(path: &Path) -> String {
     name.to_string_lossy().into_owned()
 }
 
-/// The picture and the bytes that it takes as a texture. Refuses by the header alone what is too large.
-fn decode_bounded(
+fn undecodable(error: &image::ImageError) -> String {
+    format!("cannot be decoded ({})", one_line(&error.to_string()))
+}
+
+/// A picture whose header is read, and the bytes that it takes as a texture. Refuses by the header alone what is too large.
+fn open_bounded<'b>(
     path: &Path,
-    bytes: &[u8],
+    bytes: &'b [u8],
     max_edge: u32,
     bytes_left: u64,
-) -> Result<(DynamicImage, u64), String> {
-    let unreadable =
-        |error: image::ImageError| format!("cannot be decoded ({})", one_line(&error.to_string()));
+) -> Result<(impl ImageDecoder + 'b, u64), String> {
+    let unreadable = |error: image::ImageError| undecodable(&error);
     let mut reader = ImageReader::new(Cursor::new(bytes));
     // The content decides; TGA alone has no signature, so there the name does.
     match image::guess_format(bytes)
@@ -192,8 +229,7 @@ fn decode_bounded(
             "needs {size} bytes, {bytes_left} are left for textures; raise --max-texture-mib"
         ));
     }
-    let image = DynamicImage::from_decoder(decoder).map_err(unreadable)?;
-    Ok((image, size))
+    Ok((decoder, size))
 }
 
 /// Eight bits a channel, sRGB. Float pictures (HDR) hold linear light and are encoded; all others are sRGB already.

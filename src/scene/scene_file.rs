@@ -42,6 +42,7 @@ const TABLES: [(&str, &[&str]); 5] = [
             "ao-radius",
             "ao-resolution",
             "shadow-size",
+            "penumbra",
         ],
     ),
 ];

@@ -153,6 +153,13 @@ impl Soup {
         }));
     }
 
+    /// Triangles, with those that the polygons will become.
+    pub fn count(&self) -> usize {
+        let polygons = &self.polygons;
+        // Each has at least three corners.
+        self.triangles.len() + polygons.corners.len() - 2 * polygons.list.len()
+    }
+
     /// Splits the polygons into triangles.
     pub fn triangulate(&mut self) {
         let polygons = std::mem::take(&mut self.polygons);

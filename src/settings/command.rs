@@ -93,6 +93,7 @@ impl Settings {
             ("smooth", self.smooth.map(|angle| angle.to_string())),
             ("device", self.device.clone()),
             ("without", self.without.map(name)),
+            ("tile", count(self.tile)),
             ("max-triangles", count(limits.max_triangles)),
             ("max-texture-edge", count(limits.max_texture_edge)),
             ("max-texture-mib", count(limits.max_texture_mib)),

@@ -4,8 +4,9 @@ use chrono::{DateTime, FixedOffset};
 use clap::ValueEnum;
 
 use super::super::{
-    AoResolution, Direction, ExposureMode, Filter, Fresnel, Optional, Place, Preset, Quantity,
-    Range, Show, Size, SkyModel, SolarTime, SunPositionMethod, Switch, ToneCurve, Visibility,
+    AoResolution, Direction, ExposureMode, Filter, Fresnel, Optional, Penumbra, Place, Preset,
+    Quantity, Range, Show, Size, SkyModel, SolarTime, SunPositionMethod, Switch, ToneCurve,
+    Visibility,
 };
 use super::*;
 use crate::cli::{Command, parse};
@@ -101,9 +102,10 @@ impl Random {
         let kind = self.below(3);
         Options {
             size: self.maybe(|r| Size {
-                width: r.within(1.0, 16_384.0) as u32,
-                height: r.within(1.0, 16_384.0) as u32,
+                width: r.within(1.0, 32_768.0) as u32,
+                height: r.within(1.0, 32_768.0) as u32,
             }),
+            tile: self.count(64, 16_384),
             samples: self.count(1, 65_536),
             visibility: self.one::<Visibility>(),
             filter: self.one::<Filter>(),
@@ -160,6 +162,7 @@ impl Random {
             specular: self.number(0.0, 100.0),
             limb_darkening: self.often(),
             shadow_size: self.count(64, 16_384),
+            penumbra: self.one::<Penumbra>(),
             smooth: self.number(0.0, 180.0),
             device: self.maybe(|_| "-llvmpipe $HOME 'x'".to_owned()),
             fresnel: self.one::<Fresnel>(),

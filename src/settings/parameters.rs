@@ -27,6 +27,7 @@ impl Settings {
             ("fresnel", name(self.fresnel)),
             ("specular", self.specular.to_string()),
             ("shadow-size", self.shadow_size.to_string()),
+            ("penumbra", name(self.penumbra)),
             ("dome-directions", self.dome_directions.to_string()),
             ("dome-size", self.dome_size.to_string()),
             ("tonemap", name(self.tone_curve)),

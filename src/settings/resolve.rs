@@ -4,9 +4,9 @@ use chrono::{DateTime, FixedOffset};
 use glam::Vec3;
 
 use super::{
-    AoResolution, Direction, Filter, Fresnel, IrradianceMethod, Options, Place, Preset, Quantity,
-    Range, SettingsError, Show, Size, SkyModel, SolarTime, SunPositionMethod, Switch, ToneCurve,
-    Visibility, name, values,
+    AoResolution, Direction, Filter, Fresnel, IrradianceMethod, Limits, Options, Penumbra, Place,
+    Preset, Quantity, Range, SettingsError, Show, Size, SkyModel, SolarTime, SunPositionMethod,
+    Switch, ToneCurve, Visibility, name, values,
 };
 use crate::error::Error;
 use crate::gpu::Optional;
@@ -96,26 +96,13 @@ pub struct CameraParts {
     pub name: Option<String>,
 }
 
-/// What a scene was allowed when it was loaded; none where the program's own limit held.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Limits {
-    /// Whether its files may lie outside of its folder tree.
-    pub allow_outside: bool,
-    /// Most triangles, instances counted.
-    pub max_triangles: Option<u32>,
-    /// Longest edge of a texture, texels.
-    pub max_texture_edge: Option<u32>,
-    /// Most memory of all textures, MiB.
-    pub max_texture_mib: Option<u32>,
-    /// Largest file, MiB.
-    pub max_file_mib: Option<u32>,
-}
-
 /// Everything that decides a picture, besides the scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// Of the picture.
     pub size: Size,
+    /// Edge of the tiles that large pictures are drawn in, if asked for, pixels.
+    pub tile: Option<u32>,
     /// Frames to accumulate, at least 1.
     pub samples: u32,
     /// What hides the sky.
@@ -178,6 +165,8 @@ pub struct Settings {
     pub smooth: Option<f64>,
     /// Edge of the shadow map, texels.
     pub shadow_size: u32,
+    /// How wide its shadows' edges are.
+    pub penumbra: Penumbra,
     /// Directions of the sky in a sample, 1..=16.
     pub dome_directions: u32,
     /// Edge of the map of each, texels.
@@ -255,6 +244,7 @@ impl Settings {
         let (sky, turbidity) = (o.sky.unwrap_or_default(), o.turbidity.unwrap_or(3.0));
         Ok(Self {
             sun: sun(&o)?,
+            tile: o.tile,
             size: o.size.unwrap_or(Size {
                 width: 1280,
                 height: 720,
@@ -293,6 +283,7 @@ impl Settings {
             limb_darkening: o.limb_darkening,
             layers: o.layers,
             smooth: o.smooth,
+            penumbra: o.penumbra.unwrap_or_default(),
             shadow_size: o.shadow_size.unwrap_or(2048),
             dome_directions: o.dome_directions.unwrap_or(dome.directions),
             dome_size: o.dome_size.unwrap_or(dome.map_edge),

@@ -79,6 +79,31 @@ pub enum Fresnel {
     Schlick,
 }
 
+/// How wide the edges of the sun's shadow are in a single frame.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Penumbra {
+    /// A texel of the map; the mean of several samples has the true ones.
+    #[default]
+    Map,
+    /// As the sun's disc makes them.
+    Sun,
+}
+
+/// What a scene was allowed when it was loaded; none where the program's own limit held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Limits {
+    /// Whether its files may lie outside of its folder tree.
+    pub allow_outside: bool,
+    /// Most triangles, instances counted.
+    pub max_triangles: Option<u32>,
+    /// Longest edge of a texture, texels.
+    pub max_texture_edge: Option<u32>,
+    /// Most memory of all textures, MiB.
+    pub max_texture_mib: Option<u32>,
+    /// Largest file, MiB.
+    pub max_file_mib: Option<u32>,
+}
+
 /// How finely ambient occlusion is computed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum AoResolution {
@@ -219,14 +244,12 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
     let form = || "write WIDTHxHEIGHT in pixels, for instance 1280x720".to_owned();
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(form)?;
     let edge = |text: &str| match text.trim().parse::<u32>() {
-        Ok(edge @ 1..=16_384) => Ok(edge),
-        Ok(_) => Err("width and height must be 1 to 16384 pixels".to_owned()),
+        Ok(edge @ 1..=32_768) => Ok(edge),
+        Ok(_) => Err("width and height must be 1 to 32768 pixels".to_owned()),
         Err(_) => Err(form()),
     };
-    Ok(Size {
-        width: edge(width)?,
-        height: edge(height)?,
-    })
+    let (width, height) = (edge(width)?, edge(height)?);
+    Ok(Size { width, height })
 }
 
 /// RFC 3339 with its offset; seconds may be missing.
@@ -325,7 +348,7 @@ mod tests {
         for text in [
             "0x0",
             "0x720",
-            "16385x1",
+            "32769x1",
             "12",
             "axb",
             "-1x5",

@@ -10,7 +10,7 @@ use skylight::daylight::tone_curve::{REINHARD_WHITE, ToneCurve};
 use skylight::frame::{Frame, FrameSettings, Sampling};
 use skylight::gpu::{Context, ContextOptions, Image, Recorder, Timing, read_back};
 use skylight::passes::irradiance::IrradianceSettings;
-use skylight::passes::lighting::{LightingSettings, Precision, Show};
+use skylight::passes::lighting::{LightingSettings, Precision, Shadows, Show};
 use skylight::passes::ssao::SsaoSettings;
 use skylight::passes::tone_map::{Scale, ToneSettings};
 use skylight::scene::{Bounds, Camera, Material, Part, Scene};
@@ -219,6 +219,7 @@ pub fn settings(width: u32, height: u32) -> FrameSettings {
             fresnel: false,
             has_albedo: true,
             occlusion_downscale: 1,
+            shadows: Shadows::default(),
         },
         tone: ToneSettings {
             show: Show::Beauty,

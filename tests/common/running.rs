@@ -93,14 +93,19 @@ impl Running {
     }
 
     /// Closes the window as a user does, and gives what the program said.
-    pub fn close(mut self) -> Output {
+    pub fn close(self) -> Output {
         self.display.close(self.window);
+        self.ended()
+    }
+
+    /// Waits until the program ends, and gives what it said.
+    pub fn ended(mut self) -> Output {
         let mut child = self.child.take().expect("it runs");
         let started = Instant::now();
         while child.try_wait().expect("a state").is_none() {
             if started.elapsed() > PATIENCE {
                 child.kill().expect("it runs");
-                panic!("the window does not close");
+                panic!("the program does not end");
             }
             sleep(Duration::from_millis(20));
         }

@@ -112,7 +112,7 @@ impl App {
                     .set_title(&format!("{} \u{2013} skylight", document.title()));
                 self.document = Some(document);
             }
-            Err(error) => self.interface.complain(&error.to_string()),
+            Err(error) => tell(&mut self.interface, &error),
         }
         stage.window.request_redraw();
     }
@@ -183,7 +183,7 @@ impl App {
             if document.is_behind()
                 && let Err(error) = stage.work(|rec| document.follow(rec))
             {
-                interface.complain(&error.to_string());
+                tell(interface, &error);
             }
         }
         let drawn = stage.draw(&layout.frame, document)?;
@@ -247,7 +247,7 @@ impl App {
         match action {
             Action::Screenshot => match capture::save(stage, document) {
                 Ok(line) => self.interface.say(&line),
-                Err(error) => self.interface.complain(&error.to_string()),
+                Err(error) => tell(&mut self.interface, &error),
             },
             Action::FullScreen => {
                 let full = stage.window.fullscreen().is_none();
@@ -261,7 +261,7 @@ impl App {
             }
             Action::ReloadShaders => match reload(stage, document) {
                 Ok(line) => self.interface.say(&line),
-                Err(error) => self.interface.complain(&error.to_string()),
+                Err(error) => tell(&mut self.interface, &error),
             },
             other => {
                 for wish in self.interface.act(other, document) {
@@ -285,6 +285,13 @@ fn reload(stage: &mut Stage, document: &mut Document) -> Result<String> {
 #[cfg(not(feature = "hot-reload"))]
 fn reload(_: &mut Stage, _: &mut Document) -> Result<String> {
     Ok("this build does not reload shaders; build with --features hot-reload".to_owned())
+}
+
+/// Shows an error; but for a lost device, with which the next frame ends the program.
+fn tell(interface: &mut Interface, error: &Error) {
+    if !error.is_device_lost() {
+        interface.complain(&error.to_string());
+    }
 }
 
 fn window_size(stage: &Stage) -> Size {

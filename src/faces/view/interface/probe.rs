@@ -107,6 +107,7 @@ fn point(document: &Document, reading: Reading) -> Option<DVec3> {
         size,
         jitter: Vec2::ZERO,
         sharpen: 0.0,
+        window: None,
     };
     let [x, y] = reading.pixel;
     let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);

@@ -1,0 +1,174 @@
+//! How a picture is cut into tiles. Numbers only.
+
+use glam::{UVec2, Vec2};
+
+use crate::passes::view::Window;
+
+/// Pixels that a picture may have to be drawn at once: 8K and a little. Its images take about 50 bytes each.
+const MOST_AT_ONCE: u64 = 36_000_000;
+/// Pixels of the picture that samples without ambient occlusion take their exposure from.
+const ENOUGH_FOR_EXPOSURE: u64 = 2_000_000;
+/// Edge of tiles where none is asked for, pixels.
+const EDGE: u32 = 2048;
+/// Pixels around a tile that are drawn and thrown away: passes look at their neighbours.
+const MARGIN: u32 = 4;
+/// Tiles start at multiples of this: blocks of a file are never cut.
+const STEP: u32 = 16;
+
+/// Pixels along one axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Span {
+    /// First pixel of the picture that comes from this tile.
+    pub first: u32,
+    /// How many.
+    pub count: u32,
+    /// First pixel that is drawn.
+    pub origin: u32,
+}
+
+/// A picture in tiles.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Plan {
+    /// The whole picture, pixels.
+    pub full: UVec2,
+    /// What is drawn for each tile, pixels.
+    pub tile: UVec2,
+    /// Tiles of a row.
+    pub columns: Vec<Span>,
+    /// Rows of tiles.
+    pub bands: Vec<Span>,
+    limit: u32,
+}
+
+impl Plan {
+    /// None where the picture can be drawn at once. `edge` is what the user asks for; `limit` is the largest edge of an image.
+    pub fn new(full: UVec2, edge: Option<u32>, limit: u32) -> Option<Self> {
+        let pixels = u64::from(full.x) * u64::from(full.y);
+        let longest = full.max_element();
+        let needs = longest > limit || (edge.is_none() && pixels > MOST_AT_ONCE);
+        let asks = edge.is_some_and(|edge| longest > edge);
+        if !needs && !asks {
+            return None;
+        }
+        let edge = edge.unwrap_or(EDGE).min(limit.saturating_sub(2 * MARGIN));
+        let edge = (edge / STEP * STEP).max(STEP);
+        Some(Self {
+            full,
+            tile: full.min(UVec2::splat(edge + 2 * MARGIN)),
+            columns: spans(full.x, edge),
+            bands: spans(full.y, edge),
+            limit,
+        })
+    }
+
+    /// The whole picture on an image that is as fine as it can be, by whole numbers: that image's size, the factor, and what
+    /// it sees of the picture. `occludes` when it is for ambient occlusion, not for the exposure only.
+    pub fn overview(&self, occludes: bool) -> (UVec2, u32, Window) {
+        let most = if occludes {
+            MOST_AT_ONCE
+        } else {
+            ENOUGH_FOR_EXPOSURE
+        };
+        let fits = |size: UVec2| {
+            size.max_element() <= self.limit && u64::from(size.x) * u64::from(size.y) <= most
+        };
+        let size = |k: u32| UVec2::new(self.full.x.div_ceil(k), self.full.y.div_ceil(k));
+        let k = (1..).find(|k| fits(size(*k))).unwrap_or(1);
+        let window = Window {
+            origin: UVec2::ZERO,
+            picture: self.full.as_vec2() / k as f32,
+        };
+        (size(k), k, window)
+    }
+
+    /// The window of a tile.
+    pub fn window(&self, column: &Span, band: &Span) -> Window {
+        Window {
+            origin: UVec2::new(column.origin, band.origin),
+            picture: Vec2::new(self.full.x as f32, self.full.y as f32),
+        }
+    }
+}
+
+/// Cuts `full` pixels into pieces of `edge`; all are drawn with the same number of pixels, the margin shifted inward at the
+/// picture's ends.
+fn spans(full: u32, edge: u32) -> Vec<Span> {
+    let drawn = full.min(edge + 2 * MARGIN);
+    (0..full)
+        .step_by(edge as usize)
+        .map(|first| Span {
+            first,
+            count: edge.min(full - first),
+            origin: first.saturating_sub(MARGIN).min(full - drawn),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_every_pixel_once_and_see_around_it() {
+        for (full, edge) in [
+            (1, 64),
+            (64, 64),
+            (65, 64),
+            (71, 64),
+            (1000, 64),
+            (32_768, 2048),
+        ] {
+            let spans = spans(full, edge);
+            let drawn = full.min(edge + 2 * MARGIN);
+            let mut next = 0;
+            for span in &spans {
+                assert_eq!(span.first, next);
+                next += span.count;
+                assert!(span.origin + drawn <= full);
+                let (end, drawn_end) = (span.first + span.count, span.origin + drawn);
+                assert!(
+                    span.origin + MARGIN <= span.first || span.origin == 0,
+                    "{span:?}"
+                );
+                assert!(
+                    end + MARGIN <= drawn_end || drawn_end == full,
+                    "{span:?} of {full}"
+                );
+            }
+            assert_eq!(next, full);
+        }
+    }
+
+    #[test]
+    fn only_what_is_too_large_is_cut() {
+        let plan = |w, h, edge| Plan::new(UVec2::new(w, h), edge, 16_384);
+        assert_eq!(plan(1280, 720, None), None);
+        assert_eq!(plan(7680, 4320, None), None);
+        assert_eq!(plan(1280, 720, Some(2048)), None);
+        assert!(
+            plan(20_000, 100, None).is_some(),
+            "wider than the device can do"
+        );
+        assert!(plan(20_000, 100, Some(16_384)).is_some());
+        let large = plan(32_768, 32_768, None).expect("tiles");
+        assert_eq!((large.columns.len(), large.bands.len()), (16, 16));
+        let small = plan(300, 200, Some(100)).expect("tiles");
+        assert_eq!(small.tile, UVec2::new(104, 104));
+        assert!(small.bands.iter().all(|band| band.first % 16 == 0));
+    }
+
+    #[test]
+    fn the_overview_is_the_picture_itself_where_that_fits() {
+        let plan = |w, h| Plan::new(UVec2::new(w, h), Some(64), 16_384).expect("tiles");
+        let (size, k, window) = plan(640, 360).overview(true);
+        assert_eq!((size, k), (UVec2::new(640, 360), 1));
+        assert_eq!(window.picture, Vec2::new(640.0, 360.0));
+        let (size, k, window) = plan(32_768, 32_767).overview(true);
+        assert_eq!(k, 6);
+        assert!(size.as_vec2().cmpge(window.picture).all());
+        let (size, _, _) = plan(32_768, 100).overview(true);
+        assert!(size.x <= 16_384);
+        let (size, _, _) = plan(8192, 8192).overview(false);
+        assert!(size.x * size.y <= 2_000_000);
+    }
+}

@@ -1,0 +1,247 @@
+//! The sun's maps: one, or for large scenes several around the viewer, each some times as wide as the one before.
+//!
+//! Each map covers what is seen within a cube around the eye and follows the view in the steps of [`shadow_fit::fit`], so that
+//! shadows do not swim. A point takes the finest map whose cube it is in, and blends into the next toward the cube's side.
+
+use glam::Vec3;
+
+use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
+use crate::gpu_struct;
+use crate::scene::Bounds;
+
+use super::shadow_fit::{self, ShadowView};
+use super::view::View;
+
+/// Most maps of a scene.
+pub const MOST: usize = 4;
+/// Texels of a single map that are larger than this call for cascades, metres.
+const COARSE: f32 = 0.08;
+/// Extent of a scene above which there are four cascades instead of three, metres.
+const VAST: f32 = 1000.0;
+/// From the eye to the side of the nearest cascade's cube, metres.
+const NEAREST: f32 = 20.0;
+
+gpu_struct! {
+    /// The maps, for `include/sun_shadow.glsl`.
+    pub struct CascadesBlock {
+        from_world: [[[f32; 4]; 4]; 4],
+        sizes: [[f32; 4]; 4],
+        tan_radius: f32,
+    }
+}
+
+/// How many maps a scene within `bounds` has, of `resolution` texels a side.
+pub fn count(bounds: &Bounds, resolution: u32, most_texels: u32) -> u32 {
+    let extent = bounds.extent().max_element();
+    let wanted = match extent {
+        _ if extent.is_nan() || extent <= COARSE * resolution as f32 => 1,
+        _ if extent <= VAST => 3,
+        _ => MOST as u32,
+    };
+    // They lie side by side in one image.
+    if wanted * resolution <= most_texels {
+        wanted
+    } else {
+        1
+    }
+}
+
+/// Fitted maps, the finest first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SunViews {
+    views: [ShadowView; MOST],
+    /// From the eye to the sides of the cube that each covers, metres.
+    reach: [f32; MOST],
+    count: usize,
+}
+
+impl SunViews {
+    /// One map.
+    pub fn one(view: ShadowView) -> Self {
+        Self {
+            views: [view; MOST],
+            reach: [f32::INFINITY; MOST],
+            count: 1,
+        }
+    }
+
+    /// Fits `count` maps of `resolution` texels a side; see [`shadow_fit::fit`].
+    pub fn fit(
+        sun_direction: Vec3,
+        bounds: &Bounds,
+        casters: &Bounds,
+        view: &View,
+        resolution: u32,
+        count: u32,
+    ) -> Self {
+        let whole = shadow_fit::fit(sun_direction, bounds, casters, view, resolution);
+        let mut fitted = Self::one(whole);
+        fitted.count = (count as usize).clamp(1, MOST);
+        let reaches = reaches(bounds, view.camera.eye, fitted.count);
+        for (k, reach) in reaches.into_iter().enumerate().take(fitted.count - 1) {
+            let around = Bounds {
+                min: bounds.min.max(view.camera.eye - reach),
+                max: bounds.max.min(view.camera.eye + reach),
+            };
+            if !around.is_empty() {
+                fitted.views[k] =
+                    shadow_fit::fit(sun_direction, &around, casters, view, resolution);
+                fitted.reach[k] = reach;
+            } else {
+                // Nothing is that near.
+                fitted.reach[k] = 0.0;
+            }
+        }
+        fitted
+    }
+
+    /// The maps, the finest first.
+    pub fn iter(&self) -> impl Iterator<Item = &ShadowView> {
+        self.views.iter().take(self.count)
+    }
+
+    /// The map of a scene that has one; of others the finest.
+    pub fn first(&self) -> &ShadowView {
+        &self.views[0]
+    }
+
+    /// What the shader needs to know.
+    pub fn block(&self) -> CascadesBlock {
+        let size = |view: &ShadowView, reach: f32| {
+            let metres_of_depth = view.texel / view.texel_depth;
+            [reach, view.texel, metres_of_depth, 0.0]
+        };
+        CascadesBlock {
+            from_world: self.views.map(|v| v.shadow_from_world.to_cols_array_2d()),
+            sizes: std::array::from_fn(|k| size(&self.views[k], self.reach[k])),
+            tan_radius: SUN_ANGULAR_RADIUS.tan() as f32,
+        }
+    }
+}
+
+/// From the eye to the sides of the cubes, metres, in equal ratios up to what holds the scene.
+fn reaches(bounds: &Bounds, eye: Vec3, count: usize) -> [f32; MOST] {
+    let beside = (bounds.min - eye).max(eye - bounds.max).max(Vec3::ZERO);
+    let nearest = beside.max_element() + NEAREST;
+    let farthest = (bounds.max - eye).abs().max((eye - bounds.min).abs());
+    // In powers of two: a walking camera seldom changes them.
+    let farthest = farthest.max_element().max(nearest).log2().ceil().exp2();
+    let steps = (count - 1).max(1) as f32;
+    std::array::from_fn(|k| nearest * (farthest / nearest).powf(k as f32 / steps))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{UVec2, Vec2};
+
+    use super::*;
+    use crate::gpu::{GpuStruct, check_layout, shaders};
+    use crate::scene::Camera;
+
+    fn square(half: f32) -> Bounds {
+        Bounds {
+            min: Vec3::new(-half, 0.0, -half),
+            max: Vec3::new(half, 10.0, half),
+        }
+    }
+
+    fn view(eye: Vec3) -> View {
+        View {
+            camera: Camera {
+                eye,
+                target: eye + Vec3::new(1.0, -0.1, -2.0),
+                fov_deg: 45.0,
+                near: 0.05,
+            },
+            size: UVec2::new(1280, 720),
+            jitter: Vec2::ZERO,
+            sharpen: 0.0,
+            window: None,
+        }
+    }
+
+    #[test]
+    fn large_scenes_have_more_maps() {
+        let of = |half, most| count(&square(half), 2048, most);
+        assert_eq!([of(20.0, 16_384), of(80.0, 16_384)], [1, 1]);
+        assert_eq!([of(200.0, 16_384), of(2000.0, 16_384)], [3, 4]);
+        assert_eq!(of(2000.0, 4096), 1, "no image is wide enough");
+    }
+
+    #[test]
+    fn near_maps_are_finer_and_the_last_is_the_whole() {
+        let (sun, bounds) = (Vec3::new(0.5, 0.7, 0.2).normalize(), square(1000.0));
+        let view = view(Vec3::new(10.0, 1.7, 0.0));
+        let views = SunViews::fit(sun, &bounds, &bounds, &view, 2048, 4);
+        let texels: Vec<f32> = views.iter().map(|v| v.texel).collect();
+        assert!(texels.is_sorted() && texels[0] < 0.05, "{texels:?}");
+        assert!(texels.windows(2).all(|t| t[1] / t[0] < 8.0), "{texels:?}");
+        let whole = shadow_fit::fit(sun, &bounds, &bounds, &view, 2048);
+        assert_eq!(views.iter().last(), Some(&whole));
+        assert!(views.reach.is_sorted());
+    }
+
+    #[test]
+    fn every_point_in_a_cube_that_is_seen_lies_in_its_map() {
+        let (sun, bounds) = (Vec3::new(0.5, 0.4, 0.2).normalize(), square(1000.0));
+        let view = view(Vec3::new(10.0, 1.7, 0.0));
+        let views = SunViews::fit(sun, &bounds, &bounds, &view, 2048, 4);
+        for (k, map) in views.iter().enumerate() {
+            let reach = views.reach[k].min(900.0);
+            for pixel in [[2.0, 700.0], [640.0, 500.0], [1270.0, 380.0]] {
+                for share in [0.1, 0.5, 0.99] {
+                    let ray = view.point(pixel.into(), 1.0) - view.camera.eye;
+                    let p = view.camera.eye + ray / ray.abs().max_element() * (reach * share);
+                    let at = map.shadow_from_world.project_point3(p);
+                    let seen = p.y >= bounds.min.y && p.y <= bounds.max.y;
+                    let inside = at.truncate().abs().max_element() <= 1.0;
+                    assert!(inside || !seen, "cascade {k}: {p} at {at}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn maps_stay_while_the_camera_takes_a_step() {
+        let (sun, bounds) = (Vec3::new(0.5, 0.7, 0.2).normalize(), square(1000.0));
+        let fit = |x: f32| {
+            let view = view(Vec3::new(x, 1.7, 0.0));
+            SunViews::fit(sun, &bounds, &bounds, &view, 2048, 4)
+        };
+        let mut changes = 0;
+        for step in 0..100 {
+            let [before, after] = [0.0, 0.02].map(|d| fit(0.02 * step as f32 + d));
+            changes += usize::from(before.views[0] != after.views[0]);
+            // What moves, moves by whole texels: the edges of shadows stay where they are.
+            let texel = after.views[0].texel;
+            if before.views[0].texel == texel {
+                let origin = |v: &SunViews| {
+                    v.views[0]
+                        .shadow_from_world
+                        .project_point3(Vec3::ZERO)
+                        .truncate()
+                        * 1024.0
+                };
+                let moved = origin(&before) - origin(&after);
+                assert!(
+                    (moved - moved.round()).abs().max_element() < 0.05,
+                    "{moved}"
+                );
+            }
+        }
+        assert!(
+            changes <= 6,
+            "the nearest map changed {changes} times in two metres"
+        );
+    }
+
+    #[test]
+    fn host_and_shader_agree() {
+        let stage = &shaders::LIGHTING_FRAG;
+        let binding = stage.bindings.iter().find(|b| b.name == "cascades");
+        assert_eq!(
+            check_layout(CascadesBlock::FIELDS, binding.expect("cascades").fields),
+            Ok(())
+        );
+    }
+}

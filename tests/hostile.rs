@@ -1,0 +1,215 @@
+//! Models that are made to cost time and memory: each is refused or read soon, and within a multiple of its size.
+
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use skylight::scene::{LoadOptions, Loaded, SceneError, load};
+
+const CORNERS: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+fn options() -> LoadOptions {
+    LoadOptions {
+        max_file_bytes: 16 << 20,
+        max_texture_bytes: 16 << 20,
+        max_triangles: 100_000,
+        ..LoadOptions::default()
+    }
+}
+
+/// Loads within some seconds, or fails the test.
+fn soon(path: &Path, seconds: u64) -> Result<Loaded, SceneError> {
+    let started = Instant::now();
+    let result = load(path, &options());
+    let took = started.elapsed();
+    println!("{}: {took:.1?}", path.display());
+    assert!(took < Duration::from_secs(seconds), "{took:?}");
+    result
+}
+
+fn line_of(result: Result<Loaded, SceneError>) -> String {
+    let line = result.expect_err("too much").to_string();
+    assert_eq!(line.lines().count(), 1, "{line}");
+    line
+}
+
+#[test]
+fn a_library_of_many_spellings_is_read_once() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    fs::create_dir(folder.path().join("x")).expect("a folder");
+    // A megabyte that may be read sixteen times.
+    let library = "newmtl a\nKd 1 0 0\n".repeat(60_000);
+    fs::write(folder.path().join("m.mtl"), library).expect("written");
+    let spellings: String = (0..500)
+        .map(|i| {
+            format!(
+                "mtllib {}{}m.mtl\n",
+                "./".repeat(i % 50),
+                "x/../".repeat(i / 50)
+            )
+        })
+        .collect();
+    let obj = folder.path().join("a.obj");
+    fs::write(&obj, format!("{spellings}{CORNERS}usemtl a\nf 1 2 3\n")).expect("written");
+    let scene = soon(&obj, 20).expect("a sound model").scene;
+    assert_eq!(scene.materials[0].diffuse, [1.0, 0.0, 0.0]);
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
+#[test]
+fn a_scene_that_names_a_model_for_ever_is_refused() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let points = "v 0 0 0\n".repeat(100_000);
+    fs::write(
+        folder.path().join("a.obj"),
+        format!("{CORNERS}{points}f 1 2 3\n"),
+    )
+    .expect("written");
+    let toml = folder.path().join("a.toml");
+    fs::write(&toml, "[[mesh]]\nfile = \"a.obj\"\n".repeat(20_000)).expect("written");
+    let line = line_of(soon(&toml, 20));
+    assert!(
+        line.contains("a.obj") && line.contains("--max-file-mib"),
+        "{line}"
+    );
+}
+
+#[test]
+fn polygons_count_before_they_are_split() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let obj = folder.path().join("a.obj");
+    fs::write(&obj, format!("{CORNERS}f{}\n", " 1 2 3".repeat(2_000_000))).expect("written");
+    let line = line_of(soon(&obj, 20));
+    assert!(
+        line.contains("5999998 triangles") && line.contains("--max-triangles"),
+        "{line}"
+    );
+}
+
+#[test]
+fn pictures_that_fail_are_not_decoded_for_ever() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let mut png = std::io::Cursor::new(Vec::new());
+    image::DynamicImage::new_rgb8(1800, 1800)
+        .write_to(&mut png, image::ImageFormat::Png)
+        .expect("an encoder");
+    let png = png.into_inner();
+    // The end is missing: a decoder finds that out when it has done nearly all of the work.
+    let cut = &png[..png.len() - 40];
+    let (mut mtl, mut faces) = (String::new(), String::new());
+    for i in 0..400 {
+        fs::write(folder.path().join(format!("{i}.png")), cut).expect("written");
+        mtl += &format!("newmtl m{i}\nmap_Kd {i}.png\nmap_Pr whole.png\n");
+        faces += &format!("usemtl m{i}\nf 1 2 3\n");
+    }
+    fs::write(folder.path().join("whole.png"), &png).expect("written");
+    fs::write(folder.path().join("m.mtl"), mtl).expect("written");
+    let obj = folder.path().join("a.obj");
+    fs::write(&obj, format!("mtllib m.mtl\n{CORNERS}{faces}")).expect("written");
+    let scene = soon(&obj, 20).expect("drawn in plain colours").scene;
+    let said = scene.warnings.join("\n");
+    assert!(said.contains("cannot be decoded"), "{said}");
+    assert!(said.contains("too many to decode"), "{said}");
+}
+
+/// A GLB of this JSON and this binary chunk.
+fn glb(json: &str, binary: &[u8]) -> Vec<u8> {
+    let mut json = json.as_bytes().to_vec();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let total = (28 + json.len() + binary.len()) as u32;
+    let mut file = [*b"glTF", 2u32.to_le_bytes(), total.to_le_bytes()].concat();
+    for (kind, bytes) in [(b"JSON", &json[..]), (b"BIN\0", binary)] {
+        file.extend((bytes.len() as u32).to_le_bytes());
+        file.extend(kind);
+        file.extend(bytes);
+    }
+    file
+}
+
+#[test]
+fn buffers_and_primitives_that_are_the_same_are_not_copied() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let path = folder.path().join("a.glb");
+    // A thousand buffers of eight megabytes, all of them the one chunk: 8 GB if each had its own.
+    let binary = vec![0u8; 8 << 20];
+    let buffers = vec![format!(r#"{{"byteLength":{}}}"#, binary.len()); 1000].join(",");
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"buffers":[{buffers}],"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
+        "bufferViews":[{{"buffer":0,"byteLength":{0}}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"type":"VEC3","count":60000,"min":[0,0,0],"max":[0,0,0]}}],
+        "meshes":[{{"primitives":[{1}]}}]}}"#,
+        binary.len(),
+        vec![r#"{"attributes":{"POSITION":0}}"#; 20_000].join(","),
+    );
+    fs::write(&path, glb(&json, &binary)).expect("written");
+    // All of its 400 million triangles are degenerate: none is ever drawn, and yet they count.
+    let line = line_of(soon(&path, 20));
+    assert!(line.contains("--max-triangles"), "{line}");
+}
+
+/// Runs the program on a model and gives the most memory that it has had, bytes.
+#[cfg(target_os = "linux")]
+fn peak(model: Option<&Path>, folder: &Path) -> u64 {
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_skylight"))
+        .arg("render")
+        .args(model)
+        .args([
+            "--size",
+            "16x16",
+            "--shadow-size",
+            "64",
+            "--ao-radius",
+            "0",
+            "--no-cache",
+            "-o",
+        ])
+        .arg(folder.join("o.png"))
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let mut peak = 0;
+    while child.try_wait().expect("a state").is_none() {
+        let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+        let line = status.lines().find(|line| line.starts_with("VmHWM:"));
+        let kib = line.and_then(|line| line.split_whitespace().nth(1)?.parse::<u64>().ok());
+        peak = kib.map_or(peak, |kib| kib << 10);
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    assert!(child.wait().expect("an end").success());
+    peak
+}
+
+/// Bytes of memory to a byte of a model, at the very most (ordinary ones need less than 6): a material for each face costs most.
+#[cfg(target_os = "linux")]
+const MULTIPLE: f64 = 60.0;
+
+#[cfg(target_os = "linux")]
+#[test]
+fn memory_is_bounded_by_a_multiple_of_the_file() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let base = peak(None, folder.path());
+    // Small faces in a corner, so that drawing them costs nothing.
+    let corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 0\nv 1e-4 0 0\nv 0 1e-4 0\nf 1 2 3\n";
+    for (name, body) in [
+        ("triangles", "f 4 5 6\n".repeat(1_000_000)),
+        ("quads", "f 4 5 6 5\n".repeat(800_000)),
+        ("a polygon", format!("f{}\n", " 4 5 6".repeat(1_000_000))),
+        ("points", "v 1 1 1\n".repeat(1_000_000)),
+        (
+            "materials",
+            (0..400_000)
+                .map(|i| format!("usemtl {i}\nf 4 5 6\n"))
+                .collect(),
+        ),
+    ] {
+        let obj = folder.path().join("a.obj");
+        fs::write(&obj, format!("{corners}{body}")).expect("written");
+        let size = obj.metadata().expect("the model").len();
+        let multiple = peak(Some(&obj), folder.path()).saturating_sub(base) as f64 / size as f64;
+        println!(
+            "{name}: {:.1} MB, {multiple:.1} bytes of memory to a byte of the file",
+            size as f64 / 1e6
+        );
+        assert!(multiple < MULTIPLE, "{name}: {multiple}");
+    }
+}

@@ -1,0 +1,173 @@
+//! Pictures drawn in tiles: the same as drawn at once, and without seams where they cannot be.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use skylight::compare::{Picture, flip, read};
+
+struct Place(tempfile::TempDir);
+
+impl Place {
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("a scratch folder"))
+    }
+
+    fn render(&self, output: &str, words: &[&str]) -> (PathBuf, String) {
+        let path = self.0.path().join(output);
+        let run = Command::new(env!("CARGO_BIN_EXE_skylight"))
+            .args(["render", "--validate", "--irradiance-samples", "64", "-o"])
+            .arg(&path)
+            .args(words)
+            .output()
+            .expect("the program starts");
+        let said = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert!(run.status.success() && said.is_empty(), "{words:?}: {said}");
+        (path, String::from_utf8_lossy(&run.stdout).into_owned())
+    }
+}
+
+/// Largest difference of a pixel's channel, and the share of pixels that differ by more than `step`.
+fn differences(a: &Picture, b: &Picture, step: f32) -> (f32, f64) {
+    assert_eq!(a.size, b.size);
+    let of =
+        |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| (a[c] - b[c]).abs()).fold(0.0f32, f32::max);
+    let all: Vec<f32> = a.rgb.iter().zip(&b.rgb).map(of).collect();
+    let more = all.iter().filter(|d| **d > step).count();
+    let largest = all.iter().copied().fold(0.0, f32::max);
+    (largest, more as f64 / all.len() as f64)
+}
+
+#[test]
+fn tiles_are_the_picture_that_is_drawn_at_once() {
+    let place = Place::new();
+    let cases: [&[&str]; 4] = [
+        &["--size", "320x180"],
+        &[
+            "--size",
+            "317x203",
+            "--samples",
+            "3",
+            "--visibility",
+            "ssao",
+        ],
+        &[
+            "--size",
+            "320x180",
+            "--samples",
+            "2",
+            "--visibility",
+            "dome",
+            "--ev100",
+            "14",
+        ],
+        &[
+            "--size",
+            "333x190",
+            "--show",
+            "irradiance",
+            "--ao-resolution",
+            "full",
+        ],
+    ];
+    for words in cases {
+        let (whole, _) = place.render("whole.png", words);
+        let (tiles, said) = place.render("tiles.png", &[words, &["--tile", "64"]].concat());
+        assert!(said.contains("tiles"), "{said}");
+        let (whole, tiles) = (read(&whole).expect("whole"), read(&tiles).expect("tiles"));
+        let (largest, more) = differences(&whole, &tiles, 1.0 / 64.0);
+        let flip = flip::mean(&flip::ldr(&whole, &tiles));
+        println!(
+            "{words:?}: FLIP {flip:.6}, largest difference {largest:.4}, {:.4} % above 1/64",
+            more * 100.0
+        );
+        // Vertices of another projection are rounded to other sixteenths of a pixel's sixteenth: a few edges move by that.
+        assert!(flip < 5e-4 && more < 1e-3, "{words:?}: {flip} {more}");
+    }
+}
+
+#[test]
+fn layers_of_tiles_are_those_of_the_whole() {
+    let place = Place::new();
+    let words = ["--size", "150x100", "--layers", "--sun", "215,42"];
+    let (whole, _) = place.render("whole.exr", &words);
+    let (tiles, said) = place.render("tiles.exr", &[&words[..], &["--tile", "64"]].concat());
+    assert!(said.contains("6 tiles, 12 layer(s)"), "{said}");
+    let channels = |path: &Path| {
+        let image = exr::prelude::read_all_flat_layers_from_file(path).expect("an EXR");
+        let channels = image.layer_data[0].channel_data.list.clone();
+        channels.into_iter().map(|c| {
+            let values: Vec<f32> = c.sample_data.values_as_f32().collect();
+            (c.name.to_string(), values)
+        })
+    };
+    for ((name, a), (other, b)) in channels(&whole).zip(channels(&tiles)) {
+        assert_eq!(name, other);
+        let scale = a.iter().fold(1e-3f32, |m, v| m.max(v.abs()));
+        let differ = a
+            .iter()
+            .zip(&b)
+            .filter(|(a, b)| (*a - *b).abs() > 1e-3 * scale);
+        let share = differ.count() as f64 / a.len() as f64;
+        println!("{name}: {:.3} % of the pixels differ", share * 100.0);
+        assert!(share < 0.005, "{name}: {share}");
+    }
+}
+
+/// Mean difference of neighbouring columns, at columns that `is_seam` picks and at all others.
+fn steps(picture: &Picture, is_seam: impl Fn(usize) -> bool) -> (f64, f64) {
+    let [width, height] = picture.size;
+    let luminance = picture.luminance();
+    let (mut at, mut beside) = ((0.0, 0u32), (0.0, 0u32));
+    for row in 0..height {
+        for x in 1..width {
+            let step = (luminance[row * width + x] - luminance[row * width + x - 1]).abs();
+            let sum = if is_seam(x) { &mut at } else { &mut beside };
+            *sum = (sum.0 + f64::from(step), sum.1 + 1);
+        }
+    }
+    (at.0 / f64::from(at.1), beside.0 / f64::from(beside.1))
+}
+
+#[test]
+fn wider_than_the_device_there_are_no_seams() {
+    let place = Place::new();
+    // Only what the sky lights: occlusion shows most there.
+    let words = [
+        "--size",
+        "20000x120",
+        "--show",
+        "sky",
+        "--fov",
+        "3",
+        "--ev100",
+        "11",
+    ];
+    let (file, said) = place.render("wide.png", &words);
+    assert!(said.contains("20000x120 in 10 tiles"), "{said}");
+    let picture = read(&file).expect("a picture");
+    let (seams, others) = steps(&picture, |x| x.is_multiple_of(2048));
+    println!("mean step of luminance at the seams {seams:.6}, elsewhere {others:.6}");
+    assert!(
+        others > 0.0 && seams < 2.0 * others + 1e-3,
+        "{seams} {others}"
+    );
+}
+
+#[test]
+fn what_tiles_cannot_do_is_said() {
+    let place = Place::new();
+    let run = Command::new(env!("CARGO_BIN_EXE_skylight"))
+        .current_dir(place.0.path())
+        .args(["render", "--size", "320x180", "--tile", "64"])
+        .args(["--false-colour", "luminance", "-o", "a.png"])
+        .output()
+        .expect("the program starts");
+    let said = String::from_utf8_lossy(&run.stderr).into_owned();
+    assert_eq!(
+        (run.status.code(), said.lines().count()),
+        (Some(2), 1),
+        "{said}"
+    );
+    assert!(said.contains("--tile"), "{said}");
+    assert_eq!(place.0.path().read_dir().expect("the folder").count(), 0);
+}

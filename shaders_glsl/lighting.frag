@@ -4,6 +4,7 @@
 #include "constants.glsl"
 #include "occlusion.glsl"
 #include "octahedral.glsl"
+#include "phong.glsl"
 #include "view.glsl"
 
 // The lecture's slide "Illumination model for skylight":
@@ -31,6 +32,8 @@ layout(constant_id = 11) const bool FRESNEL = false;
 layout(constant_id = 12) const bool AMBIENT = true;
 // One comparison of the shadow map in the plane of the face, for frames whose mean softens its edges.
 layout(constant_id = 13) const bool PLANE_SHADOW = false;
+// The lobe of mirrors as a reflectance: of sun and sky alike, in balance of energy.
+layout(constant_id = 14) const bool NORMALIZED = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform sampler2D normal;
@@ -51,10 +54,6 @@ layout(set = 0, binding = 9, scalar) uniform Sun {
     mat4 planes;          // inverse transpose of shadow_from_world
 } sun;
 
-struct Material {
-    vec3 specular;   // rho_s
-    float shininess; // p
-};
 layout(set = 0, binding = 10, scalar) readonly buffer Materials {
     Material materials[];
 };
@@ -90,14 +89,6 @@ float visibility(vec3 world, vec3 n, float n_dot_l) {
         }
     }
     return lit * 0.25;
-}
-
-/// Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering": rho_s toward grazing angles. A rough surface, by
-/// the rule that gives it its rho_s and p, mirrors no more than the share g = (1 - roughness)^2.
-vec3 grazing(vec3 rho_s, float shininess, float cosine) {
-    float smoothness = 1.0 - pow(2.0 / (shininess + 2.0), 0.25);
-    vec3 most = max(vec3(smoothness * smoothness), rho_s);
-    return mix(rho_s, most, pow(clamp(1.0 - cosine, 0.0, 1.0), 5.0));
 }
 
 void main() {
@@ -138,8 +129,11 @@ void main() {
         if (FRESNEL && any(greaterThan(rho_s, vec3(0.0)))) rho_s = grazing(rho_s, m.shininess, -dot(toward, n));
         vec3 r = reflect(toward, n);
         float r_dot_l = max(dot(r, sun.direction), 0.0);
-        if (SUN_SPECULAR) sum += rho_s * (pow(r_dot_l, m.shininess) * V) * sun.illuminance;
-        if (SKY_SPECULAR) sum += rho_s * textureLod(sky_radiance, r, 0.0).rgb;
+        float lobe = pow(r_dot_l, m.shininess);
+        if (NORMALIZED) lobe *= phong_scale(m.shininess) * max(n_dot_l, 0.0);
+        if (SUN_SPECULAR) sum += rho_s * (lobe * V) * sun.illuminance;
+        if (SKY_SPECULAR && NORMALIZED) sum += rho_s * sky_in_lobe(sky_radiance, r, n, m.shininess, vec2(0.0));
+        else if (SKY_SPECULAR) sum += rho_s * textureLod(sky_radiance, r, 0.0).rgb;
     }
     radiance = vec4(min(sum, sun.max_radiance), 1.0);
 }

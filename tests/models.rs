@@ -60,6 +60,7 @@ fn settings() -> FrameSettings {
             specular_scale: 1.0,
             limb_darkening: 0.0,
             fresnel: false,
+            mirrors: skylight::passes::reflection::Mirrors::default(),
             occlusion_downscale: SsaoSettings::default().downscale,
         },
         tone: ToneSettings {

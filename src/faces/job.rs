@@ -198,6 +198,7 @@ impl Job {
                 },
                 occlusion_downscale: downscale,
                 fresnel: s.fresnel == Fresnel::Schlick,
+                mirrors: s.mirrors,
             },
             tone: ToneSettings {
                 show,

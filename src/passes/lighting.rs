@@ -19,6 +19,8 @@ use crate::gpu_struct;
 use super::dome::BIAS_TEXELS;
 use super::gbuffer::Surfaces;
 use super::kilo;
+pub use super::precision::Precision;
+use super::reflection::{Mirrors, Phong, Reflections};
 use super::shadow_fit::ShadowView;
 use super::view::View;
 
@@ -148,32 +150,6 @@ impl Show {
     }
 }
 
-/// Precision of the picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Precision {
-    /// Half floats: for the screen. The sun's disc is cut at 65 504 kcd/m².
-    Half,
-    /// 32-bit floats: for files and sums.
-    Float,
-}
-
-impl Precision {
-    pub(super) fn format(self) -> Format {
-        match self {
-            Self::Half => Format::R16G16B16A16_SFLOAT,
-            Self::Float => Format::R32G32B32A32_SFLOAT,
-        }
-    }
-
-    /// Largest radiance that the format holds, kcd/m².
-    pub(super) fn max_radiance(self) -> f32 {
-        match self {
-            Self::Half => 65_504.0,
-            Self::Float => f32::MAX,
-        }
-    }
-}
-
 /// How surfaces are lit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LightingSettings {
@@ -189,6 +165,8 @@ pub struct LightingSettings {
     pub occlusion_downscale: u32,
     /// Whether ρ_s grows toward grazing angles (Schlick's approximation of Fresnel's equations).
     pub fresnel: bool,
+    /// How surfaces mirror.
+    pub mirrors: Mirrors,
 }
 
 /// What light there is: images and numbers of the moment.
@@ -253,6 +231,12 @@ impl Lighting {
             .constants(settings.specular_scale > 0.0)
             .to_vec();
         constants.push(("OCCLUSION_DOWNSCALE", settings.occlusion_downscale));
+        let Mirrors { phong, reflections } = settings.mirrors;
+        if is_converging && reflections == Reflections::Hidden {
+            constants.retain(|constant| constant.0 != "SKY_SPECULAR");
+            constants.push(("SKY_SPECULAR", 0));
+        }
+        constants.push(("NORMALIZED", (phong == Phong::Normalized).into()));
         constants.push(("FRESNEL", settings.fresnel.into()));
         constants.push(("AMBIENT", (!is_converging).into()));
         constants.push(("PLANE_SHADOW", is_converging.into()));

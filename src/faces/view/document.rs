@@ -10,7 +10,7 @@ use crate::gpu::{Image, Recorder};
 use crate::passes::lighting::Precision;
 use crate::passes::probe::Reading;
 use crate::scene::{Camera, Loaded};
-use crate::settings::{Options, Settings, Size, SunInput};
+use crate::settings::{Options, Settings, Size, SunInput, Visibility};
 
 use super::controls::{Controls, FlyKeys};
 use super::interface::{Notes, shift};
@@ -19,6 +19,9 @@ use super::viewpoints::{Viewpoint, Viewpoints};
 
 /// Frames averaged at rest, unless the user says otherwise.
 pub(super) const REST_SAMPLES: u32 = 64;
+
+/// Directions of the sky in each of them, unless the user says otherwise.
+const REST_DIRECTIONS: u32 = 4;
 
 /// A scene that is open.
 pub(super) struct Document {
@@ -57,9 +60,14 @@ impl Document {
             ..options.clone()
         };
         let asked = options.samples.is_some();
+        let options = converging(options, &loaded);
         let mut job = Job::of(path.as_deref(), loaded, options)?;
         if !asked && job.settings.samples == 1 {
             job.settings.samples = REST_SAMPLES;
+        }
+        // What moves is drawn with ambient occlusion; at rest the picture goes over from that.
+        if job.settings.visibility == Visibility::Dome {
+            job.settings.visibility = Visibility::Progressive;
         }
         let frame = Frame::new(recorder, &job.scene, frame_settings(&job))?;
         Ok(Self {
@@ -246,6 +254,25 @@ impl Document {
         name.map_or("bundled scene".to_owned(), |n| {
             n.to_string_lossy().into_owned()
         })
+    }
+}
+
+/// The options with the sky's true visibility at rest, where nothing is said of it; the lecture's preset has its own. Fewer
+/// directions a frame than for a file: the window is to answer soon when something moves again.
+fn converging(options: Options, loaded: &Loaded) -> Options {
+    let is_said = |key: &str| loaded.options.iter().any(|(name, _)| name == key);
+    if options.visibility.is_some()
+        || options.preset.is_some()
+        || is_said("visibility")
+        || is_said("preset")
+    {
+        return options;
+    }
+    let few = (!is_said("dome-directions")).then_some(REST_DIRECTIONS);
+    Options {
+        visibility: Some(Visibility::Dome),
+        dome_directions: options.dome_directions.or(few),
+        ..options
     }
 }
 

@@ -59,12 +59,8 @@ impl Document {
             size: Some(size),
             ..options.clone()
         };
-        let asked = options.samples.is_some();
-        let options = converging(options, &loaded);
+        let options = at_rest(options, &loaded);
         let mut job = Job::of(path.as_deref(), loaded, options)?;
-        if !asked && job.settings.samples == 1 {
-            job.settings.samples = REST_SAMPLES;
-        }
         // What moves is drawn with ambient occlusion; at rest the picture goes over from that.
         if job.settings.visibility == Visibility::Dome {
             job.settings.visibility = Visibility::Progressive;
@@ -257,21 +253,19 @@ impl Document {
     }
 }
 
-/// The options with the sky's true visibility at rest, where nothing is said of it; the lecture's preset has its own. Fewer
-/// directions a frame than for a file: the window is to answer soon when something moves again.
-fn converging(options: Options, loaded: &Loaded) -> Options {
-    let is_said = |key: &str| loaded.options.iter().any(|(name, _)| name == key);
-    if options.visibility.is_some()
-        || options.preset.is_some()
-        || is_said("visibility")
-        || is_said("preset")
-    {
-        return options;
-    }
-    let few = (!is_said("dome-directions")).then_some(REST_DIRECTIONS);
+/// The options of a picture at rest, where nothing is said of them: samples enough for the sky's true visibility, but with the
+/// lecture's preset, which has its own; and fewer directions a frame than for a file, since the window is to answer soon when
+/// something moves again.
+fn at_rest(options: Options, loaded: &Loaded) -> Options {
+    let unsaid = |key: &str| loaded.options.iter().all(|(name, _)| name != key);
+    let is_preset = options.preset.is_some() || !unsaid("preset");
+    let by_screen = (is_preset && unsaid("visibility")).then_some(Visibility::Ssao);
+    let samples = unsaid("samples").then_some(REST_SAMPLES);
+    let directions = unsaid("dome-directions").then_some(REST_DIRECTIONS);
     Options {
-        visibility: Some(Visibility::Dome),
-        dome_directions: options.dome_directions.or(few),
+        samples: options.samples.or(samples),
+        visibility: options.visibility.or(by_screen),
+        dome_directions: options.dome_directions.or(directions),
         ..options
     }
 }

@@ -71,7 +71,8 @@ fn the_normalised_highlight_of_the_sun_is_the_lobe_times_the_cosine() {
     let (rho_s, p) = (0.3, 30.0f32);
     let scene = Model::default().ground(50.0, &mirror(rho_s, p)).build();
     let day = clear_day(180.0, 50.0);
-    let view = camera([0.0, 2.0, 2.0], [0.0, 0.0, 0.0]);
+    // The sun stands in the south, the eye north of the middle.
+    let view = camera([0.0, 2.0, -2.0], [0.0, 0.0, 0.0]);
     let set = showing(Show::SunSpecular, settings(24, 24));
     let lecture = device.picture(&scene, set, &day, &view);
     let normalised = device.picture(

@@ -12,7 +12,7 @@ use crate::frame::Frame;
 use crate::gpu::{Recorder, read_back};
 
 /// Fewest samples on which the noise is judged: before, chance may make the batches alike.
-const FEWEST: u32 = 16;
+const FEWEST: u32 = 32;
 
 /// How many samples there may be, and when fewer are enough.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -178,10 +178,10 @@ mod tests {
 
     #[test]
     fn enough_is_enough() {
-        assert!(is_enough(16, &RULE, Some(0.01)));
-        assert!(!is_enough(15, &RULE, Some(0.001)));
-        assert!(!is_enough(16, &RULE, Some(0.011)));
-        assert!(!is_enough(16, &RULE, None));
+        assert!(is_enough(32, &RULE, Some(0.01)));
+        assert!(!is_enough(31, &RULE, Some(0.001)));
+        assert!(!is_enough(32, &RULE, Some(0.011)));
+        assert!(!is_enough(32, &RULE, None));
         let unruled = Rule {
             noise: None,
             ..RULE

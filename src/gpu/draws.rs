@@ -12,6 +12,28 @@ use super::pipeline::Pipeline;
 use super::sampler::Sampler;
 use super::work::{texel_bytes, texels};
 
+/// Which faces of triangles are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Faces {
+    /// All.
+    #[default]
+    Both,
+    /// Those that wind counter-clockwise in the picture (as Vulkan has it, rows running down).
+    CounterClockwise,
+    /// Those that wind clockwise.
+    Clockwise,
+}
+
+impl Faces {
+    pub(super) fn state(self) -> (vk::CullModeFlags, vk::FrontFace) {
+        match self {
+            Self::Both => (vk::CullModeFlags::NONE, vk::FrontFace::COUNTER_CLOCKWISE),
+            Self::CounterClockwise => (vk::CullModeFlags::BACK, vk::FrontFace::COUNTER_CLOCKWISE),
+            Self::Clockwise => (vk::CullModeFlags::BACK, vk::FrontFace::CLOCKWISE),
+        }
+    }
+}
+
 /// The draws inside a pass.
 pub struct Draws<'p, 'r> {
     pub(super) pass: &'p mut Pass<'r>,
@@ -102,6 +124,19 @@ impl<'r> Draws<'_, 'r> {
             raw.cmd_set_viewport(command, 0, &[viewport]);
             raw.cmd_set_scissor(command, 0, &[scissor]);
         }
+    }
+
+    /// Draws only these faces from here on.
+    ///
+    /// # Panics
+    /// When the pipeline writes no depth: others draw no geometry.
+    pub fn faces(&mut self, faces: Faces) {
+        assert!(self.pass.pipeline.writes_depth, "pass {}", self.pass.name);
+        if faces == self.pass.faces {
+            return;
+        }
+        self.pass.faces = faces;
+        self.pass.set_faces();
     }
 
     /// Draws a range of the indices.

@@ -6,7 +6,7 @@ use ash::vk;
 
 use super::access::{self, Use};
 use super::buffer::Buffer;
-use super::draws::Draws;
+use super::draws::{Draws, Faces};
 use super::image::{Image, is_depth};
 use super::layout::{GpuStruct, check_layout};
 use super::pipeline::{Pipeline, block_size};
@@ -72,8 +72,11 @@ pub struct Pass<'r> {
     colors: ArrayVec<(&'r Image, Load), MAX_COLORS>,
     depth: Option<(&'r Image, Load)>,
     push: ArrayVec<u8, MAX_PUSH>,
+    /// Whether the next draw needs the push constants: set anew, or never given to the command buffer.
+    pushed_anew: bool,
     /// Part of the target, when not all of it is drawn to.
     area: Option<vk::Rect2D>,
+    pub(super) faces: Faces,
     /// Bytes of the buffers and textures that are read.
     pub(super) buffer_bytes: u64,
 }
@@ -95,7 +98,9 @@ impl<'r> Pass<'r> {
             colors: ArrayVec::new(),
             depth: None,
             push: ArrayVec::new(),
+            pushed_anew: true,
             area: None,
+            faces: Faces::Both,
             buffer_bytes: 0,
         }
     }
@@ -288,6 +293,7 @@ impl<'r> Pass<'r> {
         };
         self.check_block("push", T::FIELDS, fields);
         self.push.clear();
+        self.pushed_anew = true;
         let fits = self
             .push
             .try_extend_from_slice(bytemuck::bytes_of(value))
@@ -395,6 +401,20 @@ impl<'r> Pass<'r> {
                 self.pipeline.raw(),
             );
         }
+        if self.pipeline.writes_depth {
+            self.set_faces();
+        }
+    }
+
+    /// Sets the faces that are drawn; every pipeline that writes depth leaves them to the command buffer.
+    pub(super) fn set_faces(&self) {
+        let (cull, front) = self.faces.state();
+        let (raw, command) = (self.recorder.context.raw(), self.recorder.command);
+        // SAFETY: the command buffer is inside the rendering of this pass; both states are dynamic in its pipelines.
+        unsafe {
+            raw.cmd_set_cull_mode(command, cull);
+            raw.cmd_set_front_face(command, front);
+        }
     }
 
     /// Makes what was bound and pushed visible to the next draw.
@@ -409,7 +429,9 @@ impl<'r> Pass<'r> {
             self.flush_descriptors();
         }
         self.changed = false;
-        if let Some((fields, stages)) = self.pipeline.push {
+        if let Some((fields, stages)) = self.pipeline.push
+            && std::mem::take(&mut self.pushed_anew)
+        {
             assert_eq!(
                 self.push.len() as u32,
                 block_size(fields),

@@ -256,8 +256,19 @@ impl Pipeline {
             .color_write_mask(vk::ColorComponentFlags::RGBA);
         let blends = vec![opaque; desc.colors.len()];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
-        let states = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
-        let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&states);
+        let states = [
+            vk::DynamicState::VIEWPORT,
+            vk::DynamicState::SCISSOR,
+            vk::DynamicState::CULL_MODE,
+            vk::DynamicState::FRONT_FACE,
+        ];
+        // What a full-screen triangle winds like is no question.
+        let states = if self.writes_depth {
+            &states
+        } else {
+            &states[..2]
+        };
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(states);
         let mut rendering = vk::PipelineRenderingCreateInfo::default()
             .color_attachment_formats(desc.colors)
             .depth_attachment_format(self.depth.unwrap_or(vk::Format::UNDEFINED));

@@ -7,6 +7,7 @@ use crate::gpu::{
     Context, Depth, Draws, Format, Load, Pipeline, PipelineDesc, Recorder, Result, Sampler, shaders,
 };
 
+use super::cull::Cull;
 use super::gbuffer::{Push, Surfaces};
 use super::geometry::{Bound, Geometry, Kind};
 use super::view::View;
@@ -17,7 +18,6 @@ pub struct Details {
 }
 
 fn pipeline(context: &Arc<Context>, formats: &[Format], kind: Kind) -> Result<Pipeline> {
-    let float3 = Format::R32G32B32_SFLOAT;
     Pipeline::new(
         context,
         &PipelineDesc {
@@ -27,8 +27,8 @@ fn pipeline(context: &Arc<Context>, formats: &[Format], kind: Kind) -> Result<Pi
                 &shaders::GBUFFER_DETAILED_FRAG,
             ],
             vertex: &[
-                float3,
-                float3,
+                Format::R32G32B32_SFLOAT,
+                Format::R32G32B32A32_SFLOAT,
                 Format::R32G32_SFLOAT,
                 Format::R16G16B16A16_UNORM,
                 Format::R16G16B16A16_SNORM,
@@ -68,6 +68,7 @@ impl Details {
         geometry: &Geometry,
         surfaces: &Surfaces,
         view: &View,
+        cull: &Cull,
     ) {
         let Some((first, pipeline)) = self.pipelines.first_key_value() else {
             return;
@@ -81,7 +82,7 @@ impl Details {
             .depth(&surfaces.depth, Load::Keep)
             .draws(|draws| {
                 let mut current = *first;
-                geometry.draw_detailed(draws, |draws, bound| {
+                geometry.draw_detailed(draws, cull, |draws, bound| {
                     if bound.kind != current {
                         current = bound.kind;
                         draws.pipeline(&self.pipelines[&current]);

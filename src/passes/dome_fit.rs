@@ -39,6 +39,11 @@ impl Receivers {
         }
     }
 
+    /// The middle of the points, which is within their hull.
+    fn centre(&self) -> Vec3 {
+        self.points.iter().sum::<Vec3>() / self.points.len() as f32
+    }
+
     /// Distance of the perspective's centre from the near end, over the sine between light and line of sight (eq. 5 there).
     fn near(&self, sine: f32) -> f32 {
         let distance = |p: &Vec3| (*p - self.eye).dot(self.forward);
@@ -105,6 +110,8 @@ pub fn fit(
         shadow_from_world: rows.transpose(),
         texel,
         texel_depth: texel / depth,
+        toward,
+        inside: receivers.centre(),
     }
 }
 

@@ -10,6 +10,7 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
+use super::cull::Cull;
 use super::details::Details;
 use super::geometry::{Bound, Geometry};
 use super::view::View;
@@ -153,6 +154,7 @@ impl Gbuffer {
     ) -> &Surfaces {
         let clip_from_world = view.clip_from_world().to_cols_array_2d();
         let clear = Load::Clear([0.0; 4]);
+        let cull = Cull::camera(view);
         recorder
             .pass("G-buffer", &self.pipelines[0][0])
             .color(&self.surfaces.normal, clear)
@@ -161,7 +163,7 @@ impl Gbuffer {
             .depth(&self.surfaces.depth, clear)
             .draws(|draws| {
                 let (eye, mut variant) = (view.camera.eye, [0, 0]);
-                geometry.draw_plain(draws, |draws, bound| {
+                geometry.draw_plain(draws, &cull, |draws, bound| {
                     let maps = [bound.diffuse_map, bound.specular_map];
                     let wanted = maps.map(|m| usize::from(m.is_some()));
                     if wanted != variant {
@@ -175,7 +177,7 @@ impl Gbuffer {
                 });
             });
         self.details
-            .record(recorder, geometry, &self.surfaces, view);
+            .record(recorder, geometry, &self.surfaces, view, &cull);
         &self.surfaces
     }
 }

@@ -1,20 +1,24 @@
 //! The scene on the device: one arena of vertices and indices, textures, a table of materials.
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use crate::gpu::{
-    Buffer, BufferKind, Draws, Format, Image, ImageDesc, ImageKind, Recorder, Result,
+    Buffer, BufferKind, Draws, Faces, Format, Image, ImageDesc, ImageKind, Recorder, Result,
     upload_buffer, upload_texture,
 };
-use crate::scene::{Bodies, Body, Bounds, Encoding, Material, Scene, Texture};
+use crate::scene::{
+    self, Bodies, Body, Bounds, Cluster, Clusters, Encoding, Material, Scene, Texture,
+};
+
+use super::cull::Cull;
 
 /// What is drawn with one material.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Part {
-    /// First index.
-    pub first: u32,
-    /// Number of indices.
-    pub count: u32,
+    /// Numbers of its clusters.
+    pub clusters: Range<usize>,
     /// Number of the material.
     pub material: u32,
     /// How it is drawn.
@@ -86,7 +90,8 @@ pub struct Geometry {
     normals: Buffer,
     texcoords: Buffer,
     indices: Buffer,
-    index_count: u32,
+    /// In the order of their indices.
+    clusters: Vec<Cluster>,
     /// Colours and tangents, if any part is detailed.
     details: Option<[Buffer; 2]>,
     /// Sorted by kind.
@@ -109,8 +114,8 @@ impl Geometry {
         let vertex = |recorder: &mut Recorder, name, bytes| {
             upload_buffer(recorder, name, BufferKind::Vertex, bytes)
         };
-        let indices = bytemuck::cast_slice(&scene.indices);
-        let normals = normals_and_thickness(scene, &Bodies::of(scene));
+        let bodies = Bodies::of(scene);
+        let normals = normals_and_thickness(scene, &bodies);
         let table: Vec<[f32; 4]> = scene.materials.iter().map(table_row).collect();
         let surfaces: Vec<Surface> = scene.materials.iter().map(surface).collect();
         let textures: Result<Vec<Image>> = scene
@@ -118,20 +123,7 @@ impl Geometry {
             .iter()
             .map(|texture| upload(recorder, texture))
             .collect();
-        let mut parts: Vec<Part> = scene
-            .parts
-            .iter()
-            .zip(scene.casting())
-            .map(|(p, casts)| Part {
-                first: p.first_index,
-                count: p.index_count,
-                material: p.material,
-                kind: surfaces[p.material as usize].kind(p.has_colours),
-                casts,
-            })
-            .collect();
-        // Parts of one kind share a pipeline: as few changes as possible.
-        parts.sort_by_key(|p| (p.kind, p.material));
+        let (parts, clusters) = parts(scene, &bodies, &surfaces);
         let details = if parts.iter().any(|p| p.kind.is_detailed()) {
             Some(upload_details(recorder, scene)?)
         } else {
@@ -149,8 +141,13 @@ impl Geometry {
                 "texcoords",
                 bytemuck::cast_slice(&scene.texcoords),
             )?,
-            indices: upload_buffer(recorder, "indices", BufferKind::Index, indices)?,
-            index_count: scene.indices.len() as u32,
+            indices: upload_buffer(
+                recorder,
+                "indices",
+                BufferKind::Index,
+                bytemuck::cast_slice(&clusters.indices),
+            )?,
+            clusters: clusters.list,
             details,
             parts,
             is_specular: scene.materials.iter().any(|m| m.specular != [0.0; 3]),
@@ -183,28 +180,17 @@ impl Geometry {
         &self.materials
     }
 
-    /// Draws everything that casts a shadow and has no holes, positions only.
-    pub fn draw_positions(&self, draws: &mut Draws<'_, '_>) {
-        if self.index_count == 0 {
+    /// Draws everything that casts a shadow into what `cull` sees and has no holes, positions only.
+    pub fn draw_positions(&self, draws: &mut Draws<'_, '_>, cull: &Cull) {
+        if self.clusters.is_empty() {
             return;
         }
         draws.geometry(&[&self.positions], &self.indices);
-        for (first, count) in self.solid_runs() {
-            draws.indexed(first, count);
-        }
-    }
-
-    /// Runs of indices of casting parts without holes that follow each other.
-    fn solid_runs(&self) -> Vec<(u32, u32)> {
         let solid = self.parts.iter().filter(|p| p.casts && !p.kind.cut_out);
-        let mut ranges: Vec<(u32, u32)> = solid.map(|p| (p.first, p.count)).collect();
-        ranges.sort_unstable();
-        ranges.dedup_by(|next, run| {
-            let follows = next.0 == run.0 + run.1;
-            run.1 += if follows { next.1 } else { 0 };
-            follows
-        });
-        ranges
+        let clusters = solid.flat_map(|p| &self.clusters[p.clusters.clone()]);
+        for run in Runs::new(clusters, cull) {
+            run.draw(draws);
+        }
     }
 
     /// The kinds of its parts, in the order in which they are drawn.
@@ -223,19 +209,21 @@ impl Geometry {
     pub fn draw_plain<'g, 'r>(
         &'g self,
         draws: &mut Draws<'_, 'r>,
+        cull: &Cull,
         bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
     ) {
         draws.geometry(
             &[&self.positions, &self.normals, &self.texcoords],
             &self.indices,
         );
-        self.draw_parts(draws, |part| !part.kind.is_detailed(), bind);
+        self.draw_parts(draws, |part| !part.kind.is_detailed(), cull, bind);
     }
 
     /// Draws the detailed parts; `bind` is called with each new material.
     pub fn draw_detailed<'g, 'r>(
         &'g self,
         draws: &mut Draws<'_, 'r>,
+        cull: &Cull,
         bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
     ) {
         let Some([colours, tangents]) = &self.details else {
@@ -244,32 +232,36 @@ impl Geometry {
         let plain = [&self.positions, &self.normals, &self.texcoords];
         let streams = [plain[0], plain[1], plain[2], colours, tangents];
         draws.geometry(&streams, &self.indices);
-        self.draw_parts(draws, |part| part.kind.is_detailed(), bind);
+        self.draw_parts(draws, |part| part.kind.is_detailed(), cull, bind);
     }
 
     /// Draws positions and texture coordinates of the parts with holes; `bind` is called with each new material.
     pub fn draw_cut_outs<'g, 'r>(
         &'g self,
         draws: &mut Draws<'_, 'r>,
+        cull: &Cull,
         bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
     ) {
         draws.geometry(&[&self.positions, &self.texcoords], &self.indices);
-        self.draw_parts(draws, |part| part.casts && part.kind.cut_out, bind);
+        self.draw_parts(draws, |part| part.casts && part.kind.cut_out, cull, bind);
     }
 
     fn draw_parts<'g, 'r>(
         &'g self,
         draws: &mut Draws<'_, 'r>,
         wanted: impl Fn(&Part) -> bool,
+        cull: &Cull,
         mut bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
     ) {
         let mut current = None;
         for part in self.parts.iter().filter(|p| wanted(p)) {
-            if current != Some((part.kind, part.material)) {
-                bind(draws, &self.bound(part));
-                current = Some((part.kind, part.material));
+            for run in Runs::new(&self.clusters[part.clusters.clone()], cull) {
+                if current != Some((part.kind, part.material)) {
+                    bind(draws, &self.bound(part));
+                    current = Some((part.kind, part.material));
+                }
+                run.draw(draws);
             }
-            draws.indexed(part.first, part.count);
         }
     }
 
@@ -288,6 +280,95 @@ impl Geometry {
             white: &self.white,
         }
     }
+}
+
+/// A run of indices that is drawn at once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Run {
+    first: u32,
+    count: u32,
+    faces: Faces,
+}
+
+impl Run {
+    fn draw(&self, draws: &mut Draws<'_, '_>) {
+        draws.faces(self.faces);
+        draws.indexed(self.first, self.count);
+    }
+}
+
+impl Run {
+    /// Whether both are better drawn as one, with what lies between them.
+    fn is_followed_by(&self, next: &Self) -> bool {
+        self.faces == next.faces && next.first - (self.first + self.count) <= BRIDGED
+    }
+}
+
+/// Indices that are drawn in vain rather than in two draws: a draw costs a CPU 10 to 30 µs, which is what 200 triangles cost.
+const BRIDGED: u32 = 3 * 200;
+
+/// Runs of the clusters that are seen: those that nearly follow each other are drawn at once.
+struct Runs<'c, I> {
+    clusters: I,
+    cull: &'c Cull,
+    open: Option<Run>,
+}
+
+impl<'c, I: Iterator<Item = &'c Cluster>> Runs<'c, I> {
+    fn new(clusters: impl IntoIterator<Item = &'c Cluster, IntoIter = I>, cull: &'c Cull) -> Self {
+        Self {
+            clusters: clusters.into_iter(),
+            cull,
+            open: None,
+        }
+    }
+}
+
+impl<'c, I: Iterator<Item = &'c Cluster>> Iterator for Runs<'c, I> {
+    type Item = Run;
+
+    fn next(&mut self) -> Option<Run> {
+        for cluster in self.clusters.by_ref().filter(|c| self.cull.sees(c)) {
+            let next = Run {
+                first: cluster.first,
+                count: cluster.count,
+                faces: self.cull.faces(cluster),
+            };
+            match &mut self.open {
+                Some(run) if run.is_followed_by(&next) => {
+                    run.count = next.first + next.count - run.first;
+                }
+                open => {
+                    let done = open.replace(next);
+                    if done.is_some() {
+                        return done;
+                    }
+                }
+            }
+        }
+        self.open.take()
+    }
+}
+
+/// The parts of a scene in the order in which they are drawn, and their clusters.
+fn parts(scene: &Scene, bodies: &Bodies, surfaces: &[Surface]) -> (Vec<Part>, Clusters) {
+    let casting = scene.casting();
+    let kind = |p: &scene::Part| surfaces[p.material as usize].kind(p.has_colours);
+    let mut order: Vec<usize> = (0..scene.parts.len()).collect();
+    // Parts of one kind share a pipeline: as few changes as possible.
+    order.sort_by_key(|i| (kind(&scene.parts[*i]), scene.parts[*i].material));
+    let sorted = || order.iter().map(|i| (&scene.parts[*i], casting[*i]));
+    let runs: Vec<(u32, u32)> = sorted()
+        .map(|(p, _)| (p.first_index, p.index_count))
+        .collect();
+    let clusters = Clusters::of(scene, bodies, &runs);
+    let part = |((part, casts), clusters): ((&scene::Part, bool), &Range<usize>)| Part {
+        clusters: clusters.clone(),
+        material: part.material,
+        kind: kind(part),
+        casts,
+    };
+    (sorted().zip(&clusters.of_run).map(part).collect(), clusters)
 }
 
 impl Surface {

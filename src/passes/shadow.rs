@@ -77,7 +77,7 @@ impl Casters {
                     draws.push(&Push {
                         shadow_from_world: tile.view.shadow_from_world.to_cols_array_2d(),
                     });
-                    geometry.draw_positions(draws);
+                    geometry.draw_positions(draws, &tile.view.cull());
                 }
             });
         if let Some(pipeline) = &self.cut_outs {
@@ -99,7 +99,7 @@ fn record_cut_outs(
         .draws(|draws| {
             for tile in tiles {
                 draws.window(tile.origin, [tile.edge; 2]);
-                geometry.draw_cut_outs(draws, |draws, bound| {
+                geometry.draw_cut_outs(draws, &tile.view.cull(), |draws, bound| {
                     let map = bound.diffuse_map.unwrap_or(bound.white);
                     draws.texture("diffuse_map", map, Sampler::Repeat);
                     draws.push(&CutOutPush {

@@ -4,6 +4,7 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use crate::scene::Bounds;
 
+use super::cull::Cull;
 use super::view::View;
 
 /// Share of the extent by which the fit may grow before the map changes its scale: the extent is rounded up to a power of this.
@@ -21,12 +22,21 @@ pub struct ShadowView {
     pub texel: f32,
     /// Depth that the edge of a texel is long.
     pub texel_depth: f32,
+    /// Unit vector toward the light.
+    pub toward: Vec3,
+    /// A point that it shows.
+    pub inside: Vec3,
 }
 
 impl ShadowView {
     /// Takes planes from the world to clip space.
     pub fn planes(&self) -> Mat4 {
         self.shadow_from_world.inverse().transpose()
+    }
+
+    /// What it does not see.
+    pub fn cull(&self) -> Cull {
+        Cull::light(self.shadow_from_world, self.toward, self.inside)
     }
 }
 
@@ -100,6 +110,8 @@ pub fn fit(
         shadow_from_world: orthographic([right, up, toward], centre, side, &casters),
         texel,
         texel_depth: texel / depth_range(&casters).1,
+        toward: sun_direction,
+        inside: right * centre.x + up * centre.y + toward * casters.centre().z,
     }
 }
 

@@ -1,0 +1,263 @@
+//! Small groups of triangles that lie together, so that what a view cannot see need not be drawn.
+
+use std::ops::Range;
+use std::thread;
+
+use glam::Vec3;
+
+use super::{Bodies, Bounds, Scene};
+
+/// Most triangles of a cluster.
+const MOST: usize = 128;
+/// Triangles from which halves are worth a thread of their own.
+const LARGE: usize = 1 << 15;
+
+/// Triangles that lie together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cluster {
+    /// First index.
+    pub first: u32,
+    /// Number of indices.
+    pub count: u32,
+    /// Around the triangles, metres.
+    pub bounds: Bounds,
+    /// Where the triangles are part of solids.
+    pub solid: Option<Solid>,
+}
+
+/// What is known of triangles of solids: from outside, none of their back faces can be seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Solid {
+    /// Around all of the solids that the triangles belong to, metres.
+    pub bodies: Bounds,
+    /// Axis of a cone that holds the normals of all the triangles, unit.
+    pub axis: Vec3,
+    /// Sine of the angle between the axis and the normal farthest from it; 1 for a right angle and more.
+    pub sine: f32,
+}
+
+/// Indices in another order, and the clusters that they form.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Clusters {
+    /// Three for each triangle: those of the runs that were given, run after run, each in an order of its own.
+    pub indices: Vec<u32>,
+    /// The clusters, in the order of their indices.
+    pub list: Vec<Cluster>,
+    /// The clusters of each run.
+    pub of_run: Vec<Range<usize>>,
+}
+
+impl Clusters {
+    /// Splits runs of a scene's indices (first and count) by halves at the median of the longest side, down to clusters.
+    /// Within a cluster triangles keep their order, which is mostly one that shares vertices.
+    pub fn of(scene: &Scene, bodies: &Bodies, runs: &[(u32, u32)]) -> Self {
+        let mut made = Self {
+            indices: Vec::with_capacity(scene.indices.len()),
+            ..Self::default()
+        };
+        let splitter = Splitter { scene, bodies };
+        for (first, count) in runs {
+            let start = made.list.len();
+            let (mut solid, mut open): (Vec<u32>, Vec<u32>) =
+                (first / 3..(first + count) / 3).partition(|t| splitter.body(*t).is_solid);
+            for (triangles, is_solid) in [(&mut solid, true), (&mut open, false)] {
+                for group in splitter.split(triangles) {
+                    made.push(&splitter, &group, is_solid);
+                }
+            }
+            made.of_run.push(start..made.list.len());
+        }
+        made
+    }
+
+    fn push(&mut self, splitter: &Splitter<'_>, triangles: &[u32], is_solid: bool) {
+        let corners = triangles.iter().flat_map(|t| splitter.positions(*t));
+        self.list.push(Cluster {
+            first: self.indices.len() as u32,
+            count: 3 * triangles.len() as u32,
+            bounds: Bounds::of(corners),
+            solid: is_solid.then(|| splitter.solid(triangles)),
+        });
+        let indices = triangles.iter().flat_map(|t| splitter.corners(*t));
+        self.indices.extend(indices);
+    }
+}
+
+struct Splitter<'s> {
+    scene: &'s Scene,
+    bodies: &'s Bodies,
+}
+
+impl Splitter<'_> {
+    fn corners(&self, triangle: u32) -> [u32; 3] {
+        [0, 1, 2].map(|i| self.scene.indices[3 * triangle as usize + i])
+    }
+
+    fn positions(&self, triangle: u32) -> [Vec3; 3] {
+        self.corners(triangle)
+            .map(|v| self.scene.positions[v as usize].into())
+    }
+
+    fn body(&self, triangle: u32) -> &super::Body {
+        let vertex = self.scene.indices[3 * triangle as usize] as usize;
+        &self.bodies.list[self.bodies.of_vertex[vertex] as usize]
+    }
+
+    /// Groups of at most [`MOST`] triangles.
+    fn split(&self, triangles: &mut [u32]) -> Vec<Vec<u32>> {
+        if triangles.is_empty() {
+            return Vec::new();
+        }
+        if triangles.len() <= MOST {
+            triangles.sort_unstable();
+            return vec![triangles.to_vec()];
+        }
+        let middle = triangles.len() / 2;
+        let is_large = triangles.len() >= LARGE;
+        self.halve(triangles);
+        let (low, high) = triangles.split_at_mut(middle);
+        let (mut groups, rest) = if is_large {
+            thread::scope(|scope| {
+                let rest = scope.spawn(|| self.split(high));
+                let groups = self.split(low);
+                let rest = rest.join();
+                // A fault of this program is one on this thread too.
+                (
+                    groups,
+                    rest.unwrap_or_else(|fault| std::panic::resume_unwind(fault)),
+                )
+            })
+        } else {
+            (self.split(low), self.split(high))
+        };
+        groups.extend(rest);
+        groups
+    }
+
+    /// Brings the half of the triangles that lies lower on the longest axis to the front.
+    fn halve(&self, triangles: &mut [u32]) {
+        // Three times the centroid.
+        let place = |t: u32| self.positions(t).iter().sum::<Vec3>();
+        let extent = Bounds::of(triangles.iter().map(|t| place(*t))).extent();
+        let axis = extent.max_position();
+        let mut keyed: Vec<(f32, u32)> = triangles.iter().map(|t| (place(*t)[axis], *t)).collect();
+        let order = |a: &(f32, u32), b: &(f32, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        keyed.select_nth_unstable_by(triangles.len() / 2, order);
+        for (triangle, (_, sorted)) in triangles.iter_mut().zip(keyed) {
+            *triangle = sorted;
+        }
+    }
+
+    fn solid(&self, triangles: &[u32]) -> Solid {
+        let bodies = triangles.iter().map(|t| self.body(*t).bounds);
+        let normals = || {
+            triangles.iter().map(|t| {
+                let [a, b, c] = self.positions(*t);
+                (b - a).cross(c - a).normalize_or_zero()
+            })
+        };
+        let axis = normals().sum::<Vec3>().normalize_or_zero();
+        // A triangle without area faces nowhere, and is seen from nowhere.
+        let cosine = normals()
+            .filter(|n| *n != Vec3::ZERO)
+            .map(|n| n.dot(axis))
+            .fold(1.0, f32::min);
+        Solid {
+            bodies: bodies.fold(Bounds::EMPTY, Bounds::union),
+            axis,
+            sine: if cosine > 0.0 {
+                (1.0 - cosine * cosine).max(0.0).sqrt()
+            } else {
+                1.0
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sheet of `n` x `n` quads in the plane y = 0, facing up, in the order of its rows.
+    fn sheet(n: u32) -> Scene {
+        let mut scene = Scene::default();
+        for row in 0..=n {
+            for column in 0..=n {
+                scene.positions.push([column as f32, 0.0, row as f32]);
+            }
+        }
+        for row in 0..n {
+            for column in 0..n {
+                let a = row * (n + 1) + column;
+                let (b, c, d) = (a + 1, a + n + 1, a + n + 2);
+                scene.indices.extend([a, c, b, b, c, d]);
+            }
+        }
+        scene
+    }
+
+    fn triangles(indices: &[u32]) -> Vec<[u32; 3]> {
+        let mut all: Vec<[u32; 3]> = indices
+            .chunks_exact(3)
+            .map(|t| [t[0], t[1], t[2]])
+            .collect();
+        all.sort_unstable();
+        all
+    }
+
+    #[test]
+    fn every_triangle_is_in_one_cluster_and_lies_in_its_box() {
+        let scene = sheet(150);
+        let count = scene.indices.len() as u32;
+        let runs = [(0, 600), (600, count - 600)];
+        let clusters = Clusters::of(&scene, &Bodies::of(&scene), &runs);
+        assert_eq!(triangles(&clusters.indices), triangles(&scene.indices));
+        assert_eq!(clusters.of_run[0], 0..1);
+        assert_eq!(clusters.of_run[1], 1..clusters.list.len());
+        let mut next = 0;
+        for cluster in &clusters.list {
+            assert_eq!(cluster.first, next);
+            assert!(cluster.count as usize <= 3 * MOST && cluster.count > 0);
+            assert!(cluster.solid.is_none(), "a sheet has two sides");
+            next += cluster.count;
+            let range = cluster.first as usize..next as usize;
+            for vertex in &clusters.indices[range] {
+                let p = Vec3::from(scene.positions[*vertex as usize]);
+                assert!(cluster.bounds.min.cmple(p).all() && cluster.bounds.max.cmpge(p).all());
+            }
+        }
+        assert_eq!(next, count);
+    }
+
+    #[test]
+    fn clusters_are_compact() {
+        let scene = sheet(64);
+        let count = scene.indices.len() as u32;
+        let clusters = Clusters::of(&scene, &Bodies::of(&scene), &[(0, count)]);
+        // 8192 triangles in 32 clusters of 256: patches of 8 x 16 quads, not rows of 128.
+        assert_eq!(clusters.list.len(), 32);
+        for cluster in &clusters.list {
+            assert!(cluster.bounds.extent().max_element() <= 18.0, "{cluster:?}");
+        }
+    }
+
+    #[test]
+    fn the_cone_holds_all_normals() {
+        let mut scene = Scene {
+            positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            // A tetrahedron, counter-clockwise seen from outside.
+            indices: vec![0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3],
+            ..Scene::default()
+        };
+        let whole = Clusters::of(&scene, &Bodies::of(&scene), &[(0, 12)]);
+        let solid = whole.list[0].solid.expect("a solid");
+        assert_eq!(solid.sine, 1.0, "faces on all sides");
+        assert_eq!(solid.bodies.max, Vec3::ONE);
+        let face = Clusters::of(&scene, &Bodies::of(&scene), &[(9, 3)]);
+        let solid = face.list[0].solid.expect("a part of a solid");
+        assert!(solid.sine < 1e-3 && solid.axis.dot(Vec3::ONE.normalize()) > 0.9999);
+        scene.indices.truncate(9);
+        let open = Clusters::of(&scene, &Bodies::of(&scene), &[(0, 9)]);
+        assert_eq!(open.list[0].solid, None);
+    }
+}

@@ -2,9 +2,9 @@
 //!
 //! Batch means (Conway 1963, "Some Tactical Problems in Digital Simulation"): the frames so far are cut into a few batches of
 //! equal size, one after the other; the spread of their means tells the standard error of the mean of all. Single frames would
-//! tell too much: each covers sky and pixel unevenly, and many of a low-discrepancy sequence cover them far better than as many
+//! tell far too much: each covers sky and pixel unevenly, and many of a low-discrepancy sequence cover them better than as many
 //! random ones. A whole batch is a stretch of the same sequence, so most of that gain is counted; what is gained from batch
-//! to batch is not, so the estimate errs to the safe side.
+//! to batch is not. All pixels share the directions of the sky, so with few frames chance has a say in it.
 
 /// Batches at which two become one.
 const MOST_BATCHES: usize = 8;

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "constants.glsl"
+#include "materials.glsl"
 #include "occlusion.glsl"
 #include "octahedral.glsl"
 #include "view.glsl"
@@ -24,10 +25,12 @@ layout(constant_id = 3) const int DIRECTIONS = 4;
 // Begin with ambient occlusion, as if it had come from earlier frames.
 layout(constant_id = 4) const bool PRIOR = false;
 layout(constant_id = 5) const int OCCLUSION_DOWNSCALE = 2;
+// As of lighting.frag.
+layout(constant_id = 6) const bool ALBEDO_IMAGE = true;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform sampler2D normal;
-layout(set = 0, binding = 2) uniform sampler2D albedo;
+layout(set = 0, binding = 1) uniform usampler2D normal;
+layout(set = 0, binding = 2) uniform sampler2D albedo;         // with ALBEDO_IMAGE; else any
 layout(set = 0, binding = 3) uniform sampler2D frame;          // kcd/m^2, without the sky's light
 layout(set = 0, binding = 4) uniform sampler2D previous_sky;
 layout(set = 0, binding = 5) uniform sampler2D previous_rest;
@@ -37,6 +40,8 @@ layout(set = 0, binding = 8, scalar) uniform View { VIEW_BLOCK } view;
 layout(set = 0, binding = 9, scalar) uniform Dome { DOME_BLOCK } dome;
 
 layout(set = 0, binding = 10) uniform usampler2D occlusion;
+layout(set = 0, binding = 11) uniform usampler2D material;
+layout(set = 0, binding = 12) uniform sampler2D materials; // see materials.glsl
 
 layout(push_constant, scalar) uniform Push {
     vec3 ground;     // radiance below the horizon, kcd/m^2
@@ -64,7 +69,7 @@ vec4 light_of_directions(vec3 world, vec3 n, vec3 face) {
 }
 
 void gather(ivec2 pixel, float d) {
-    vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
+    vec3 n = normal_unpack(texelFetch(normal, pixel, 0).r);
     vec3 p = in_view(pixel, d);
     vec3 world = view.eye + view.world_from_view * p;
     sky = light_of_directions(world, n, face_normal(pixel, d, n));
@@ -78,7 +83,11 @@ void gather(ivec2 pixel, float d) {
         rest.a = 1.0;
         return;
     }
-    vec3 reflected = SHOW_IRRADIANCE ? vec3(1.0) : texelFetch(albedo, pixel, 0).rgb / PI;
+    vec3 reflected = vec3(1.0);
+    if (!SHOW_IRRADIANCE) {
+        uint word = texelFetch(material, pixel, 0).r;
+        reflected = pixel_albedo(ALBEDO_IMAGE, albedo, materials, word, pixel).rgb / PI;
+    }
     sky *= vec4(reflected, luminance(reflected));
     rest.a = luminance(open) * luminance(reflected);
 }

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "constants.glsl"
+#include "materials.glsl"
 #include "octahedral.glsl"
 #include "phong.glsl"
 #include "view.glsl"
@@ -21,18 +22,18 @@ layout(constant_id = 0) const int DIRECTIONS = 4;
 layout(constant_id = 1) const bool FRESNEL = false;
 // The lobe as a reflectance: the sky is smeared by it. Otherwise the lecture's mirror.
 layout(constant_id = 2) const bool NORMALIZED = false;
+// As of lighting.frag.
+layout(constant_id = 3) const bool ALBEDO_IMAGE = true;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform sampler2D normal;
-layout(set = 0, binding = 2) uniform sampler2D albedo;
+layout(set = 0, binding = 1) uniform usampler2D normal;
+layout(set = 0, binding = 2) uniform sampler2D albedo;         // with ALBEDO_IMAGE; else any
 layout(set = 0, binding = 3) uniform usampler2D material;
 layout(set = 0, binding = 4) uniform sampler2D previous_mirror;
 layout(set = 0, binding = 5) uniform sampler2D previous_lobe;
 layout(set = 0, binding = 6) uniform sampler2D maps;           // reversed: 1 is nearest the light
 layout(set = 0, binding = 7) uniform samplerCube sky_radiance; // L, kcd/m^2, without the disc
-layout(set = 0, binding = 8, scalar) readonly buffer Materials {
-    Material materials[];
-};
+layout(set = 0, binding = 8) uniform sampler2D materials;      // see materials.glsl
 layout(set = 0, binding = 9, scalar) uniform View { VIEW_BLOCK } view;
 layout(set = 0, binding = 10, scalar) uniform Dome { DOME_BLOCK } dome;
 
@@ -48,19 +49,20 @@ layout(push_constant, scalar) uniform Push {
 const float SHARPEST = 256.0;
 
 void gather(ivec2 pixel, float d) {
-    Material m = materials[texelFetch(material, pixel, 0).r & 0xffffu];
-    vec3 rho_s = m.specular * (texelFetch(albedo, pixel, 0).a * push.specular_scale);
+    uint word = texelFetch(material, pixel, 0).r;
+    vec4 m = texelFetch(materials, material_specular(word), 0);
+    vec3 rho_s = m.rgb * (pixel_albedo(ALBEDO_IMAGE, albedo, materials, word, pixel).a * push.specular_scale);
     if (all(lessThanEqual(rho_s, vec3(0.0)))) return;
-    vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
+    vec3 n = normal_unpack(texelFetch(normal, pixel, 0).r);
     vec3 toward = view.world_from_view * in_view(pixel, d);
     vec3 world = view.eye + toward;
     toward = normalize(toward);
-    if (FRESNEL) rho_s = grazing(rho_s, m.shininess, -dot(toward, n));
+    if (FRESNEL) rho_s = grazing(rho_s, m.a, -dot(toward, n));
     vec3 r = reflect(toward, n);
-    mirror.rgb = rho_s * (NORMALIZED ? sky_in_lobe(sky_radiance, r, n, m.shininess, push.shift)
+    mirror.rgb = rho_s * (NORMALIZED ? sky_in_lobe(sky_radiance, r, n, m.a, push.shift)
                                      : textureLod(sky_radiance, r, 0.0).rgb);
     vec3 face = face_normal(pixel, d, n);
-    float p = clamp(m.shininess, 1.0, SHARPEST);
+    float p = clamp(m.a, 1.0, SHARPEST);
     for (int k = 0; k < DIRECTIONS; ++k) {
         vec3 w = dome.toward[k].xyz;
         float cosine = dot(n, w);

@@ -10,9 +10,9 @@ layout(location = 1) in vec3 shading_normal;
 layout(location = 2) in vec2 surface_uv;
 layout(location = 3) flat in float thickness; // behind the surface, metres
 
-layout(location = 0) out vec2 normal;        // world, octahedral
-layout(location = 1) out vec4 albedo;        // rgb: rho_d; a: factor on rho_s
-layout(location = 2) out uint material;      // lower half: index into the table of materials; upper: of the thickness' bits
+layout(location = 0) out uint normal;   // world, octahedral
+layout(location = 1) out uint material; // lower half: column of the table of materials; upper: of the thickness' bits
+layout(location = 2) out vec4 albedo;   // rgb: rho_d; a: factor on rho_s. Scenes without maps have it in the table only
 
 layout(constant_id = 0) const bool DIFFUSE_MAP = true;
 layout(constant_id = 1) const bool SPECULAR_MAP = true;
@@ -21,7 +21,7 @@ layout(set = 0, binding = 0) uniform sampler2D diffuse_map;
 layout(set = 0, binding = 1) uniform sampler2D specular_map;
 
 void main() {
-    normal = octahedral_encode(facing_normal(shading_normal, from_eye, 0.0));
+    normal = normal_pack(facing_normal(shading_normal, from_eye, 0.0));
     albedo = vec4(push.diffuse, 1.0);
     if (DIFFUSE_MAP) albedo.rgb *= texture(diffuse_map, surface_uv, -push.sharpen).rgb;
     if (SPECULAR_MAP) albedo.a = dot(texture(specular_map, surface_uv, -push.sharpen).rgb, vec3(1.0 / 3.0));

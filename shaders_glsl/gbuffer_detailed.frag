@@ -14,9 +14,9 @@ layout(location = 3) in vec4 surface_colour;  // linear RGBA
 layout(location = 4) in vec4 surface_tangent; // w: sign of the bitangent
 layout(location = 5) flat in float thickness; // behind the surface, metres
 
-layout(location = 0) out vec2 normal;        // world, octahedral
-layout(location = 1) out vec4 albedo;        // rgb: rho_d; a: factor on rho_s
-layout(location = 2) out uint material;      // lower half: index into the table of materials; upper: of the thickness' bits
+layout(location = 0) out uint normal;   // world, octahedral
+layout(location = 1) out uint material; // lower half: column of the table of materials; upper: of the thickness' bits
+layout(location = 2) out vec4 albedo;   // rgb: rho_d; a: factor on rho_s
 
 layout(constant_id = 0) const bool DIFFUSE_MAP = true;
 layout(constant_id = 1) const bool SPECULAR_MAP = true;
@@ -44,7 +44,7 @@ void main() {
     float gloss = 1.0;
     if (SPECULAR_MAP) gloss = dot(texture(specular_map, surface_uv, -push.sharpen).rgb, vec3(1.0 / 3.0));
     if (CUT_OUT && surface.a < push.cutoff) discard;
-    normal = octahedral_encode(n);
+    normal = normal_pack(n);
     albedo = vec4(surface.rgb, gloss);
     material = push.material | (floatBitsToUint(thickness) & 0xffff0000u);
 }

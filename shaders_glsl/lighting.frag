@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "constants.glsl"
+#include "materials.glsl"
 #include "occlusion.glsl"
 #include "octahedral.glsl"
 #include "phong.glsl"
@@ -32,12 +33,14 @@ layout(constant_id = 11) const bool FRESNEL = false;
 layout(constant_id = 12) const bool AMBIENT = true;
 // One comparison of the shadow map in the plane of the face, for frames whose mean softens its edges.
 layout(constant_id = 13) const bool PLANE_SHADOW = false;
+// rho_d of each pixel is in an image; else the scene has no maps, and that of the material is that of the pixel.
+layout(constant_id = 14) const bool ALBEDO_IMAGE = true;
 // The lobe of mirrors as a reflectance: of sun and sky alike, in balance of energy.
-layout(constant_id = 14) const bool NORMALIZED = false;
+layout(constant_id = 15) const bool NORMALIZED = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform sampler2D normal;
-layout(set = 0, binding = 2) uniform sampler2D albedo;
+layout(set = 0, binding = 1) uniform usampler2D normal;
+layout(set = 0, binding = 2) uniform sampler2D albedo;      // with ALBEDO_IMAGE; else any
 layout(set = 0, binding = 3) uniform usampler2D material;
 layout(set = 0, binding = 4) uniform usampler2D occlusion;
 layout(set = 0, binding = 5) uniform sampler2D shadow_map; // reversed: 1 is nearest the sun
@@ -54,9 +57,7 @@ layout(set = 0, binding = 9, scalar) uniform Sun {
     mat4 planes;          // inverse transpose of shadow_from_world
 } sun;
 
-layout(set = 0, binding = 10, scalar) readonly buffer Materials {
-    Material materials[];
-};
+layout(set = 0, binding = 10) uniform sampler2D materials; // see materials.glsl
 
 #include "face.glsl"
 
@@ -75,8 +76,9 @@ float visibility(vec3 world, vec3 n, float n_dot_l) {
     vec3 p = (sun.shadow_from_world * vec4(world + n * (sun.normal_offset * sine), 1.0)).xyz;
     ivec2 last = textureSize(shadow_map, 0) - 1;
     vec2 at = (p.xy * 0.5 + 0.5) * vec2(last + 1);
-    ivec2 centre = ivec2(floor(at));
-    vec2 f = at - vec2(centre);
+    // Inside the map's margin, so that each of the nine is a texel of it.
+    ivec2 centre = clamp(ivec2(at), ivec2(1), last - 1);
+    vec2 f = clamp(at - vec2(centre), 0.0, 1.0);
     // Behind all casters, and beside them, the map is empty: depth 0.
     float depth = max(p.z, 0.0);
     vec3 wx = vec3(1.0 - f.x, 1.0, f.x);
@@ -84,8 +86,7 @@ float visibility(vec3 world, vec3 n, float n_dot_l) {
     float lit = 0.0;
     for (int y = 0; y < 3; ++y) {
         for (int x = 0; x < 3; ++x) {
-            ivec2 texel = clamp(centre + ivec2(x - 1, y - 1), ivec2(0), last);
-            lit += wx[x] * wy[y] * step(texelFetch(shadow_map, texel, 0).r, depth);
+            lit += wx[x] * wy[y] * step(texelFetch(shadow_map, centre + ivec2(x - 1, y - 1), 0).r, depth);
         }
     }
     return lit * 0.25;
@@ -99,8 +100,9 @@ void main() {
     // The depth test leaves only pixels with a surface: d > 0.
     float distance = view.near / texelFetch(depth, pixel, 0).r;
     vec3 world = view.eye + world_ray * distance;
-    vec3 n = octahedral_decode(texelFetch(normal, pixel, 0).rg);
-    vec4 surface = texelFetch(albedo, pixel, 0);
+    vec3 n = normal_unpack(texelFetch(normal, pixel, 0).r);
+    uint word = texelFetch(material, pixel, 0).r;
+    vec4 surface = pixel_albedo(ALBEDO_IMAGE, albedo, materials, word, pixel);
     float n_dot_l = dot(n, sun.direction);
 
     float V = 0.0;
@@ -123,16 +125,16 @@ void main() {
     if (SUN) sum += surface.rgb / PI * sun_irradiance;
     if (SKY) sum += surface.rgb / PI * irradiance;
     if (SUN_SPECULAR || SKY_SPECULAR) {
-        Material m = materials[texelFetch(material, pixel, 0).r & 0xffffu];
-        vec3 rho_s = m.specular * (surface.a * sun.specular_scale);
+        vec4 m = texelFetch(materials, material_specular(word), 0);
+        vec3 rho_s = m.rgb * (surface.a * sun.specular_scale);
         vec3 toward = normalize(world_ray);
-        if (FRESNEL && any(greaterThan(rho_s, vec3(0.0)))) rho_s = grazing(rho_s, m.shininess, -dot(toward, n));
+        if (FRESNEL && any(greaterThan(rho_s, vec3(0.0)))) rho_s = grazing(rho_s, m.a, -dot(toward, n));
         vec3 r = reflect(toward, n);
         float r_dot_l = max(dot(r, sun.direction), 0.0);
-        float lobe = pow(r_dot_l, m.shininess);
-        if (NORMALIZED) lobe *= phong_scale(m.shininess) * max(n_dot_l, 0.0);
+        float lobe = pow(r_dot_l, m.a);
+        if (NORMALIZED) lobe *= phong_scale(m.a) * max(n_dot_l, 0.0);
         if (SUN_SPECULAR) sum += rho_s * (lobe * V) * sun.illuminance;
-        if (SKY_SPECULAR && NORMALIZED) sum += rho_s * sky_in_lobe(sky_radiance, r, n, m.shininess, vec2(0.0));
+        if (SKY_SPECULAR && NORMALIZED) sum += rho_s * sky_in_lobe(sky_radiance, r, n, m.a, vec2(0.0));
         else if (SKY_SPECULAR) sum += rho_s * textureLod(sky_radiance, r, 0.0).rgb;
     }
     radiance = vec4(min(sum, sun.max_radiance), 1.0);

@@ -14,10 +14,11 @@
 layout(location = 0) out uint occlusion; // A and the distance along the view axis, packed
 
 layout(constant_id = 0) const int STEPS = 12;    // on each side of the slice
-layout(constant_id = 1) const int DOWNSCALE = 2; // pixels of the G-buffer to one of this target, each way
+layout(constant_id = 1) const int DOWNSCALE = 2; // pixels of the G-buffer to one of the occluders, each way
+layout(constant_id = 2) const bool SPARSE = true; // every second of the occluders, as the black fields of a chessboard
 
 layout(set = 0, binding = 0) uniform usampler2D occluders;
-layout(set = 0, binding = 1) uniform sampler2D normal;
+layout(set = 0, binding = 1) uniform usampler2D normal;
 layout(set = 0, binding = 2, scalar) uniform View { VIEW_BLOCK } view;
 
 layout(push_constant, scalar) uniform Push {
@@ -43,7 +44,7 @@ vec3 point(ivec2 texel, float distance) {
 }
 
 vec3 normal_at(ivec2 texel) {
-    return octahedral_decode(texelFetch(normal, texel * DOWNSCALE, 0).rg) * view.world_from_view;
+    return normal_unpack(texelFetch(normal, texel * DOWNSCALE, 0).r) * view.world_from_view;
 }
 
 /// Half of a slice: the side of the view direction toward which its axis points.
@@ -134,7 +135,8 @@ uint blocked_sectors(Side side, float jitter, float dither) {
 }
 
 void main() {
-    ivec2 texel = ivec2(gl_FragCoord.xy);
+    ivec2 own = ivec2(gl_FragCoord.xy);
+    ivec2 texel = SPARSE ? ivec2(2 * own.x + (own.y & 1), own.y) : own;
     float distance = packed_distance(texelFetch(occluders, texel, 0).r);
     if (distance >= 0.5 * NOWHERE) {
         occlusion = occlusion_pack(1.0, 0.0);
@@ -147,10 +149,14 @@ void main() {
     v = normalize(-p);
     n = normal_at(texel);
     origin = vec2(texel) + 0.5;
-    // 4x4 pattern of directions and step offsets (Jimenez et al.), taken out again by the 4x4 blur.
-    ivec2 cell = texel & 3;
-    float turn = fract(float(((cell.x + cell.y) & 3) * 4 + cell.x) / 16.0 + push.phase);
-    float jitter = fract(float((cell.y - cell.x) & 3) * 0.25 + 0.125 + push.phase * 7.0);
+    // A pattern of 4x4 occluders of directions and step offsets, after Jimenez et al., taken out again by the 4x4 blur. Of the
+    // sparse ones those are eight, two in a row.
+    ivec2 cell = own & 3;
+    float order = SPARSE ? float(((cell.x & 1) * 4 + (cell.y & 1) * 2 + (cell.y >> 1))) / 8.0
+                         : float(((cell.x + cell.y) & 3) * 4 + cell.x) / 16.0;
+    float turn = fract(order + push.phase);
+    float offset = SPARSE ? float((cell.y * 3 + (cell.x & 1) * 2) & 3) : float((cell.y - cell.x) & 3);
+    float jitter = fract(offset * 0.25 + 0.125 + push.phase * 7.0);
     float dither = fract(turn * 7.0 + jitter);
     // The slice turns evenly about v, which leaves the image plane's normal toward the picture's edges.
     vec3 right = normalize(vec3(v.z, 0.0, -v.x));

@@ -3,33 +3,47 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "occluder.glsl"
 
-// Takes out the 4x4 pattern of ssao.frag by a box of its size that does not cross depth edges.
+// Takes out the pattern of ssao.frag by a box of its size, 4x4 occluders, that does not cross depth edges; fills in those that a
+// sparse target leaves out.
 
 layout(location = 0) out uint occlusion; // A and the distance along the view axis, packed
 
+layout(constant_id = 0) const bool SPARSE = true; // as of ssao.frag
+
 layout(set = 0, binding = 0) uniform usampler2D noisy_occlusion;
+layout(set = 0, binding = 1) uniform usampler2D occluders;
 
-ivec2 last;
+const int TAPS = SPARSE ? 2 : 4; // of a row
 
-vec2 tap(ivec2 texel) {
-    return occlusion_unpack(texelFetch(noisy_occlusion, clamp(texel, ivec2(0), last), 0).r);
+float distance_at(ivec2 texel) {
+    ivec2 last = textureSize(occluders, 0) - 1;
+    return packed_distance(texelFetch(occluders, clamp(texel, ivec2(0), last), 0).r);
 }
 
 void main() {
     ivec2 texel = ivec2(gl_FragCoord.xy);
-    last = textureSize(noisy_occlusion, 0) - 1;
-    vec2 taps[16];
-    for (int i = 0; i < 16; ++i) taps[i] = tap(texel + ivec2(i & 3, i >> 2) - 2);
-    // The slope of a plane seen at a grazing angle is no edge: the tolerance follows the smaller neighbouring step.
-    float centre = taps[10].y;
-    float slope = min(abs(taps[9].y - centre), abs(taps[11].y - centre))
-                + min(abs(taps[6].y - centre), abs(taps[14].y - centre));
-    float scale = 1.0 / (0.01 * centre + 3.0 * slope + 1e-6);
-    vec2 sum = vec2(0.0);
-    for (int i = 0; i < 16; ++i) {
-        float w = max(1.0 - abs(taps[i].y - centre) * scale, 0.0);
-        sum += vec2(taps[i].x, 1.0) * w;
+    float centre = distance_at(texel);
+    if (centre >= 0.5 * NOWHERE) {
+        occlusion = occlusion_pack(1.0, 0.0);
+        return;
     }
-    // The texel itself always counts (w = 1), so the sum of weights is at least one.
+    // The slope of a plane seen at a grazing angle is no edge: the tolerance follows the smaller neighbouring step.
+    float slope = min(abs(distance_at(texel - ivec2(1, 0)) - centre), abs(distance_at(texel + ivec2(1, 0)) - centre))
+                + min(abs(distance_at(texel - ivec2(0, 1)) - centre), abs(distance_at(texel + ivec2(0, 1)) - centre));
+    float scale = 1.0 / (0.01 * centre + 3.0 * slope + 1e-6);
+    ivec2 last = textureSize(noisy_occlusion, 0) - 1;
+    vec2 sum = vec2(0.0);
+    for (int row = 0; row < 4; ++row) {
+        int y = clamp(texel.y + row - 2, 0, last.y);
+        // The first of the row that is not left of the box.
+        int first = SPARSE ? (texel.x - 1 - (y & 1)) >> 1 : texel.x - 2;
+        for (int i = 0; i < TAPS; ++i) {
+            vec2 tap = occlusion_unpack(texelFetch(noisy_occlusion, ivec2(clamp(first + i, 0, last.x), y), 0).r);
+            float step = abs(tap.y - centre) * scale;
+            // Where all lie beyond an edge the nearest in depth count most.
+            float w = max(1.0 - step, 0.0) + 1e-4 / (1.0 + step * step);
+            sum += vec2(tap.x, 1.0) * w;
+        }
+    }
     occlusion = occlusion_pack(clamp(sum.x / sum.y, 0.0, 1.0), centre);
 }

@@ -228,6 +228,7 @@ impl Frame {
             (Some(dome), _, Some(index)) => {
                 let gathered = Gathered {
                     surfaces,
+                    materials,
                     frame,
                     sky_irradiance,
                     occlusion,
@@ -321,7 +322,10 @@ impl Frame {
 
     /// The answer to the last [`Frame::ask`], once.
     pub fn reading(&mut self) -> Option<Reading> {
-        self.probe.as_mut()?.reading()
+        let geometry = &self.geometry;
+        self.probe
+            .as_mut()?
+            .reading(|material| geometry.diffuse(material))
     }
 
     /// Samples of the sky's irradiance so far, and in all.

@@ -10,9 +10,19 @@ vec2 octahedral_encode(vec3 n) {
     return n.z >= 0.0 ? p : (1.0 - abs(p.yx)) * sign_not_zero(p);
 }
 
+/// A direction of any length as the G-buffer keeps it: 16 bits a component, 0.003 degrees.
+uint normal_pack(vec3 n) {
+    return packSnorm2x16(octahedral_encode(n));
+}
+
 /// [-1,1]^2 to a unit vector.
 vec3 octahedral_decode(vec2 p) {
     vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
     if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * sign_not_zero(n.xy);
     return normalize(n);
+}
+
+/// The unit vector of a word of the G-buffer.
+vec3 normal_unpack(uint word) {
+    return octahedral_decode(unpackSnorm2x16(word));
 }

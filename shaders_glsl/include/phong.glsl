@@ -1,11 +1,6 @@
 // Mirrors: the lecture's lobe (r.w)^p, and the same lobe as a reflectance that keeps the balance of energy.
 #include "frame.glsl"
 
-struct Material {
-    vec3 specular;   // rho_s
-    float shininess; // p
-};
-
 /// Lewis 1994, "Making Shaders More Physically Plausible": with this factor (and the cosine of the incoming light, which the
 /// lecture's form leaves out) the lobe reflects the share rho_s of what falls on it head-on, and never more.
 float phong_scale(float p) {

@@ -196,6 +196,7 @@ impl Job {
                 } else {
                     0.0
                 },
+                has_albedo: true,
                 occlusion_downscale: downscale,
                 fresnel: s.fresnel == Fresnel::Schlick,
                 mirrors: s.mirrors,

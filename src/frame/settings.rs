@@ -38,11 +38,12 @@ impl FrameSettings {
         self.samples > 1 && self.sampling.visibility == Visibility::Ssao
     }
 
-    /// A scene without any ρ_s needs none of its lookups.
+    /// A scene without any ρ_s needs none of its lookups, one without maps no image of ρ_d.
     pub(super) fn for_scene(mut self, geometry: &Geometry) -> Self {
         if !geometry.is_specular() {
             self.lighting.specular_scale = 0.0;
         }
+        self.lighting.has_albedo = geometry.has_albedo();
         self
     }
 }

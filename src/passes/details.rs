@@ -74,11 +74,8 @@ impl Details {
             return;
         };
         let (clip_from_world, eye) = (view.clip_from_world().to_cols_array_2d(), view.camera.eye);
-        recorder
-            .pass("G-buffer, details", pipeline)
-            .color(&surfaces.normal, Load::Keep)
-            .color(&surfaces.albedo, Load::Keep)
-            .color(&surfaces.material, Load::Keep)
+        surfaces
+            .colors(recorder.pass("G-buffer, details", pipeline), Load::Keep)
             .depth(&surfaces.depth, Load::Keep)
             .draws(|draws| {
                 let mut current = *first;

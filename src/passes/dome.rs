@@ -70,6 +70,8 @@ impl Default for DomeSettings {
 pub struct Gathered<'a> {
     /// The surfaces in view.
     pub surfaces: &'a Surfaces,
+    /// ρ_d of the materials.
+    pub materials: &'a Image,
     /// The picture without the light of the sky, kcd/m².
     pub frame: &'a Image,
     /// E of sky and ground, klx.
@@ -145,9 +147,9 @@ impl Dome {
         Ok(Self {
             settings,
             casters: Casters::new(context, geometry, 0.0)?,
-            gather: gather_pipeline(context, settings, show, None)?,
+            gather: gather_pipeline(context, geometry, settings, show, None)?,
             begin: prior
-                .map(|_| gather_pipeline(context, settings, show, prior))
+                .map(|_| gather_pipeline(context, geometry, settings, show, prior))
                 .transpose()?,
             resolve: fullscreen(
                 context,
@@ -212,9 +214,8 @@ impl Dome {
         self.gather(recorder, gathered, view, &block, &push);
         self.resolve(recorder);
         if let Some(mirror) = &mut self.mirror {
-            let (materials, maps) = (geometry.materials(), (&self.maps, &block));
-            let picture = &self.radiance;
-            mirror.record(recorder, gathered, materials, view, maps, picture, index);
+            let (maps, picture) = ((&self.maps, &block), &self.radiance);
+            mirror.record(recorder, gathered, view, maps, picture, index);
         }
         self.image()
     }
@@ -312,6 +313,7 @@ impl Dome {
         self.means.swap(0, 1);
         let [[sky, rest], [old_sky, old_rest]] = &self.means;
         let surfaces = gathered.surfaces;
+        let albedo = surfaces.albedo.as_ref().unwrap_or(gathered.materials);
         let pipeline = match &self.begin {
             Some(begin) if push.share >= 1.0 => begin,
             _ => &self.gather,
@@ -320,7 +322,9 @@ impl Dome {
             .pass("dome: gather", pipeline)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
             .sample("normal", &surfaces.normal, Sampler::Nearest)
-            .sample("albedo", &surfaces.albedo, Sampler::Nearest)
+            .sample("albedo", albedo, Sampler::Nearest)
+            .sample("material", &surfaces.material, Sampler::Nearest)
+            .sample("materials", gathered.materials, Sampler::Nearest)
             .sample("frame", gathered.frame, Sampler::Nearest)
             .sample("previous_sky", old_sky, Sampler::Nearest)
             .sample("previous_rest", old_rest, Sampler::Nearest)
@@ -348,6 +352,7 @@ impl Dome {
 
 fn gather_pipeline(
     context: &Arc<Context>,
+    geometry: &Geometry,
     settings: DomeSettings,
     show: Show,
     prior: Option<u32>,
@@ -367,6 +372,7 @@ fn gather_pipeline(
                 ("DIRECTIONS", settings.directions),
                 ("PRIOR", prior.is_some().into()),
                 ("OCCLUSION_DOWNSCALE", prior.unwrap_or(1)),
+                ("ALBEDO_IMAGE", geometry.has_albedo().into()),
             ],
         },
     )

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
+    Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, PipelineDesc, Recorder, Result,
     Sampler, shaders,
 };
 use crate::gpu_struct;
@@ -50,10 +50,10 @@ impl Push {
 
 /// The images.
 pub struct Surfaces {
-    /// World normal on the viewer's side, octahedral.
+    /// World normal on the viewer's side, octahedral, 16 bits a component.
     pub normal: Image,
-    /// ρ_d, and a factor on ρ_s.
-    pub albedo: Image,
+    /// ρ_d, and a factor on ρ_s; none of a scene without maps, whose table of materials has them.
+    pub albedo: Option<Image>,
     /// Number of the material (lower half), and how thick the body is behind the surface (upper half: that of a float's
     /// bits, metres).
     pub material: Image,
@@ -61,8 +61,22 @@ pub struct Surfaces {
     pub depth: Image,
 }
 
-/// Twin of `octahedral_decode`: a texel of [`Surfaces::normal`] as a unit vector.
-pub fn decode_normal([x, y]: [f32; 2]) -> [f32; 3] {
+impl Surfaces {
+    /// The colour attachments of a pass that draws them.
+    pub(super) fn colors<'r>(&'r self, pass: Pass<'r>, load: Load) -> Pass<'r> {
+        let images = [&self.normal, &self.material];
+        let images = images.into_iter().chain(&self.albedo);
+        images.fold(pass, |pass, image| pass.color(image, load))
+    }
+}
+
+/// Twin of `normal_unpack`: the halves of a word of [`Surfaces::normal`] as a unit vector.
+pub fn unpack_normal(halves: [u16; 2]) -> [f32; 3] {
+    decode_normal(halves.map(|half| (f32::from(half.cast_signed()) / 32767.0).max(-1.0)))
+}
+
+/// Twin of `octahedral_decode`.
+fn decode_normal([x, y]: [f32; 2]) -> [f32; 3] {
     let z = 1.0 - x.abs() - y.abs();
     let folded = |a: f32, b: f32| {
         if z < 0.0 {
@@ -119,9 +133,10 @@ impl Gbuffer {
     /// # Errors
     /// When the device refuses.
     pub fn new(context: &Arc<Context>, geometry: &Geometry, size: [u32; 2]) -> Result<Self> {
-        // 16 bits a component hold a direction to 0.003°; half floats, which every device renders to, to 0.03°.
-        let normal = context.supported_format(&[Format::R16G16_SNORM, Format::R16G16_SFLOAT])?;
-        let formats = [normal, Format::R16G16B16A16_SFLOAT, Format::R32_UINT];
+        let mut formats = vec![Format::R32_UINT, Format::R32_UINT];
+        if geometry.has_albedo() {
+            formats.push(Format::R16G16B16A16_SFLOAT);
+        }
         let pipelines = [(false, false), (false, true), (true, false), (true, true)]
             .map(|(diffuse, specular)| pipeline(context, &formats, diffuse, specular));
         let [plain, specular, diffuse, both] = pipelines;
@@ -129,8 +144,8 @@ impl Gbuffer {
         let image = |name, format| Image::new(context, &ImageDesc::flat(name, format, size));
         let surfaces = Surfaces {
             normal: image("normal", formats[0])?,
-            albedo: image("albedo", formats[1])?,
-            material: image("material", formats[2])?,
+            material: image("material", formats[1])?,
+            albedo: formats.get(2).map(|f| image("albedo", *f)).transpose()?,
             depth: image("depth", Format::D32_SFLOAT)?,
         };
         Ok(Self {
@@ -155,11 +170,9 @@ impl Gbuffer {
         let clip_from_world = view.clip_from_world().to_cols_array_2d();
         let clear = Load::Clear([0.0; 4]);
         let cull = Cull::camera(view);
-        recorder
-            .pass("G-buffer", &self.pipelines[0][0])
-            .color(&self.surfaces.normal, clear)
-            .color(&self.surfaces.albedo, clear)
-            .color(&self.surfaces.material, clear)
+        let pass = recorder.pass("G-buffer", &self.pipelines[0][0]);
+        self.surfaces
+            .colors(pass, clear)
             .depth(&self.surfaces.depth, clear)
             .draws(|draws| {
                 let (eye, mut variant) = (view.camera.eye, [0, 0]);

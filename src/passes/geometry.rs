@@ -100,7 +100,7 @@ pub struct Geometry {
     textures: Vec<Image>,
     white: Image,
     is_specular: bool,
-    materials: Buffer,
+    materials: Image,
     bounds: Bounds,
     casters: Bounds,
 }
@@ -116,7 +116,6 @@ impl Geometry {
         };
         let bodies = Bodies::of(scene);
         let normals = normals_and_thickness(scene, &bodies);
-        let table: Vec<[f32; 4]> = scene.materials.iter().map(table_row).collect();
         let surfaces: Vec<Surface> = scene.materials.iter().map(surface).collect();
         let textures: Result<Vec<Image>> = scene
             .textures
@@ -154,12 +153,7 @@ impl Geometry {
             surfaces,
             textures: textures?,
             white: upload(recorder, &white())?,
-            materials: upload_buffer(
-                recorder,
-                "materials",
-                BufferKind::Storage,
-                bytemuck::cast_slice(&table),
-            )?,
+            materials: upload_materials(recorder, &scene.materials)?,
             bounds: scene.bounds,
             casters: scene.casters(),
         })
@@ -175,9 +169,22 @@ impl Geometry {
         &self.casters
     }
 
-    /// ρ_s and p of every material.
-    pub fn materials(&self) -> &Buffer {
+    /// ρ_d, ρ_s and p of every material, see `include/materials.glsl`.
+    pub fn materials(&self) -> &Image {
         &self.materials
+    }
+
+    /// ρ_d of a material, without its map.
+    pub fn diffuse(&self, material: u32) -> Vec3 {
+        self.surfaces
+            .get(material as usize)
+            .map_or(Vec3::ZERO, |s| s.diffuse)
+    }
+
+    /// Whether ρ_d and the factor on ρ_s vary over any material.
+    pub fn has_albedo(&self) -> bool {
+        let varies = |k: Kind| k.diffuse_map || k.specular_map || k.colours;
+        self.kinds().any(varies)
     }
 
     /// Draws everything that casts a shadow into what `cull` sees and has no holes, positions only.
@@ -415,9 +422,22 @@ fn normals_and_thickness(scene: &Scene, bodies: &Bodies) -> Vec<[f32; 4]> {
         .collect()
 }
 
-fn table_row(material: &Material) -> [f32; 4] {
-    let [r, g, b] = material.specular;
-    [r, g, b, material.shininess]
+/// Materials in a row of the table of materials.
+const MATERIAL_COLUMNS: usize = 1024;
+
+/// The table of `include/materials.glsl`.
+fn upload_materials(recorder: &mut Recorder, materials: &[Material]) -> Result<Image> {
+    let rows = 2 * materials.len().div_ceil(MATERIAL_COLUMNS).max(1);
+    let mut table = vec![[0.0f32; 4]; rows * MATERIAL_COLUMNS];
+    for (i, material) in materials.iter().enumerate() {
+        let at = i / MATERIAL_COLUMNS * 2 * MATERIAL_COLUMNS + i % MATERIAL_COLUMNS;
+        let ([r, g, b], [x, y, z]) = (material.diffuse, material.specular);
+        table[at] = [r, g, b, 0.0];
+        table[at + MATERIAL_COLUMNS] = [x, y, z, material.shininess];
+    }
+    let size = [MATERIAL_COLUMNS as u32, rows as u32];
+    let desc = ImageDesc::flat("materials", Format::R32G32B32A32_SFLOAT, size);
+    upload_texture(recorder, &desc, &[bytemuck::cast_slice(&table)])
 }
 
 fn surface(material: &Material) -> Surface {

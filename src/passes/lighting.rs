@@ -11,8 +11,8 @@ use serde::Deserialize;
 use crate::daylight::false_colour::Quantity;
 use crate::daylight::sky::Daylight;
 use crate::gpu::{
-    Buffer, Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, PipelineDesc, Recorder,
-    Result, Sampler, shaders,
+    Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, PipelineDesc, Recorder, Result,
+    Sampler, shaders,
 };
 use crate::gpu_struct;
 
@@ -163,6 +163,8 @@ pub struct LightingSettings {
     pub limb_darkening: f32,
     /// Pixels to a texel of the occlusion, each way.
     pub occlusion_downscale: u32,
+    /// Whether ρ_d of each pixel is in an image, which [`crate::frame::Frame`] sets: scenes without maps have none.
+    pub has_albedo: bool,
     /// Whether ρ_s grows toward grazing angles (Schlick's approximation of Fresnel's equations).
     pub fresnel: bool,
     /// How surfaces mirror.
@@ -238,6 +240,7 @@ impl Lighting {
         }
         constants.push(("NORMALIZED", (phong == Phong::Normalized).into()));
         constants.push(("FRESNEL", settings.fresnel.into()));
+        constants.push(("ALBEDO_IMAGE", settings.has_albedo.into()));
         constants.push(("AMBIENT", (!is_converging).into()));
         constants.push(("PLANE_SHADOW", is_converging.into()));
         let pipeline = Pipeline::new(
@@ -265,7 +268,7 @@ impl Lighting {
         &mut self,
         recorder: &mut Recorder,
         surfaces: &Surfaces,
-        materials: &Buffer,
+        materials: &Image,
         occlusion: &Image,
         light: &Light<'_>,
         view: &View,
@@ -281,7 +284,7 @@ impl Lighting {
         &mut self,
         recorder: &mut Recorder,
         surfaces: &Surfaces,
-        materials: &Buffer,
+        materials: &Image,
         occlusion: &Image,
         light: &Light<'_>,
         view: &View,
@@ -296,22 +299,24 @@ impl Lighting {
         &'r self,
         recorder: &'r mut Recorder,
         surfaces: &'r Surfaces,
-        materials: &'r Buffer,
+        materials: &'r Image,
         occlusion: &'r Image,
         light: &Light<'r>,
         view: &View,
     ) -> Pass<'r> {
+        // A scene without maps has no such image, and a pipeline that reads none.
+        let albedo = surfaces.albedo.as_ref().unwrap_or(materials);
         recorder
             .pass("lighting", &self.pipeline)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
             .sample("normal", &surfaces.normal, Sampler::Nearest)
-            .sample("albedo", &surfaces.albedo, Sampler::Nearest)
+            .sample("albedo", albedo, Sampler::Nearest)
             .sample("material", &surfaces.material, Sampler::Nearest)
             .sample("occlusion", occlusion, Sampler::Nearest)
             .sample("shadow_map", light.shadow_map, Sampler::Nearest)
             .sample("sky_irradiance", light.sky_irradiance, Sampler::Linear)
             .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
-            .storage("Materials", materials)
+            .sample("materials", materials, Sampler::Nearest)
             .uniform("view", &view.block())
             .uniform("sun", &self.sun_block(light))
             .color(&self.radiance, Load::Discard)

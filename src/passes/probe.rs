@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
+use glam::Vec3;
+
 use crate::gpu::{Buffer, BufferKind, Context, Image, Recorder, Result, Texel, copy_texel};
 
-use super::gbuffer::Surfaces;
+use super::gbuffer::{Surfaces, unpack_normal};
 use super::lighting::{Lighting, LightingSettings, Precision, Show};
 
 /// What one pixel shows.
@@ -33,8 +35,8 @@ pub struct SurfaceReading {
     pub material: u32,
 }
 
-/// Texels that are copied: radiance, illuminance, normal, albedo, material, depth.
-const TEXELS: usize = 6;
+/// Texels that are copied: radiance, illuminance, normal, material, depth.
+const TEXELS: usize = 5;
 
 /// The pass and where its texels arrive.
 pub struct Probe {
@@ -48,6 +50,8 @@ pub struct Probe {
 struct Asked {
     pixel: [u32; 2],
     texels: [Texel; TEXELS],
+    /// Of scenes with maps.
+    albedo: Option<Texel>,
     near: f32,
     unit: f32,
 }
@@ -63,7 +67,7 @@ impl Probe {
             precision: Precision::Half,
             ..settings
         };
-        let bytes = (TEXELS * Texel::MOST_BYTES) as u64;
+        let bytes = ((TEXELS + 1) * Texel::MOST_BYTES) as u64;
         Ok(Self {
             illuminance: Lighting::new(context, size, settings)?,
             buffer: Buffer::new(context, "probe", BufferKind::ReadBack, bytes)?,
@@ -86,36 +90,43 @@ impl Probe {
             radiance,
             self.illuminance.image(),
             &surfaces.normal,
-            &surfaces.albedo,
             &surfaces.material,
             &surfaces.depth,
         ];
         let mut slot = 0;
-        let texels = images.map(|image| {
+        let mut copied = |image| {
             let texel = copy_texel(recorder, image, pixel, &self.buffer, slot);
             slot += 1;
             texel
-        });
+        };
+        let texels = images.map(&mut copied);
+        let albedo = surfaces.albedo.as_ref().map(copied);
         self.asked = Some(Asked {
             pixel,
             texels,
+            albedo,
             near,
             unit: shown.file_unit(),
         });
     }
 
-    /// The answer, once the frame that asked is done.
-    pub fn reading(&mut self) -> Option<Reading> {
+    /// The answer, once the frame that asked is done. `diffuse` is ρ_d of a material.
+    pub fn reading(&mut self, diffuse: impl FnOnce(u32) -> Vec3) -> Option<Reading> {
         let asked = self.asked.take()?;
-        let [radiance, illuminance, normal, albedo, material, depth] =
+        let [radiance, illuminance, normal, material, depth] =
             asked.texels.map(|t| t.read(&self.buffer));
         let rgb = |t: [f32; 4], unit: f32| [t[0] * unit, t[1] * unit, t[2] * unit];
+        let number = material[0] as u32;
+        let albedo = match asked.albedo {
+            Some(texel) => rgb(texel.read(&self.buffer), 1.0),
+            None => diffuse(number).to_array(),
+        };
         let surface = (depth[0] > 0.0).then(|| SurfaceReading {
             illuminance: rgb(illuminance, Show::Irradiance.file_unit()),
-            normal: super::gbuffer::decode_normal([normal[0], normal[1]]),
-            albedo: rgb(albedo, 1.0),
+            normal: unpack_normal([normal[0] as u16, normal[1] as u16]),
+            albedo,
             distance: asked.near / depth[0],
-            material: material[0] as u32,
+            material: number,
         });
         Some(Reading {
             pixel: asked.pixel,

@@ -11,8 +11,8 @@ use glam::Vec2;
 
 use crate::daylight::sampling;
 use crate::gpu::{
-    Buffer, Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder,
-    Result, Sampler, shaders,
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
+    Sampler, shaders,
 };
 use crate::gpu_struct;
 
@@ -122,7 +122,6 @@ impl Mirror {
         &mut self,
         recorder: &mut Recorder,
         gathered: &Gathered<'_>,
-        materials: &Buffer,
         view: &View,
         (maps, block): (&Image, &DomeBlock),
         picture: &Image,
@@ -130,18 +129,19 @@ impl Mirror {
     ) {
         self.means.swap(0, 1);
         let [[mirror, lobe], [old_mirror, old_lobe]] = &self.means;
-        let surfaces = gathered.surfaces;
+        let (surfaces, materials) = (gathered.surfaces, gathered.materials);
+        let albedo = surfaces.albedo.as_ref().unwrap_or(materials);
         recorder
             .pass("dome: mirrors", &self.gather)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
             .sample("normal", &surfaces.normal, Sampler::Nearest)
-            .sample("albedo", &surfaces.albedo, Sampler::Nearest)
+            .sample("albedo", albedo, Sampler::Nearest)
             .sample("material", &surfaces.material, Sampler::Nearest)
             .sample("previous_mirror", old_mirror, Sampler::Nearest)
             .sample("previous_lobe", old_lobe, Sampler::Nearest)
             .sample("maps", maps, Sampler::Nearest)
             .sample("sky_radiance", gathered.sky_radiance, Sampler::Linear)
-            .storage("Materials", materials)
+            .sample("materials", materials, Sampler::Nearest)
             .uniform("view", &view.block())
             .uniform("dome", block)
             .push(&Push {
@@ -191,6 +191,7 @@ fn gather_pipeline(
                 ("DIRECTIONS", dome.directions),
                 ("FRESNEL", lighting.fresnel.into()),
                 ("NORMALIZED", normalized.into()),
+                ("ALBEDO_IMAGE", lighting.has_albedo.into()),
             ],
         },
     )

@@ -31,7 +31,7 @@ gpu_struct! {
 pub struct SsaoSettings {
     /// Metres; 0 turns it off (A = 1).
     pub radius: f32,
-    /// Pixels of the picture to one of the occlusion, each way: 1 or 2.
+    /// Pixels of the picture to one of the occlusion, each way: 1, or 2, of which every second is computed.
     pub downscale: u32,
     /// Samples on each side of the slice.
     pub steps: u32,
@@ -67,13 +67,26 @@ impl Ssao {
     /// # Errors
     /// When the device refuses.
     pub fn new(context: &Arc<Context>, size: [u32; 2], settings: SsaoSettings) -> Result<Self> {
-        let constants = [("STEPS", settings.steps), ("DOWNSCALE", settings.downscale)];
-        let half = size.map(|edge| edge.div_ceil(settings.downscale));
-        let image = |name| Image::new(context, &ImageDesc::flat(name, FORMAT, half));
+        let is_sparse = settings.downscale > 1;
+        let constants = [
+            ("STEPS", settings.steps),
+            ("DOWNSCALE", settings.downscale),
+            ("SPARSE", is_sparse.into()),
+        ];
+        let [width, height] = size.map(|edge| edge.div_ceil(settings.downscale));
+        let noisy = [if is_sparse { width.div_ceil(2) } else { width }, height];
+        let image = |name, size| Image::new(context, &ImageDesc::flat(name, FORMAT, size));
+        let smooth = [("SPARSE", is_sparse.into())];
         Ok(Self {
             settings,
             trace: fullscreen(context, "SSAO", &shaders::SSAO_FRAG, FORMAT, &constants)?,
-            blur: fullscreen(context, "SSAO blur", &shaders::SSAO_BLUR_FRAG, FORMAT, &[])?,
+            blur: fullscreen(
+                context,
+                "SSAO blur",
+                &shaders::SSAO_BLUR_FRAG,
+                FORMAT,
+                &smooth,
+            )?,
             pack: fullscreen(
                 context,
                 "SSAO occluders",
@@ -81,9 +94,9 @@ impl Ssao {
                 FORMAT,
                 &[("DOWNSCALE", settings.downscale)],
             )?,
-            occluders: image("occluders")?,
-            noisy: image("occlusion, noisy")?,
-            smooth: image("occlusion")?,
+            occluders: image("occluders", [width, height])?,
+            noisy: image("occlusion, noisy", noisy)?,
+            smooth: image("occlusion", [width, height])?,
         })
     }
 
@@ -105,6 +118,7 @@ impl Ssao {
             recorder
                 .pass("SSAO off", &self.blur)
                 .sample("noisy_occlusion", &self.noisy, Sampler::Nearest)
+                .sample("occluders", &self.occluders, Sampler::Nearest)
                 .color(&self.smooth, Load::Clear([0.0; 4]))
                 .draws(|_| ());
             return &self.smooth;
@@ -132,6 +146,7 @@ impl Ssao {
         recorder
             .pass("SSAO blur", &self.blur)
             .sample("noisy_occlusion", &self.noisy, Sampler::Nearest)
+            .sample("occluders", &self.occluders, Sampler::Nearest)
             .color(&self.smooth, Load::Discard)
             .draw();
         &self.smooth

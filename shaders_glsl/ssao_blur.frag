@@ -3,8 +3,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "occluder.glsl"
 
-// Takes out the pattern of ssao.frag by a box of its size, 4x4 occluders, that does not cross depth edges; fills in those that a
-// sparse target leaves out.
+// Takes out the pattern of ssao.frag by a box of 4x4 of its texels that does not cross depth edges; fills in those that a sparse
+// target leaves out.
 
 layout(location = 0) out uint occlusion; // A and the distance along the view axis, packed
 
@@ -13,7 +13,7 @@ layout(constant_id = 0) const bool SPARSE = true; // as of ssao.frag
 layout(set = 0, binding = 0) uniform usampler2D noisy_occlusion;
 layout(set = 0, binding = 1) uniform usampler2D occluders;
 
-const int TAPS = SPARSE ? 2 : 4; // of a row
+const int TAPS = 4; // of a row
 
 float distance_at(ivec2 texel) {
     ivec2 last = textureSize(occluders, 0) - 1;
@@ -35,14 +35,13 @@ void main() {
     vec2 sum = vec2(0.0);
     for (int row = 0; row < 4; ++row) {
         int y = clamp(texel.y + row - 2, 0, last.y);
-        // The first of the row that is not left of the box.
-        int first = SPARSE ? (texel.x - 1 - (y & 1)) >> 1 : texel.x - 2;
+        // Of a sparse row the second is the first that is not left of a box of 4x4 occluders.
+        int first = SPARSE ? ((texel.x - 1 - (y & 1)) >> 1) - 1 : texel.x - 2;
         for (int i = 0; i < TAPS; ++i) {
             vec2 tap = occlusion_unpack(texelFetch(noisy_occlusion, ivec2(clamp(first + i, 0, last.x), y), 0).r);
             float step = abs(tap.y - centre) * scale;
-            // Where all lie beyond an edge the nearest in depth count most.
-            float w = max(1.0 - step, 0.0) + 1e-4 / (1.0 + step * step);
-            sum += vec2(tap.x, 1.0) * w;
+            // Where all lie beyond an edge their mean is better than nothing.
+            sum += vec2(tap.x, 1.0) * max(1.0 - step, 1e-4);
         }
     }
     occlusion = occlusion_pack(clamp(sum.x / sum.y, 0.0, 1.0), centre);

@@ -187,9 +187,6 @@ impl Frame {
             sharpen: if converging.is_some() { SHARPEN } else { 0.0 },
         };
 
-        let sky = self.sky_cube.record(rec, daylight);
-        let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
-
         let (shadow, lighting, dome) = match converging {
             Some(c) => (&mut c.shadow, &mut c.lighting, Some(&mut c.dome)),
             None => (&mut self.shadow, &mut self.lighting, None),
@@ -204,8 +201,13 @@ impl Frame {
             }
             None => shadow_fit::fit(sample.sun_direction, bounds, casters, &view, resolution),
         };
-        let shadow_map = shadow.record(rec, &self.geometry, &shadow_view);
 
+        // Nothing of these reads another's images: with no barrier in between they may run at the same time.
+        let shadow_target = shadow.is_stale(&shadow_view).then(|| shadow.image());
+        rec.prepare(self.gbuffer.surfaces().images().chain(shadow_target));
+        let sky = self.sky_cube.record(rec, daylight);
+        let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
+        let shadow_map = shadow.record(rec, &self.geometry, &shadow_view);
         let surfaces = self.gbuffer.record(rec, &self.geometry, &view);
         let occlusion = match (&dome, index) {
             (Some(dome), Some(index)) if !dome.begins_with_occlusion(index) => self.ssao.image(),
@@ -347,7 +349,7 @@ impl Frame {
     /// Refines the sky's irradiance without drawing a picture; `recorder` must be recording.
     pub fn record_light(&mut self, rec: &mut Recorder, daylight: &Daylight) {
         let sky = self.sky_cube.record(rec, daylight);
-        self.irradiance.record(rec, &sky, daylight);
+        self.irradiance.refine(rec, &sky, daylight);
     }
 
     /// Whether the sky's irradiance has all its samples.

@@ -92,6 +92,8 @@ pub struct Image {
     layers: u32,
     levels: u32,
     last_use: Cell<Use>,
+    /// Whether it was brought to `last_use` ahead, and not used since.
+    is_prepared: Cell<bool>,
     name: String,
 }
 
@@ -168,6 +170,7 @@ impl Image {
             layers: desc.layers(),
             levels: desc.levels,
             last_use: Cell::new(Use::Undefined),
+            is_prepared: Cell::new(false),
             name: desc.name.to_owned(),
         };
         context.name(raw, desc.name);
@@ -200,6 +203,7 @@ impl Image {
             layers: 1,
             levels: 1,
             last_use: Cell::new(Use::Undefined),
+            is_prepared: Cell::new(false),
             name: "window".to_owned(),
         };
         image.attachment_view = image.view(vk::ImageViewType::TYPE_2D, 1)?;
@@ -301,9 +305,20 @@ impl Image {
         }
     }
 
-    /// Remembers the next use and gives the barrier that it needs.
+    /// Remembers the next use and gives the barrier that it needs: none where [`Image::prepare`] gave it already.
     pub(super) fn next(&self, next: Use) -> Option<vk::ImageMemoryBarrier2<'static>> {
-        self.barrier(self.last_use.replace(next), next, self.whole())
+        let last = self.last_use.replace(next);
+        if self.is_prepared.take() && last == next {
+            return None;
+        }
+        self.barrier(last, next, self.whole())
+    }
+
+    /// Gives the barrier of the next use ahead of it.
+    pub(super) fn prepare(&self, next: Use) -> Option<vk::ImageMemoryBarrier2<'static>> {
+        let barrier = self.next(next);
+        self.is_prepared.set(true);
+        barrier
     }
 
     /// The barrier of one mip level. The caller leaves all levels in one use at the end, and says which.

@@ -299,8 +299,8 @@ impl Pipeline {
 
     /// Whether another pipeline can be used in the same pass with the same bindings.
     pub(super) fn is_variant_of(&self, other: &Self) -> bool {
-        let slots = |p: &Self| p.slots.iter().map(|s| s.binding).collect::<Vec<_>>();
-        slots(self) == slots(other)
+        let slots = self.slots.iter().map(|s| s.binding);
+        slots.eq(other.slots.iter().map(|s| s.binding))
             && self.push == other.push
             && self.colors == other.colors
             && self.depth == other.depth

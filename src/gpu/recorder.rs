@@ -9,7 +9,7 @@ use super::access::Use;
 use super::buffer::{Buffer, BufferKind};
 use super::context::Context;
 use super::error::{During, GpuError, Result};
-use super::image::Image;
+use super::image::{Image, is_depth};
 use super::pass::Pass;
 use super::pipeline::Pipeline;
 use super::timings::{PassTime, Queries, Stopwatch, Timing, Timings};
@@ -19,6 +19,8 @@ use super::work::{PassWork, Traffic, WorkLog};
 const UNIFORM_BYTES: u64 = 1 << 16;
 /// Descriptor sets a recorder can use without push descriptors.
 const POOL_SETS: u32 = 4096;
+
+type Barriers = arrayvec::ArrayVec<vk::ImageMemoryBarrier2<'static>, 32>;
 
 /// One command buffer with what it needs between `begin` and `finish`.
 pub struct Recorder {
@@ -350,14 +352,30 @@ impl Recorder {
         }
     }
 
+    /// Brings what later passes draw to into place now, so that no barrier stands between them: passes that do not read each
+    /// other's images may then run at the same time.
+    pub fn prepare<'i>(&self, targets: impl Iterator<Item = &'i Image>) {
+        let barriers = targets.filter_map(|image| {
+            image.prepare(if is_depth(image.format()) {
+                Use::DepthAttachment
+            } else {
+                Use::ColorAttachment
+            })
+        });
+        self.barrier(&barriers.collect());
+    }
+
     /// Brings images to their next use with one barrier command.
     pub(super) fn transition<'i>(&self, uses: impl Iterator<Item = (&'i Image, Use)>) {
-        let barriers: arrayvec::ArrayVec<_, 32> =
-            uses.filter_map(|(image, next)| image.next(next)).collect();
+        let barriers = uses.filter_map(|(image, next)| image.next(next));
+        self.barrier(&barriers.collect());
+    }
+
+    fn barrier(&self, barriers: &Barriers) {
         if barriers.is_empty() {
             return;
         }
-        let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
+        let info = vk::DependencyInfo::default().image_memory_barriers(barriers);
         // SAFETY: the command buffer is recording outside of a rendering; the images are alive.
         unsafe {
             self.context

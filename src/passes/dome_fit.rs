@@ -7,7 +7,7 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use crate::scene::Bounds;
 
-use super::shadow_fit::{ShadowView, depth_range, visible_points};
+use super::shadow_fit::{Hull, ShadowView, depth_range, visible_points};
 use super::view::View;
 
 /// Texels around what is seen: one for the sub-texel shift, one for rounding.
@@ -20,7 +20,7 @@ const NEAREST: f32 = 0.03;
 /// What is seen: the hull of the receivers, and from where.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Receivers {
-    points: Vec<Vec3>,
+    points: Hull,
     eye: Vec3,
     forward: Vec3,
 }

@@ -62,6 +62,12 @@ pub struct Surfaces {
 }
 
 impl Surfaces {
+    /// All of them.
+    pub fn images(&self) -> impl Iterator<Item = &Image> {
+        let images = [&self.normal, &self.material, &self.depth];
+        images.into_iter().chain(&self.albedo)
+    }
+
     /// The colour attachments of a pass that draws them.
     pub(super) fn colors<'r>(&'r self, pass: Pass<'r>, load: Load) -> Pass<'r> {
         let images = [&self.normal, &self.material];

@@ -175,6 +175,11 @@ impl Shadow {
         self.depth.size()[0]
     }
 
+    /// Whether the map of this view must be drawn anew.
+    pub fn is_stale(&self, view: &ShadowView) -> bool {
+        self.drawn.as_ref() != Some(view)
+    }
+
     /// Draws the map if the sun or the fit changed.
     pub fn record(
         &mut self,
@@ -182,7 +187,7 @@ impl Shadow {
         geometry: &Geometry,
         view: &ShadowView,
     ) -> &Image {
-        if self.drawn.as_ref() != Some(view) {
+        if self.is_stale(view) {
             let tile = Tile {
                 view: *view,
                 origin: [0, 0],

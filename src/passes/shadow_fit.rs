@@ -1,5 +1,6 @@
 //! The sun's orthographic view: fitted to what the camera sees, deep enough for everything that may cast on it.
 
+use arrayvec::ArrayVec;
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use crate::scene::Bounds;
@@ -150,24 +151,31 @@ impl Plane {
 }
 
 /// The corners of the view's pyramid cut with the box: the receivers' hull.
-pub(super) fn visible_points(bounds: &Bounds, view: &View) -> Vec<Vec3> {
+pub(super) fn visible_points(bounds: &Bounds, view: &View) -> Hull {
     let frustum = frustum(view);
-    let mut points = Vec::new();
+    let mut points = Hull::new();
     for face in box_faces(bounds) {
-        points.extend(clip(face.to_vec(), &frustum));
+        points.extend(clip(&face, &frustum));
     }
     // Where the pyramid's own edges end inside the box.
     let sides = box_planes(bounds);
     for face in pyramid_faces(bounds, view) {
-        points.extend(clip(face.to_vec(), &sides));
+        points.extend(clip(&face, &sides));
     }
     points
 }
 
+/// Corners of a convex polygon: a plane adds one at most, and no more than four and six planes cut triangles and squares.
+type Polygon = ArrayVec<Vec3, 10>;
+
+/// Corners of the polygons of six faces of a box and four of a pyramid.
+pub(super) type Hull = ArrayVec<Vec3, 100>;
+
 /// Cuts a convex polygon with half-spaces (Sutherland and Hodgman 1974).
-fn clip(mut polygon: Vec<Vec3>, planes: &[Plane]) -> Vec<Vec3> {
+fn clip(corners: &[Vec3], planes: &[Plane]) -> Polygon {
+    let mut polygon: Polygon = corners.iter().copied().collect();
     for plane in planes {
-        let mut kept = Vec::with_capacity(polygon.len() + 1);
+        let mut kept = Polygon::new();
         for (i, &b) in polygon.iter().enumerate() {
             let a = polygon[(i + polygon.len() - 1) % polygon.len()];
             let (da, db) = (plane.distance(a), plane.distance(b));

@@ -36,6 +36,22 @@ enum Resource {
     Buffer(vk::DescriptorBufferInfo),
 }
 
+impl Resource {
+    /// Whether both name the same thing.
+    fn is(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Image(a), Self::Image(b)) => {
+                (a.sampler, a.image_view, a.image_layout)
+                    == (b.sampler, b.image_view, b.image_layout)
+            }
+            (Self::Buffer(a), Self::Buffer(b)) => {
+                (a.buffer, a.offset, a.range) == (b.buffer, b.offset, b.range)
+            }
+            _ => false,
+        }
+    }
+}
+
 #[derive(Clone, Copy)]
 struct Bound {
     binding: Binding,
@@ -251,6 +267,8 @@ impl<'r> Pass<'r> {
             .iter_mut()
             .find(|b| b.binding.binding == binding.binding)
         {
+            // Materials without maps share what stands for them.
+            Some(old) if old.resource.is(&resource) => return,
             Some(old) => *old = new,
             None => self.bound.push(new),
         }

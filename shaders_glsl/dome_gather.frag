@@ -6,6 +6,7 @@
 #include "occlusion.glsl"
 #include "octahedral.glsl"
 #include "view.glsl"
+#include "dome.glsl"
 
 // The light of the sky by shadow maps from directions of the sky: E = 1/n sum V (n.w) L/p, and what it would be without V.
 // Both are averaged over the frames, with everything else that the frames show; their quotient is A, weighted by the light.
@@ -36,13 +37,7 @@ layout(set = 0, binding = 5) uniform sampler2D previous_rest;
 layout(set = 0, binding = 6) uniform sampler2D maps;           // reversed: 1 is nearest the light
 layout(set = 0, binding = 7) uniform samplerCube sky_irradiance; // E of sky and ground, klx
 layout(set = 0, binding = 8, scalar) uniform View { VIEW_BLOCK } view;
-layout(set = 0, binding = 9, scalar) uniform Dome {
-    mat4 clip_from_world[16];
-    mat4 planes[16];  // its inverse transpose
-    vec4 window[16];  // first texel of the map and its edges
-    vec4 toward[16];  // unit, toward the light; a: bias of depth
-    vec4 light[16];   // share of the irradiance at normal incidence, klx; a: 1 of the sky, 0 of the ground
-} dome;
+layout(set = 0, binding = 9, scalar) uniform Dome { DOME_BLOCK } dome;
 
 layout(set = 0, binding = 10) uniform usampler2D occlusion;
 layout(set = 0, binding = 11) uniform usampler2D material;

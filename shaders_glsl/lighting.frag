@@ -5,6 +5,7 @@
 #include "materials.glsl"
 #include "occlusion.glsl"
 #include "octahedral.glsl"
+#include "phong.glsl"
 #include "view.glsl"
 
 // The lecture's slide "Illumination model for skylight":
@@ -38,6 +39,8 @@ layout(constant_id = 14) const bool ALBEDO_IMAGE = true;
 layout(constant_id = 15) const int CASCADES = 1;
 // Penumbrae as wide as the sun's disc makes them.
 layout(constant_id = 16) const bool PCSS = false;
+// The lobe of mirrors as a reflectance: of sun and sky alike, in balance of energy.
+layout(constant_id = 17) const bool NORMALIZED = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform usampler2D normal;
@@ -95,14 +98,6 @@ float visibility(vec3 world, vec3 n, float n_dot_l) {
     return lit * 0.25;
 }
 
-/// Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering": rho_s toward grazing angles. A rough surface, by
-/// the rule that gives it its rho_s and p, mirrors no more than the share g = (1 - roughness)^2.
-vec3 grazing(vec3 rho_s, float shininess, float cosine) {
-    float smoothness = 1.0 - pow(2.0 / (shininess + 2.0), 0.25);
-    vec3 most = max(vec3(smoothness * smoothness), rho_s);
-    return mix(rho_s, most, pow(clamp(1.0 - cosine, 0.0, 1.0), 5.0));
-}
-
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec2 uv = gl_FragCoord.xy / vec2(textureSize(depth, 0));
@@ -143,8 +138,11 @@ void main() {
         if (FRESNEL && any(greaterThan(rho_s, vec3(0.0)))) rho_s = grazing(rho_s, m.a, -dot(toward, n));
         vec3 r = reflect(toward, n);
         float r_dot_l = max(dot(r, sun.direction), 0.0);
-        if (SUN_SPECULAR) sum += rho_s * (pow(r_dot_l, m.a) * V) * sun.illuminance;
-        if (SKY_SPECULAR) sum += rho_s * textureLod(sky_radiance, r, 0.0).rgb;
+        float lobe = pow(r_dot_l, m.a);
+        if (NORMALIZED) lobe *= phong_scale(m.a) * max(n_dot_l, 0.0);
+        if (SUN_SPECULAR) sum += rho_s * (lobe * V) * sun.illuminance;
+        if (SKY_SPECULAR && NORMALIZED) sum += rho_s * sky_in_lobe(sky_radiance, r, n, m.a, vec2(0.0));
+        else if (SKY_SPECULAR) sum += rho_s * textureLod(sky_radiance, r, 0.0).rgb;
     }
     radiance = vec4(min(sum, sun.max_radiance), 1.0);
 }

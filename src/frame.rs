@@ -255,6 +255,7 @@ impl Frame {
                     frame,
                     sky_irradiance,
                     occlusion,
+                    sky_radiance: sky.radiance,
                 };
                 dome.record(rec, &self.geometry, &gathered, daylight, &view, index)
             }

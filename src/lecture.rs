@@ -31,6 +31,8 @@
 //! | Irradiance environment map | six faces by gl_Layer | [`IrradianceMethod`](crate::daylight::IrradianceMethod) | `cube_faces.geom`: `gl_Layer` | `exact_of_a_64_cube` |
 //! | Irradiance environment map | rnd(t) | [`rnd`](crate::daylight::sampling::rnd), [`tea`](crate::daylight::sampling::tea) | `include/random.glsl`: `rnd` | `rnd_is_uniform` |
 //! | Illumination model | L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r)) | [`Show`](crate::settings::Show) | `lighting.frag`: `r_dot_l` | `each_addend_is_in_the_picture_once` |
+//! | Rendering equation | ρ_s V(x, r) L_sky(r), V over the lobe around r | [`Reflections::Hidden`](crate::settings::Reflections::Hidden) | `dome_mirror.frag`: `along_r` | `a_mirror_on_the_floor_shows_the_sky_in_the_opening_and_nowhere_else` |
+//! | Rendering equation | V(x, ω) L_sky(ω) cos θ over the sky | [`SkyDome`](crate::daylight::dome::SkyDome) | `dome_gather.frag`: `light_of_directions` | `a_room_with_an_opening_gets_the_light_of_its_configuration_factor` |
 //!
 //! # The slips, and what is done instead
 //!

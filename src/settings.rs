@@ -4,6 +4,7 @@
 mod command;
 mod parameters;
 mod resolve;
+mod sun_input;
 mod values;
 
 use chrono::{DateTime, FixedOffset};
@@ -14,8 +15,10 @@ pub use crate::daylight::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCur
 pub use crate::frame::{Filter, Visibility};
 pub use crate::gpu::Optional;
 use crate::passes::dome::MOST_DIRECTIONS;
+pub use crate::passes::reflection::{Mirrors, Phong, Reflections};
 pub(crate) use parameters::name;
-pub use resolve::{CameraParts, Exposure, Settings, SunInput};
+pub use resolve::{CameraParts, Exposure, Settings};
+pub use sun_input::SunInput;
 pub use values::{
     AoResolution, Direction, ExposureMode, Fresnel, Limits, Penumbra, Place, Preset, Show, Size,
     SolarTime, Switch,
@@ -40,6 +43,10 @@ pub struct Options {
     /// Frames to accumulate: anti-aliasing, soft sun, less noise [default: 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536), help_heading = "Picture")]
     pub samples: Option<u32>,
+    /// Stop before --samples when the picture's noise is less: the standard error of its luminance, relative to the mean, as an
+    /// estimate from the samples, for instance 0.01 [with it, --samples is 4096 by default; render only].
+    #[arg(long, value_name = "R", value_parser = values::noise, allow_hyphen_values = true, help_heading = "Picture")]
+    pub noise: Option<f64>,
     /// What hides the sky: ambient occlusion of the screen, or shadow maps from directions of the sky, which converge to the
     /// truth with the samples [default: dome from 16 samples on, else ssao].
     #[arg(long, value_enum, value_name = "HOW", help_heading = "Picture")]
@@ -152,6 +159,13 @@ pub struct Options {
     /// Whether mirrors grow stronger toward grazing angles [default: off].
     #[arg(long, value_enum, value_name = "HOW", help_heading = "Light")]
     pub fresnel: Option<Fresnel>,
+    /// Form of mirrors' highlights: the lecture's (r·l)^p beside a perfect mirror of the sky, or one reflectance for both that
+    /// keeps the balance of energy [default: lecture].
+    #[arg(long, value_enum, value_name = "FORM", help_heading = "Light")]
+    pub phong: Option<Phong>,
+    /// Whether what stands before the sky hides it from mirrors too (hidden needs --visibility dome) [default: open].
+    #[arg(long, value_enum, value_name = "HOW", help_heading = "Light")]
+    pub reflections: Option<Reflections>,
     /// Draw the sun's disc darker toward its limb, as it is (same illuminance).
     #[arg(long, help_heading = "Light")]
     pub limb_darkening: bool,
@@ -251,9 +265,9 @@ impl Options {
             (base.ev100, base.exposure, base.scale) = (None, None, None);
         }
         first_of!(self, base;
-            size tile penumbra samples visibility filter seed show preset place when sun solar sun_position sky turbidity sky_illuminance refraction ground_albedo camera eye target fov
+            size tile penumbra samples noise visibility filter seed show preset place when sun solar sun_position sky turbidity sky_illuminance refraction ground_albedo camera eye target fov
             ev100 exposure tonemap gamma scale false_colour false_colour_range irradiance irradiance_samples irradiance_error ao_radius ao_resolution specular shadow_size
-            dome_directions dome_size smooth device without max_triangles max_texture_edge max_texture_mib max_file_mib fresnel moment;
+            dome_directions dome_size smooth device without max_triangles max_texture_edge max_texture_mib max_file_mib fresnel phong reflections moment;
             layers limb_darkening quiet validate allow_outside no_cache)
     }
 }

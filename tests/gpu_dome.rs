@@ -2,13 +2,15 @@
 
 #[path = "common/gpu.rs"]
 mod gpu;
+#[path = "common/room.rs"]
+mod room;
 
 use std::f64::consts::PI;
 
-use glam::DVec3;
 use gpu::{
     Device, Model, Picture, camera, clear_day, constant_sky, matt, on_ground, settings, showing,
 };
+use room::{ROOM, configuration_factor, room, under_the_roof};
 use skylight::daylight::colour::luminance;
 use skylight::daylight::sky::Daylight;
 use skylight::frame::{Frame, FrameSettings, Visibility};
@@ -23,58 +25,13 @@ fn dome(edge: u32, samples: u32) -> FrameSettings {
     set
 }
 
-/// Half the edge of the room's floor, its height, and half the edge of the opening in its roof, metres.
-const ROOM: [f32; 3] = [2.0, 3.0, 0.8];
-
-/// A room with an opening in the middle of its roof; `open` is half the edge of that, 0 closes it.
-fn room(open: f32) -> Scene {
-    let ([half, height, _], white) = (ROOM, matt(0.8));
-    let (edge, rim) = (2.0 * half, half - open);
-    let long = |z: f32| ([-half, height, z], [edge, 0.0, 0.0], [0.0, 0.0, rim]);
-    let short = |x: f32| ([x, height, -open], [rim, 0.0, 0.0], [0.0, 0.0, 2.0 * open]);
-    let mut model = Model::default().ground(half, &white);
-    for (corner, a, b) in [long(-half), long(open), short(-half), short(open)] {
-        if a[0] * b[2] > 0.0 {
-            model = model.quad(corner, a, b, &white);
-        }
-    }
-    let up = [0.0, height, 0.0];
-    model
-        .quad([-half, 0.0, -half], [edge, 0.0, 0.0], up, &white)
-        .quad([-half, 0.0, half], [edge, 0.0, 0.0], up, &white)
-        .quad([-half, 0.0, -half], [0.0, 0.0, edge], up, &white)
-        .quad([half, 0.0, -half], [0.0, 0.0, edge], up, &white)
-        .build()
-}
-
-/// From under the roof, down to the floor.
-fn under_the_roof() -> Camera {
-    Camera {
-        fov_deg: 70.0,
-        ..camera([0.3, 2.9, 0.4], [0.0, 0.0, 0.0])
-    }
-}
-
-/// Configuration factor of a horizontal element at `p` to the opening above: the sum over its corners of the factor to a
-/// rectangle with one corner over the element (Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-4).
-fn configuration_factor(p: DVec3) -> f64 {
-    let [_, height, open] = ROOM.map(f64::from);
-    let corner = |x: f64, y: f64| {
-        let (a, b) = (x / height, y / height);
-        let (ra, rb) = ((1.0 + a * a).sqrt(), (1.0 + b * b).sqrt());
-        (a / ra * (b / ra).atan() + b / rb * (a / rb).atan()) / (2.0 * PI)
-    };
-    let (x0, x1, y0, y1) = (-open - p.x, open - p.x, -open - p.z, open - p.z);
-    corner(x1, y1) - corner(x0, y1) - corner(x1, y0) + corner(x0, y0)
-}
-
 #[test]
 fn a_room_with_an_opening_gets_the_light_of_its_configuration_factor() {
     const L: f64 = 5000.0;
     let mut device = Device::new();
     let set = showing(Show::Irradiance, dome(96, 256));
     let (view, day) = (under_the_roof(), constant_sky(L));
-    let picture = device.picture(&room(ROOM[2]), set, &day, &view);
+    let picture = device.picture(&room(ROOM[2], &matt(0.8)), set, &day, &view);
     let (mut found, mut exact, mut count) = (0.0, 0.0, 0);
     for (pixel, e) in picture.pixels() {
         let Some(p) = on_ground(&view, picture.size, pixel) else {
@@ -101,7 +58,12 @@ fn a_closed_room_is_dark_to_its_corners() {
     const L: f64 = 5000.0;
     let mut device = Device::new();
     let set = showing(Show::Irradiance, dome(96, 64));
-    let picture = device.picture(&room(0.0), set, &constant_sky(L), &under_the_roof());
+    let picture = device.picture(
+        &room(0.0, &matt(0.8)),
+        set,
+        &constant_sky(L),
+        &under_the_roof(),
+    );
     let shares: Vec<f64> = picture
         .pixels()
         .map(|(_, e)| 1000.0 * luminance(e) / (PI * L))

@@ -59,6 +59,7 @@ fn settings() -> FrameSettings {
             limb_darkening: 0.0,
             fresnel: false,
             shadows: Shadows::default(),
+            mirrors: skylight::passes::reflection::Mirrors::default(),
             has_albedo: true,
             occlusion_downscale: SsaoSettings::default().downscale,
         },

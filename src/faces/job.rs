@@ -204,6 +204,7 @@ impl Job {
                     cascades: 0,
                     penumbrae: s.penumbra == Penumbra::Sun,
                 },
+                mirrors: s.mirrors,
             },
             tone: ToneSettings {
                 show,

@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use indicatif::ProgressBar;
-
+use super::interrupt;
 use super::job::Job;
-use super::progress;
+use super::samples::{self, Drawn, Progress, Rule};
 use super::tiled::Tiled;
 use crate::daylight::colour::luminance;
 use crate::daylight::exposure::automatic;
@@ -64,7 +63,8 @@ struct Renderer<'j> {
     job: &'j Job,
     recorder: Recorder,
     frame: Frame,
-    progress: ProgressBar,
+    rule: Rule,
+    progress: Progress,
 }
 
 impl<'j> Renderer<'j> {
@@ -78,48 +78,44 @@ impl<'j> Renderer<'j> {
         recorder.begin()?;
         let frame = Frame::new(&mut recorder, &job.scene, settings)?;
         recorder.finish()?;
-        let layers = if job.settings.layers {
-            1 + extra_layers().count()
-        } else {
-            1
+        let rule = Rule {
+            most: settings.samples,
+            noise: job.settings.noise,
         };
-        let steps = layers as u64 * u64::from(settings.samples);
         Ok(Self {
             job,
             recorder,
             frame,
-            progress: progress(steps, "samples", job.settings.quiet),
+            rule,
+            progress: Progress::new(&rule, job.settings.quiet),
         })
     }
 
     /// Draws the picture, or the quantity that the frame shows.
-    fn draw(&mut self) -> Result<()> {
+    fn draw(&mut self, rule: Rule) -> Result<Drawn> {
         while !self.frame.is_refined() {
             self.recorder.begin()?;
             self.frame
                 .record_light(&mut self.recorder, &self.job.daylight);
             self.recorder.finish()?;
         }
-        for index in 0..self.job.settings.samples {
-            self.recorder.begin()?;
-            self.frame.record(
-                &mut self.recorder,
-                &self.job.daylight,
-                &self.job.camera,
-                index,
-            );
-            self.recorder.finish()?;
-            self.progress.inc(1);
-        }
-        Ok(())
+        interrupt::listen();
+        samples::draw(
+            &mut self.frame,
+            &mut self.recorder,
+            self.job,
+            &rule,
+            &self.progress,
+        )
     }
 
     fn save_png(&mut self, path: &Path) -> Result<String> {
-        self.draw()?;
+        let drawn = self.draw(self.rule)?;
         let colours = self.false_colours()?;
         let mut pixels = read_back(&mut self.recorder, self.frame.display())?;
         let ev100 = self.ev100()?;
         let mut metadata = self.job.metadata();
+        metadata.extend(drawn.metadata(&self.rule));
         if let Some(ev100) = ev100 {
             metadata.push(("ev100 used".into(), format!("{ev100:.3}")));
         }
@@ -133,8 +129,10 @@ impl<'j> Renderer<'j> {
             summary = format!(", {range} {}", quantity.unit());
         }
         write_png(path, pixels.size, &pixels.bytes, encoding, &metadata)?;
-        self.progress.finish_and_clear();
-        Ok(format!("{}x{}{summary}", pixels.size[0], pixels.size[1]))
+        self.progress.clear();
+        let samples = drawn.summary(&self.rule);
+        let [width, height] = pixels.size;
+        Ok(format!("{width}x{height}{summary}{samples}"))
     }
 
     /// What false colours show, and their range; one that was not given is looked for in the picture, which is then mapped
@@ -176,26 +174,38 @@ impl<'j> Renderer<'j> {
 
     fn save_exr(&mut self, path: &Path) -> Result<String> {
         let shown = self.job.settings.show;
-        let mut layers = vec![self.layer(shown, "")?];
+        let (picture, drawn) = self.layer(shown, "", self.rule)?;
+        let mut layers = vec![picture];
         if self.job.settings.layers {
-            for show in extra_layers() {
+            // As many samples as the picture has, so that the addends sum to it.
+            let same = Rule {
+                most: drawn.samples,
+                noise: None,
+            };
+            for show in extra_layers().take_while(|_| !drawn.is_interrupted) {
+                self.progress.name(show.name());
                 self.frame.show(show)?;
-                layers.push(self.layer(show, show.name())?);
+                let (layer, drawn) = self.layer(show, show.name(), same)?;
+                if drawn.is_interrupted {
+                    break;
+                }
+                layers.push(layer);
             }
         }
         let size = self.frame.settings().size.to_array();
-        write_exr(path, size, &layers, &self.job.metadata())?;
-        self.progress.finish_and_clear();
+        let mut metadata = self.job.metadata();
+        metadata.extend(drawn.metadata(&self.rule));
+        write_exr(path, size, &layers, &metadata)?;
+        self.progress.clear();
+        let (count, samples) = (layers.len(), drawn.summary(&self.rule));
         Ok(format!(
-            "{}x{}, {} layer(s)",
-            size[0],
-            size[1],
-            layers.len()
+            "{}x{}, {count} layer(s){samples}",
+            size[0], size[1]
         ))
     }
 
-    fn layer(&mut self, show: Show, name: &'static str) -> Result<Layer> {
-        self.draw()?;
+    fn layer(&mut self, show: Show, name: &'static str, rule: Rule) -> Result<(Layer, Drawn)> {
+        let drawn = self.draw(rule)?;
         let mut texels = read_back(&mut self.recorder, self.frame.radiance())?.rgba();
         let unit = show.file_unit();
         if unit != 1.0 {
@@ -203,11 +213,12 @@ impl<'j> Renderer<'j> {
                 *texel = texel.map(|v| v * unit);
             }
         }
-        Ok(Layer {
+        let layer = Layer {
             name,
             channels: channels(show, name),
             texels,
-        })
+        };
+        Ok((layer, drawn))
     }
 }
 

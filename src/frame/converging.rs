@@ -41,7 +41,7 @@ impl Converging {
                 geometry,
                 size,
                 sampling.dome,
-                settings.lighting.show,
+                settings.lighting,
                 prior,
             )?,
         }))

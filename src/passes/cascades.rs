@@ -12,6 +12,15 @@ use crate::scene::Bounds;
 use super::shadow_fit::{self, ShadowView};
 use super::view::View;
 
+/// How the sun's shadow is looked up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Shadows {
+    /// Number of maps, 1 to 4; 0: by the extent of the scene, which [`crate::frame::Frame`] knows.
+    pub cascades: u32,
+    /// Penumbrae as wide as the sun's disc makes them, in a single frame.
+    pub penumbrae: bool,
+}
+
 /// Most maps of a scene.
 pub const MOST: usize = 4;
 /// Texels of a single map that are larger than this call for cascades, metres.

@@ -21,10 +21,12 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
+use super::dome_block::{Direction, DomeBlock};
 use super::dome_fit::{Receivers, fit};
 use super::gbuffer::Surfaces;
 use super::geometry::Geometry;
-use super::lighting::Show;
+use super::lighting::{LightingSettings, Show};
+use super::reflection::Mirror;
 use super::shadow::{Casters, Tile};
 use super::shadow_fit::ShadowView;
 use super::view::View;
@@ -32,17 +34,6 @@ use super::{fullscreen, kilo};
 
 /// Most directions of a frame: what the shader's block holds.
 pub const MOST_DIRECTIONS: u32 = 16;
-
-gpu_struct! {
-    /// The directions of a frame.
-    pub struct DomeBlock {
-        clip_from_world: [[[f32; 4]; 4]; 16],
-        planes: [[[f32; 4]; 4]; 16],
-        window: [[f32; 4]; 16],
-        toward: [[f32; 4]; 16],
-        light: [[f32; 4]; 16],
-    }
-}
 
 gpu_struct! {
     /// This frame among the others.
@@ -87,6 +78,8 @@ pub struct Gathered<'a> {
     pub sky_irradiance: &'a Image,
     /// A, where the means begin with it.
     pub occlusion: &'a Image,
+    /// L of sky and ground, kcd/m².
+    pub sky_radiance: &'a Image,
 }
 
 /// Frames for which ambient occlusion counts where the means begin with it.
@@ -109,6 +102,8 @@ pub struct Dome {
     /// Alternating means: sky and rest, see `dome_gather.frag`.
     means: [[Image; 2]; 2],
     radiance: Image,
+    /// Mirrors from which the sky is hidden, where there are any.
+    mirror: Option<Mirror>,
     sky: Option<(Daylight, SkyDome)>,
     is_shown: bool,
 }
@@ -139,9 +134,11 @@ impl Dome {
         geometry: &Geometry,
         size: [u32; 2],
         settings: DomeSettings,
-        show: Show,
+        lighting: LightingSettings,
         prior: Option<u32>,
     ) -> Result<Self> {
+        let show = lighting.show;
+        let mirror = Mirror::new(context, size, settings, lighting, prior.is_some())?;
         let image = |name| Image::new(context, &ImageDesc::flat(name, FORMAT, size));
         let tiles = columns(settings.directions);
         let rows = settings.directions.div_ceil(tiles);
@@ -168,7 +165,8 @@ impl Dome {
             ],
             radiance: image("radiance, converging")?,
             sky: None,
-            is_shown: shows_sky(show),
+            is_shown: shows_sky(show) || mirror.is_some(),
+            mirror,
         })
     }
 
@@ -215,7 +213,11 @@ impl Dome {
         };
         self.gather(recorder, gathered, view, &block, &push);
         self.resolve(recorder);
-        &self.radiance
+        if let Some(mirror) = &mut self.mirror {
+            let (maps, picture) = ((&self.maps, &block), &self.radiance);
+            mirror.record(recorder, gathered, view, maps, picture, index);
+        }
+        self.image()
     }
 
     /// Whether ambient occlusion is what the means begin with, in this frame.
@@ -225,7 +227,7 @@ impl Dome {
 
     /// The picture of the newest means, kcd/m².
     pub fn image(&self) -> &Image {
-        &self.radiance
+        self.mirror.as_ref().map_or(&self.radiance, Mirror::image)
     }
 
     /// Directions of the frame: first of the sky, then, where the ground shines, a quarter of the ground. Each stands for its
@@ -286,19 +288,18 @@ impl Dome {
     }
 
     fn block(&self, lights: &[DomeLight], views: &[ShadowView], daylight: &Daylight) -> DomeBlock {
-        let mut block: DomeBlock = bytemuck::Zeroable::zeroed();
         let of_sky = self.counts(daylight).0 as usize;
-        for (k, (light, view)) in lights.iter().zip(views).enumerate() {
+        let directions = lights.iter().zip(views).enumerate();
+        DomeBlock::new(directions.map(|(k, (light, view))| {
             let ([x, y], edge) = (self.origin(k), self.settings.map_edge);
-            let toward = light.direction.as_vec3();
-            let is_sky = if k < of_sky { 1.0 } else { 0.0 };
-            block.clip_from_world[k] = view.shadow_from_world.to_cols_array_2d();
-            block.planes[k] = view.planes().to_cols_array_2d();
-            block.window[k] = [x, y, edge, edge].map(|texels| texels as f32);
-            block.toward[k] = toward.extend(BIAS_TEXELS * view.texel_depth).to_array();
-            block.light[k] = kilo(light.illuminance).extend(is_sky).to_array();
-        }
-        block
+            Direction {
+                toward: light.direction.as_vec3(),
+                light: kilo(light.illuminance),
+                is_sky: k < of_sky,
+                view,
+                window: [x, y, edge],
+            }
+        }))
     }
 
     fn gather(

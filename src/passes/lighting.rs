@@ -16,10 +16,13 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
+pub use super::cascades::Shadows;
 use super::cascades::SunViews;
 use super::dome::BIAS_TEXELS;
 use super::gbuffer::Surfaces;
 use super::kilo;
+pub use super::precision::Precision;
+use super::reflection::{Mirrors, Phong, Reflections};
 use super::view::View;
 
 gpu_struct! {
@@ -35,8 +38,6 @@ gpu_struct! {
         occlusion_from: IVec2,
     }
 }
-
-pub use super::precision::Precision;
 
 /// What is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, ValueEnum, Deserialize)]
@@ -170,15 +171,8 @@ pub struct LightingSettings {
     pub fresnel: bool,
     /// How the sun's shadow is looked up.
     pub shadows: Shadows,
-}
-
-/// How the sun's shadow is looked up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Shadows {
-    /// Number of maps, 1 to 4; 0: by the extent of the scene, which [`crate::frame::Frame`] knows.
-    pub cascades: u32,
-    /// Penumbrae as wide as the sun's disc makes them, in a single frame.
-    pub penumbrae: bool,
+    /// How surfaces mirror.
+    pub mirrors: Mirrors,
 }
 
 /// What light there is: images and numbers of the moment.
@@ -243,6 +237,12 @@ impl Lighting {
             .constants(settings.specular_scale > 0.0)
             .to_vec();
         constants.push(("OCCLUSION_DOWNSCALE", settings.occlusion_downscale));
+        let Mirrors { phong, reflections } = settings.mirrors;
+        if is_converging && reflections == Reflections::Hidden {
+            constants.retain(|constant| constant.0 != "SKY_SPECULAR");
+            constants.push(("SKY_SPECULAR", 0));
+        }
+        constants.push(("NORMALIZED", (phong == Phong::Normalized).into()));
         constants.push(("FRESNEL", settings.fresnel.into()));
         constants.push(("ALBEDO_IMAGE", settings.has_albedo.into()));
         constants.push(("AMBIENT", (!is_converging).into()));

@@ -1,4 +1,4 @@
-//! How exactly light is stored.
+//! How precisely radiance is kept.
 
 use crate::gpu::Format;
 

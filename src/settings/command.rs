@@ -12,7 +12,10 @@ const ALWAYS: [&str; 9] = [
     "place", "when", "solar", "sun", "camera", "eye", "target", "fov", "preset",
 ];
 /// Options that decide about each other: of such a matter all is written or nothing.
-const MATTERS: [&[&str]; 2] = [&["exposure", "ev100", "scale"], &["samples", "visibility"]];
+const MATTERS: [&[&str]; 2] = [
+    &["exposure", "ev100", "scale"],
+    &["samples", "noise", "visibility"],
+];
 /// Options that others replace: what lacks in the settings is not lost.
 const REPLACED: [&str; 7] = [
     "place", "when", "solar", "sun", "exposure", "ev100", "scale",

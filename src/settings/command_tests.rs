@@ -4,9 +4,9 @@ use chrono::{DateTime, FixedOffset};
 use clap::ValueEnum;
 
 use super::super::{
-    AoResolution, Direction, ExposureMode, Filter, Fresnel, Optional, Penumbra, Place, Preset,
-    Quantity, Range, Show, Size, SkyModel, SolarTime, SunPositionMethod, Switch, ToneCurve,
-    Visibility,
+    AoResolution, Direction, ExposureMode, Filter, Fresnel, Optional, Penumbra, Phong, Place,
+    Preset, Quantity, Range, Reflections, Show, Size, SkyModel, SolarTime, SunPositionMethod,
+    Switch, ToneCurve, Visibility,
 };
 use super::*;
 use crate::cli::{Command, parse};
@@ -100,6 +100,8 @@ impl Random {
     /// Every field is named: a new option has to be thought of here.
     fn options(&mut self) -> Options {
         let kind = self.below(3);
+        let visibility = self.one::<Visibility>();
+        let is_dome = visibility == Some(Visibility::Dome);
         Options {
             size: self.maybe(|r| Size {
                 width: r.within(1.0, 32_768.0) as u32,
@@ -107,7 +109,8 @@ impl Random {
             }),
             tile: self.count(64, 16_384),
             samples: self.count(1, 65_536),
-            visibility: self.one::<Visibility>(),
+            noise: self.maybe(|r| r.within(1e-6, 1.0)),
+            visibility,
             filter: self.one::<Filter>(),
             seed: self.count(0, u32::MAX),
             dome_directions: self.count(1, 16),
@@ -165,6 +168,8 @@ impl Random {
             penumbra: self.one::<Penumbra>(),
             smooth: self.number(0.0, 180.0),
             device: self.maybe(|_| "-llvmpipe $HOME 'x'".to_owned()),
+            phong: self.one::<Phong>(),
+            reflections: self.one::<Reflections>().filter(|_| is_dome),
             fresnel: self.one::<Fresnel>(),
             moment: self.maybe(|_| "dusk".to_owned()),
             allow_outside: self.often(),

@@ -25,6 +25,8 @@ impl Settings {
             ("ao-radius", self.ao_radius.to_string()),
             ("ao-resolution", name(self.ao_resolution)),
             ("fresnel", name(self.fresnel)),
+            ("phong", name(self.mirrors.phong)),
+            ("reflections", name(self.mirrors.reflections)),
             ("specular", self.specular.to_string()),
             ("shadow-size", self.shadow_size.to_string()),
             ("penumbra", name(self.penumbra)),
@@ -39,6 +41,7 @@ impl Settings {
         });
         let illuminance = self.sky_illuminance;
         list.extend(illuminance.map(|v| ("sky-illuminance", v.to_string())));
+        list.extend(self.noise.map(|v| ("noise", v.to_string())));
         list.extend(self.gamma.map(|v| ("gamma", v.to_string())));
         list.extend(self.scale.map(|v| ("scale", v.to_string())));
         let colours = self.false_colour.filter(|q| self.show.holds(*q));

@@ -1,28 +1,22 @@
 //! From what the user gave to what is used: defaults, presets, cameras by name.
 
-use chrono::{DateTime, FixedOffset};
 use glam::Vec3;
 
 use super::{
-    AoResolution, Direction, Filter, Fresnel, IrradianceMethod, Limits, Options, Penumbra, Place,
-    Preset, Quantity, Range, SettingsError, Show, Size, SkyModel, SolarTime, SunPositionMethod,
-    Switch, ToneCurve, Visibility, name, values,
+    AoResolution, Filter, Fresnel, IrradianceMethod, Limits, Mirrors, Options, Penumbra, Preset,
+    Quantity, Range, Reflections, SettingsError, Show, Size, SkyModel, SunInput, SunPositionMethod,
+    Switch, ToneCurve, Visibility, name,
 };
 use crate::error::Error;
 use crate::gpu::Optional;
 use crate::passes::dome::DomeSettings;
 use crate::scene::{Bounds, Camera, Loaded, NamedOptions, SceneError};
 
-/// The default place: the lecture's university, degrees.
-const DEFAULT_PLACE: Place = Place {
-    latitude: 55.79,
-    longitude: 12.52,
-};
-/// The default moment: a summer afternoon there.
-const DEFAULT_WHEN: &str = "2026-06-21T15:00:00+02:00";
-
 /// Samples from which on shadow maps from the sky are better than ambient occlusion in every view.
 const DOME_SAMPLES: u32 = 16;
+
+/// Most samples where the noise decides and nothing is said.
+const NOISE_SAMPLES: u32 = 4096;
 
 /// What `--preset lecture` sets, by the course's own defaults.
 const LECTURE: [(&str, &str); 16] = [
@@ -43,36 +37,6 @@ const LECTURE: [(&str, &str); 16] = [
     ("ao-resolution", "half"),
     ("shadow-size", "4096"),
 ];
-
-/// Where the sun comes from.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum SunInput {
-    /// A place and a moment.
-    Place {
-        /// Degrees, north positive, −90..90.
-        latitude: f64,
-        /// Degrees, east positive, −180..180.
-        longitude: f64,
-        /// The moment, with its UTC offset.
-        when: DateTime<FixedOffset>,
-    },
-    /// The lecture's inputs.
-    Solar {
-        /// Day of the year, 1..366.
-        day: u32,
-        /// Solar time, hours, 0..24.
-        hours: f64,
-        /// Degrees, north positive, −90..90.
-        latitude: f64,
-    },
-    /// A direction.
-    Direction {
-        /// Degrees clockwise from north, 0..360.
-        azimuth_deg: f64,
-        /// Degrees above the horizon, −90..90.
-        elevation_deg: f64,
-    },
-}
 
 /// How the picture is exposed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,6 +69,8 @@ pub struct Settings {
     pub tile: Option<u32>,
     /// Frames to accumulate, at least 1.
     pub samples: u32,
+    /// Standard error of the luminance, relative to the mean, below which there are enough.
+    pub noise: Option<f64>,
     /// What hides the sky.
     pub visibility: Visibility,
     /// Spread of the samples in a pixel.
@@ -157,6 +123,8 @@ pub struct Settings {
     pub preset: Option<Preset>,
     /// Whether ρ_s grows toward grazing angles.
     pub fresnel: Fresnel,
+    /// How surfaces mirror.
+    pub mirrors: Mirrors,
     /// Whether the sun's disc is darker toward its limb.
     pub limb_darkening: bool,
     /// Whether all addends are written (EXR).
@@ -233,24 +201,28 @@ impl Settings {
                 "--eye and --target are the same point; move one".to_owned(),
             ));
         }
-        let samples = o.samples.unwrap_or(1);
+        let default = o.noise.map_or(1, |_| NOISE_SAMPLES);
+        let samples = o.samples.unwrap_or(default);
         let visibility = if samples >= DOME_SAMPLES {
             Visibility::Dome
         } else {
             Visibility::Ssao
         };
+        let visibility = o.visibility.unwrap_or(visibility);
+        let mirrors = mirrors(&o, visibility)?;
         let dome = DomeSettings::default();
         let show = shown(&o)?;
         let (sky, turbidity) = (o.sky.unwrap_or_default(), o.turbidity.unwrap_or(3.0));
         Ok(Self {
-            sun: sun(&o)?,
+            sun: SunInput::of(&o)?,
             tile: o.tile,
             size: o.size.unwrap_or(Size {
                 width: 1280,
                 height: 720,
             }),
             samples,
-            visibility: o.visibility.unwrap_or(visibility),
+            noise: o.noise,
+            visibility,
             filter: o.filter.unwrap_or_default(),
             seed: o.seed.unwrap_or(0),
             sun_position: o.sun_position.unwrap_or_default(),
@@ -280,6 +252,7 @@ impl Settings {
             specular: o.specular.unwrap_or(1.0),
             preset: o.preset,
             fresnel: o.fresnel.unwrap_or_default(),
+            mirrors,
             limb_darkening: o.limb_darkening,
             layers: o.layers,
             smooth: o.smooth,
@@ -330,6 +303,21 @@ fn shown(o: &Options) -> Result<Show, SettingsError> {
     }
 }
 
+/// How surfaces mirror; what hides the sky from them is told by the maps of the dome.
+fn mirrors(o: &Options, visibility: Visibility) -> Result<Mirrors, SettingsError> {
+    let reflections = o.reflections.unwrap_or_default();
+    if reflections == Reflections::Hidden && visibility == Visibility::Ssao {
+        return Err(SettingsError(
+            "--reflections hidden needs --visibility dome; give it, or --samples 16 or more"
+                .to_owned(),
+        ));
+    }
+    Ok(Mirrors {
+        phong: o.phong.unwrap_or_default(),
+        reflections,
+    })
+}
+
 /// The options of the camera or moment of this name.
 fn find_named<'a>(
     what: &str,
@@ -348,39 +336,6 @@ fn find_named<'a>(
             known.join(", ")
         ))),
     }
-}
-
-fn sun(o: &Options) -> Result<SunInput, SettingsError> {
-    let Place {
-        latitude,
-        longitude,
-    } = o.place.unwrap_or(DEFAULT_PLACE);
-    if let Some(Direction {
-        azimuth_deg,
-        elevation_deg,
-    }) = o.sun
-    {
-        return Ok(SunInput::Direction {
-            azimuth_deg,
-            elevation_deg,
-        });
-    }
-    if let Some(SolarTime { day, hours }) = o.solar {
-        return Ok(SunInput::Solar {
-            day,
-            hours,
-            latitude,
-        });
-    }
-    let when = o
-        .when
-        .map_or_else(|| values::when(DEFAULT_WHEN), Ok)
-        .map_err(SettingsError)?;
-    Ok(SunInput::Place {
-        latitude,
-        longitude,
-        when,
-    })
 }
 
 #[cfg(test)]

@@ -1,3 +1,4 @@
+use super::super::sun_input::DEFAULT_WHEN;
 use super::*;
 use crate::scene::{NamedCamera, Scene};
 
@@ -29,7 +30,7 @@ fn sun(user: &[(&str, &str)], file: &[(&str, &str)]) -> SunInput {
 
 #[test]
 fn nothing_given_is_a_summer_afternoon() {
-    let when = DateTime::parse_from_rfc3339(DEFAULT_WHEN).expect("a moment");
+    let when = chrono::DateTime::parse_from_rfc3339(DEFAULT_WHEN).expect("a moment");
     assert_eq!(
         sun(&[], &[]),
         SunInput::Place {

@@ -217,6 +217,7 @@ pub fn settings(width: u32, height: u32) -> FrameSettings {
             specular_scale: 1.0,
             limb_darkening: 0.0,
             fresnel: false,
+            mirrors: skylight::passes::reflection::Mirrors::default(),
             has_albedo: true,
             occlusion_downscale: 1,
             shadows: Shadows::default(),

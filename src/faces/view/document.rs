@@ -10,7 +10,7 @@ use crate::gpu::{Image, Recorder};
 use crate::passes::lighting::Precision;
 use crate::passes::probe::Reading;
 use crate::scene::{Camera, Loaded};
-use crate::settings::{Options, Settings, Size, SunInput};
+use crate::settings::{Options, Settings, Size, SunInput, Visibility};
 
 use super::controls::{Controls, FlyKeys};
 use super::interface::{Notes, shift};
@@ -19,6 +19,9 @@ use super::viewpoints::{Viewpoint, Viewpoints};
 
 /// Frames averaged at rest, unless the user says otherwise.
 pub(super) const REST_SAMPLES: u32 = 64;
+
+/// Directions of the sky in each of them, unless the user says otherwise.
+const REST_DIRECTIONS: u32 = 4;
 
 /// A scene that is open.
 pub(super) struct Document {
@@ -56,10 +59,11 @@ impl Document {
             size: Some(size),
             ..options.clone()
         };
-        let asked = options.samples.is_some();
+        let options = at_rest(options, &loaded);
         let mut job = Job::of(path.as_deref(), loaded, options)?;
-        if !asked && job.settings.samples == 1 {
-            job.settings.samples = REST_SAMPLES;
+        // What moves is drawn with ambient occlusion; at rest the picture goes over from that.
+        if job.settings.visibility == Visibility::Dome {
+            job.settings.visibility = Visibility::Progressive;
         }
         let frame = Frame::new(recorder, &job.scene, frame_settings(&job))?;
         Ok(Self {
@@ -246,6 +250,23 @@ impl Document {
         name.map_or("bundled scene".to_owned(), |n| {
             n.to_string_lossy().into_owned()
         })
+    }
+}
+
+/// The options of a picture at rest, where nothing is said of them: samples enough for the sky's true visibility, but with the
+/// lecture's preset, which has its own; and fewer directions a frame than for a file, since the window is to answer soon when
+/// something moves again.
+fn at_rest(options: Options, loaded: &Loaded) -> Options {
+    let unsaid = |key: &str| loaded.options.iter().all(|(name, _)| name != key);
+    let is_preset = options.preset.is_some() || !unsaid("preset");
+    let by_screen = (is_preset && unsaid("visibility")).then_some(Visibility::Ssao);
+    let samples = unsaid("samples").then_some(REST_SAMPLES);
+    let directions = unsaid("dome-directions").then_some(REST_DIRECTIONS);
+    Options {
+        samples: options.samples.or(samples),
+        visibility: options.visibility.or(by_screen),
+        dome_directions: options.dome_directions.or(directions),
+        ..options
     }
 }
 

@@ -1,0 +1,88 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "constants.glsl"
+#include "materials.glsl"
+#include "octahedral.glsl"
+#include "phong.glsl"
+#include "view.glsl"
+#include "dome.glsl"
+
+// Mirror images of the sky under its visibility, rho_s V(x, r) L_sky(r) of the lecture's rendering equation: what the mirror
+// would show if nothing hid the sky, and the share V of the light in the lobe around r that comes through, told by the
+// directions of the frames so far. Each direction counts by (r.w)^p: the more there are, the nearer to r are those that rule.
+
+// rgb: rho_s times the light of the sky in the mirror if nothing hid it, kcd/m^2; a: light of the directions in the lobe that is
+// not hidden.
+layout(location = 0) out vec4 mirror;
+// Light of all directions in the lobe.
+layout(location = 1) out float lobe;
+
+layout(constant_id = 0) const int DIRECTIONS = 4;
+layout(constant_id = 1) const bool FRESNEL = false;
+// The lobe as a reflectance: the sky is smeared by it. Otherwise the lecture's mirror.
+layout(constant_id = 2) const bool NORMALIZED = false;
+// As of lighting.frag.
+layout(constant_id = 3) const bool ALBEDO_IMAGE = true;
+
+layout(set = 0, binding = 0) uniform sampler2D depth;
+layout(set = 0, binding = 1) uniform usampler2D normal;
+layout(set = 0, binding = 2) uniform sampler2D albedo;         // with ALBEDO_IMAGE; else any
+layout(set = 0, binding = 3) uniform usampler2D material;
+layout(set = 0, binding = 4) uniform sampler2D previous_mirror;
+layout(set = 0, binding = 5) uniform sampler2D previous_lobe;
+layout(set = 0, binding = 6) uniform sampler2D maps;           // reversed: 1 is nearest the light
+layout(set = 0, binding = 7) uniform samplerCube sky_radiance; // L, kcd/m^2, without the disc
+layout(set = 0, binding = 8) uniform sampler2D materials;      // see materials.glsl
+layout(set = 0, binding = 9, scalar) uniform View { VIEW_BLOCK } view;
+layout(set = 0, binding = 10, scalar) uniform Dome { DOME_BLOCK } dome;
+
+layout(push_constant, scalar) uniform Push {
+    vec2 shift;           // of the samples of the lobe, 0..1
+    float share;          // of this frame in the means
+    float specular_scale; // factor on every rho_s
+} push;
+
+#include "face.glsl"
+
+// Lobes narrower than the directions lie apart would show which of them is nearest.
+const float SHARPEST = 256.0;
+
+void gather(ivec2 pixel, float d) {
+    uint word = texelFetch(material, pixel, 0).r;
+    vec4 m = texelFetch(materials, material_specular(word), 0);
+    vec3 rho_s = m.rgb * (pixel_albedo(ALBEDO_IMAGE, albedo, materials, word, pixel).a * push.specular_scale);
+    if (all(lessThanEqual(rho_s, vec3(0.0)))) return;
+    vec3 n = normal_unpack(texelFetch(normal, pixel, 0).r);
+    vec3 toward = view.world_from_view * in_view(pixel, d);
+    vec3 world = view.eye + toward;
+    toward = normalize(toward);
+    if (FRESNEL) rho_s = grazing(rho_s, m.a, -dot(toward, n));
+    vec3 r = reflect(toward, n);
+    mirror.rgb = rho_s * (NORMALIZED ? sky_in_lobe(sky_radiance, r, n, m.a, push.shift)
+                                     : textureLod(sky_radiance, r, 0.0).rgb);
+    vec3 face = face_normal(pixel, d, n);
+    float p = clamp(m.a, 1.0, SHARPEST);
+    for (int k = 0; k < DIRECTIONS; ++k) {
+        vec3 w = dome.toward[k].xyz;
+        float cosine = dot(n, w);
+        float along_r = dot(r, w);
+        if (along_r <= 0.0 || cosine <= 0.0) continue;
+        float light = pow(along_r, p) * luminance(dome.light[k].rgb);
+        if (NORMALIZED) light *= cosine;
+        lobe += light;
+        if (dot(face, w) <= 0.0) continue;
+        if (is_lit_in_plane(maps, dome.clip_from_world[k], dome.planes[k], dome.window[k], dome.toward[k].a, world, face)) mirror.a += light;
+    }
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float d = texelFetch(depth, pixel, 0).r;
+    mirror = vec4(0.0);
+    lobe = 0.0;
+    if (d > 0.0) gather(pixel, d);
+    if (push.share >= 1.0) return;
+    mirror = mix(texelFetch(previous_mirror, pixel, 0), mirror, push.share);
+    lobe = mix(texelFetch(previous_lobe, pixel, 0).r, lobe, push.share);
+}

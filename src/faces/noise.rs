@@ -1,0 +1,173 @@
+//! How far the mean of frames still is from what it converges to, told by the frames themselves.
+//!
+//! Batch means (Conway 1963, "Some Tactical Problems in Digital Simulation"): the frames so far are cut into a few batches of
+//! equal size, one after the other; the spread of their means tells the standard error of the mean of all. Single frames would
+//! tell far too much: each covers sky and pixel unevenly, and many of a low-discrepancy sequence cover them better than as many
+//! random ones. A whole batch is a stretch of the same sequence, so most of that gain is counted; what is gained from batch
+//! to batch is not. All pixels share the directions of the sky, so with few frames chance has a say in it.
+
+/// Batches at which two become one.
+const MOST_BATCHES: usize = 8;
+/// Fewest batches that tell a spread.
+const FEWEST_BATCHES: usize = 4;
+/// Most pixels that are looked at: the spread is a mean over them.
+const MOST_PIXELS: usize = 1 << 20;
+/// Luminance at which pixels are cut, kcd/m²: only the sun's disc and its mirror images are brighter, and few pixels of them
+/// would outweigh the whole picture.
+const BRIGHTEST: f32 = 100.0;
+
+/// The estimate over a growing number of frames.
+pub(super) struct Noise {
+    /// Frames in a batch.
+    size: u32,
+    /// Luminance of the mean of the first batch, of the first two, of the first three..
+    means: Vec<Vec<f32>>,
+}
+
+impl Noise {
+    /// Without frames.
+    pub(super) fn new() -> Self {
+        Self {
+            size: 1,
+            means: Vec::new(),
+        }
+    }
+
+    /// The number of frames after which the mean is to be looked at next.
+    pub(super) fn next_look(&self) -> u32 {
+        self.size * (self.means.len() as u32 + 1)
+    }
+
+    /// Looks at the mean of the first [`Noise::next_look`] frames: RGBA, kcd/m².
+    pub(super) fn look(&mut self, mean: &[[f32; 4]]) {
+        if self.means.len() == MOST_BATCHES {
+            // The means of the first two batches, of the first four..
+            let mut keep = false;
+            self.means.retain(|_| {
+                keep = !keep;
+                !keep
+            });
+            self.size *= 2;
+        }
+        let step = mean.len().div_ceil(MOST_PIXELS).max(1);
+        let luminance = |t: &[f32; 4]| 0.2126 * t[0] + 0.7152 * t[1] + 0.0722 * t[2];
+        let seen = mean.iter().step_by(step).map(luminance);
+        self.means.push(seen.map(|l| l.min(BRIGHTEST)).collect());
+    }
+
+    /// Standard error of the newest mean over the picture (root of the mean square over the pixels), relative to the mean
+    /// luminance; none before there is a spread to tell it by. A black picture has none to err by.
+    pub(super) fn relative_error(&self) -> Option<f64> {
+        let count = self.means.len();
+        let newest = self.means.last().filter(|_| count >= FEWEST_BATCHES)?;
+        let (mut squares, mut sum) = (0.0, 0.0);
+        for (pixel, &mean) in newest.iter().enumerate() {
+            let total = |batches: usize| match batches {
+                0 => 0.0,
+                n => n as f64 * f64::from(self.means[n - 1][pixel]),
+            };
+            let spread: f64 = (0..count)
+                .map(|k| (total(k + 1) - total(k) - f64::from(mean)).powi(2))
+                .sum();
+            squares += spread / (count * (count - 1)) as f64;
+            sum += f64::from(mean);
+        }
+        let pixels = newest.len() as f64;
+        Some(if sum > 0.0 {
+            (squares / pixels).sqrt() / (sum / pixels)
+        } else {
+            0.0
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::daylight::sampling::{r2, rnd, tea};
+
+    /// Estimates after each look, by frames whose pixel `i` is `frame(index, i)`; with the number of frames.
+    fn estimates(frames: u32, pixels: usize, frame: impl Fn(u32, usize) -> f32) -> Vec<(u32, f64)> {
+        let (mut noise, mut sums, mut list) = (Noise::new(), vec![0.0f64; pixels], Vec::new());
+        for index in 0..frames {
+            for (pixel, sum) in sums.iter_mut().enumerate() {
+                *sum += f64::from(frame(index, pixel));
+            }
+            let count = index + 1;
+            if noise.next_look() == count {
+                let mean = |sum: &f64| [(sum / f64::from(count)) as f32; 4];
+                noise.look(&sums.iter().map(mean).collect::<Vec<_>>());
+                list.extend(noise.relative_error().map(|error| (count, error)));
+            }
+        }
+        list
+    }
+
+    #[test]
+    fn random_frames_have_their_standard_error() {
+        // Uniform over 0..2: mean 1, variance 1/3.
+        let random = |index: u32, pixel: usize| {
+            let mut state = tea::<16>(index, pixel as u32);
+            2.0 * rnd(&mut state) as f32
+        };
+        let list = estimates(1024, 4000, random);
+        assert_eq!(list.last().map(|e| e.0), Some(1024));
+        for (frames, error) in list {
+            let exact = (1.0 / 3.0 / f64::from(frames)).sqrt();
+            assert!(
+                (error / exact - 1.0).abs() < 0.05,
+                "{frames}: {error} for {exact}"
+            );
+        }
+    }
+
+    #[test]
+    fn even_sequences_err_less_than_random_ones_and_less_than_is_told() {
+        let even = |index: u32, pixel: usize| {
+            let shift = pixel as f64 * 0.618_033_988_749_895;
+            2.0 * (r2(index).x + shift).fract() as f32
+        };
+        for (frames, told) in estimates(1024, 500, even).into_iter().filter(|e| e.0 >= 16) {
+            let mean = |pixel| {
+                (0..frames).map(|i| f64::from(even(i, pixel))).sum::<f64>() / f64::from(frames)
+            };
+            let squares: f64 = (0..500).map(|pixel| (mean(pixel) - 1.0).powi(2)).sum();
+            let (error, random) = (
+                (squares / 500.0).sqrt(),
+                (1.0 / 3.0 / f64::from(frames)).sqrt(),
+            );
+            assert!(
+                error < told && told < random,
+                "{frames}: {error} {told} {random}"
+            );
+        }
+    }
+
+    #[test]
+    fn looks_come_at_most_a_quarter_apart_and_batches_stay_few() {
+        let mut noise = Noise::new();
+        let mut before = 0u32;
+        for _ in 0..60 {
+            let next = noise.next_look();
+            assert!(
+                before < 4 || next <= before + before.div_ceil(4),
+                "{before} {next}"
+            );
+            noise.look(&[[1.0; 4]; 3]);
+            assert!(noise.means.len() <= MOST_BATCHES);
+            before = next;
+        }
+        assert_eq!(noise.relative_error(), Some(0.0));
+    }
+
+    #[test]
+    fn the_disc_of_the_sun_does_not_rule_and_black_is_still() {
+        let disc = |index: u32, pixel: usize| match pixel {
+            0 => 1e6 * (index % 2) as f32,
+            _ => 5.0,
+        };
+        let list = estimates(16, 10_000, disc);
+        assert!(list.iter().all(|e| e.1 < 1e-6), "{list:?}");
+        assert_eq!(estimates(4, 10, |_, _| 0.0), [(4, 0.0)]);
+    }
+}

@@ -1,0 +1,185 @@
+//! The picture that converges against a path tracer's, under exactly the same light (`../shared/truth`), edges included.
+//!
+//! 64 samples, unless SKYLIGHT_TRUTH_SAMPLES says otherwise. The truth has about 1 % of noise of its own in each pixel of sky
+//! light; means over many pixels have none of it.
+
+#[path = "common/mod.rs"]
+mod common;
+#[path = "common/truth.rs"]
+mod truth;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+use skylight::compare::{Picture, Referred, Statistics, eroded, exposure_of, flip};
+use truth::{Exr, VIEWS};
+
+const SAMPLES: u32 = 64;
+
+/// Bounds of 64 samples.
+const MEAN_RATIO: f64 = 0.01;
+const RMSE: f64 = 0.045;
+const MEDIAN: f64 = 0.02;
+const FLIP: f64 = 0.03;
+
+fn samples() -> u32 {
+    match std::env::var("SKYLIGHT_TRUTH_SAMPLES") {
+        Ok(text) => text.parse().expect("SKYLIGHT_TRUTH_SAMPLES is a number"),
+        Err(_) => SAMPLES,
+    }
+}
+
+/// A view of the truth, and ours.
+struct Compared {
+    folder: PathBuf,
+    name: &'static str,
+    reference: Picture,
+    ours: Picture,
+    /// Geometry one pixel away from the background.
+    inside: Vec<bool>,
+}
+
+fn picture(exr: &Exr) -> Picture {
+    let [r, g, b] = ["R", "G", "B"].map(|name| exr.channel(name));
+    Picture {
+        size: exr.size,
+        rgb: (0..r.len()).map(|i| [r[i], g[i], b[i]]).collect(),
+        referred: Referred::Scene,
+    }
+}
+
+impl Compared {
+    fn new(shared: &Path, name: &'static str) -> Self {
+        let folder = shared.join("truth");
+        let read = |what: &str| Exr::read(&folder.join(format!("{name}_{what}.exr")));
+        let json = fs::read(folder.join(format!("{name}.json"))).expect("the view");
+        let aov = read("aov");
+        let geometry: Vec<bool> = aov.channel("depth.T").iter().map(|d| *d > 0.0).collect();
+        Self {
+            name,
+            reference: picture(&read("direct")),
+            ours: render(shared, &serde_json::from_slice(&json).expect("JSON")),
+            inside: eroded(aov.size, &geometry),
+            folder,
+        }
+    }
+
+    fn statistics(&self, mask: &[bool]) -> Statistics {
+        Statistics::new(&self.reference, &self.ours, mask).expect("figures")
+    }
+
+    /// FLIP of the tone-mapped pictures.
+    fn flip(&self) -> f64 {
+        let exposure = exposure_of(&self.reference, &self.inside);
+        let shown = |p: &Picture| p.masked(&self.inside).exposed(exposure);
+        let map = flip::ldr(&shown(&self.reference), &shown(&self.ours));
+        let kept = map.iter().zip(&self.inside).filter(|(_, kept)| **kept);
+        flip::mean(&kept.map(|(v, _)| *v).collect::<Vec<_>>())
+    }
+
+    /// Pixels whose visible share of the sky is of `range`, and which look up (or anywhere).
+    fn region(&self, range: std::ops::Range<f32>, up: bool) -> Vec<bool> {
+        let read = |what: &str| Exr::read(&self.folder.join(format!("{}_{what}.exr", self.name)));
+        let (share, aov) = (read("ao_inf"), read("aov"));
+        let (share, height) = (share.channel("Y"), aov.channel("normal.Y"));
+        let of = |i: usize| range.contains(&share[i]) && (!up || height[i] > 0.999);
+        eroded(aov.size, &(0..share.len()).map(of).collect::<Vec<_>>())
+    }
+}
+
+/// Renders the view with the real program.
+fn render(shared: &Path, view: &Value) -> Picture {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let (scene, output) = (folder.path().join("s.toml"), folder.path().join("a.exr"));
+    let file = |model: &Value| {
+        shared
+            .join("scenes")
+            .join(model["file"].as_str().expect("a name"))
+    };
+    let mesh =
+        |model: &Value| format!("[[mesh]]\nfile = {:?}\n", file(model).display().to_string());
+    let models = view["objs"].as_array().expect("models").iter();
+    fs::write(&scene, models.map(mesh).collect::<String>()).expect("a scene file");
+    let words = |list: &Value| {
+        let numbers = list.as_array().expect("a list").iter();
+        numbers.map(Value::to_string).collect::<Vec<_>>().join(",")
+    };
+    let (sun, camera) = (&view["sun"], &view["camera"]);
+    let ended = Command::new(env!("CARGO_BIN_EXE_skylight"))
+        .args([Path::new("render"), &scene, Path::new("-o"), &output])
+        .args([
+            "--quiet",
+            "--size",
+            "640x360",
+            "--ground-albedo",
+            "0",
+            "--specular",
+            "0",
+        ])
+        .args(["--visibility", "dome", "--samples", &samples().to_string()])
+        .arg(format!(
+            "--sun={},{}",
+            sun["azimuth_deg"], sun["elevation_deg"]
+        ))
+        .arg(format!("--turbidity={}", view["turbidity"]))
+        .arg(format!("--eye={}", words(&camera["origin"])))
+        .arg(format!("--target={}", words(&camera["target"])))
+        .arg(format!("--fov={}", camera["vfov"]))
+        .output()
+        .expect("the program starts");
+    let complaint = String::from_utf8_lossy(&ended.stderr).into_owned();
+    assert!(ended.status.success(), "{complaint}");
+    picture(&Exr::read(&output))
+}
+
+#[test]
+fn every_view_converges_to_the_path_tracers() {
+    let Some(shared) = common::shared() else {
+        return;
+    };
+    let mut faults = Vec::new();
+    for name in VIEWS {
+        let compared = Compared::new(&shared, name);
+        let (s, flip) = (compared.statistics(&compared.inside), compared.flip());
+        println!(
+            "{name:10} {} samples: ratio {:.4} RMSE/mean {:.4} median {:.4} p95 {:.4} FLIP {flip:.4}",
+            samples(),
+            s.mean_ratio,
+            s.rmse_over_mean,
+            s.median,
+            s.p95
+        );
+        for (what, value, limit) in [
+            ("mean ratio - 1", (s.mean_ratio - 1.0).abs(), MEAN_RATIO),
+            ("RMSE/mean", s.rmse_over_mean, RMSE),
+            ("median", s.median, MEDIAN),
+            ("FLIP", flip, FLIP),
+        ] {
+            if value.is_nan() || value > limit {
+                faults.push(format!("{name}: {what} is {value:.4}, allowed {limit}"));
+            }
+        }
+        if name == "colonnade" {
+            // Floor and columns that see little of the sky, and ground that sees nearly all of it.
+            let under = compared.region(0.0..0.4, false);
+            let open = compared.region(0.97..1.1, true);
+            let of = |mask: &[bool]| {
+                (
+                    mask.iter().filter(|m| **m).count(),
+                    compared.statistics(mask).mean_ratio,
+                )
+            };
+            let [(n, a), (m, b)] = [of(&under), of(&open)];
+            println!("{name:10} under its roof {a:.4} of {n} pixels, open ground {b:.4} of {m}");
+            assert!(n > 1000 && m > 1000, "{n} {m}");
+            if (a - 1.0).abs() > 0.01 || (b - 1.0).abs() > 0.003 {
+                faults.push(format!(
+                    "{name}: bias under the roof {a}, on open ground {b}"
+                ));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{faults:#?}");
+}

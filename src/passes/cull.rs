@@ -1,6 +1,6 @@
 //! What a view cannot see: clusters outside of its pyramid, and those of solids that turn their backs.
 
-use glam::{Mat4, Vec3, Vec4};
+use glam::{DVec2, Mat4, Vec3, Vec4};
 
 use crate::gpu::Faces;
 use crate::scene::{Bounds, Cluster};
@@ -38,16 +38,18 @@ impl Cull {
             eye,
             reach: view.camera.near * corner,
         };
-        let ahead = eye + view.camera.forward() * (2.0 * view.camera.near);
-        Self::new(clip_from_world, viewer, ahead)
+        // Far enough for the matrix, in whose rounding a point near a distant eye would be lost.
+        let away = 1.0 + 0.01 * eye.length();
+        let ahead = eye + view.camera.forward() * away;
+        Self::new(clip_from_world, viewer, ahead, 0.1 * away)
     }
 
-    /// For a directional light: `at` is a point in its map.
-    pub fn light(clip_from_world: Mat4, toward: Vec3, at: Vec3) -> Self {
-        Self::new(clip_from_world, Viewer::Toward(toward), at)
+    /// For a directional light: `at` is a point in its map, whose texels are `texel` metres wide.
+    pub fn light(clip_from_world: Mat4, toward: Vec3, at: Vec3, texel: f32) -> Self {
+        Self::new(clip_from_world, Viewer::Toward(toward), at, texel)
     }
 
-    fn new(clip_from_world: Mat4, viewer: Viewer, at: Vec3) -> Self {
+    fn new(clip_from_world: Mat4, viewer: Viewer, at: Vec3, size: f32) -> Self {
         let row = |i| clip_from_world.row(i);
         // Gribb and Hartmann 2001: -w <= x <= w, as products with (p, 1).
         let planes = [
@@ -63,7 +65,7 @@ impl Cull {
         Self {
             planes,
             viewer,
-            front: front(clip_from_world, toward, at),
+            front: front(clip_from_world, toward, at, size),
         }
     }
 
@@ -112,26 +114,150 @@ impl Cull {
     }
 }
 
-/// Whether some of a box is on the inner side of a plane.
+/// Whether some of a box is on the inner side of a plane, or so near it that rounding decides.
 fn reaches(plane: Vec4, bounds: &Bounds) -> bool {
     let normal = plane.truncate();
     let farthest = Vec3::select(normal.cmpge(Vec3::ZERO), bounds.max, bounds.min);
-    normal.dot(farthest) + plane.w >= 0.0
+    let slack = 1e-5 * (normal.abs().dot(farthest.abs()) + plane.w.abs());
+    normal.dot(farthest) + plane.w >= -slack
 }
 
-/// How triangles that are counter-clockwise seen from the viewer wind in the picture.
-fn front(clip_from_world: Mat4, toward: Vec3, at: Vec3) -> Faces {
+/// How triangles that are counter-clockwise seen from the viewer wind in the picture: by one of `size` metres at a point.
+fn front(clip_from_world: Mat4, toward: Vec3, at: Vec3, size: f32) -> Faces {
+    let clip_from_world = clip_from_world.as_dmat4();
     let u = toward.any_orthonormal_vector();
     let v = toward.cross(u);
-    let small = 1e-3 * (1.0 + at.length());
-    let [a, b, c] = [at, at + u * small, at + v * small].map(|p| {
-        let clip = clip_from_world * p.extend(1.0);
-        clip.truncate().truncate() / clip.w
+    let [a, b, c] = [Vec3::ZERO, u * size, v * size].map(|offset| {
+        let clip = clip_from_world * (at.as_dvec3() + offset.as_dvec3()).extend(1.0);
+        DVec2::new(clip.x, clip.y) / clip.w
     });
     // Rows run down: what is counter-clockwise with y up is clockwise there, and by Vulkan's own word the other way.
     if (b - a).perp_dot(c - a) > 0.0 {
         Faces::Clockwise
     } else {
         Faces::CounterClockwise
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{UVec2, Vec2};
+
+    use super::*;
+    use crate::passes::shadow_fit;
+    use crate::scene::{Bodies, Camera, Clusters, Scene};
+
+    /// A box of 2 m around a point, as one cluster of a solid.
+    fn solid(centre: Vec3) -> (Scene, Cluster) {
+        let corner = |i: u32| Vec3::from_array([0, 1, 2].map(|k| ((i >> k & 1) * 2) as f32 - 1.0));
+        let mut scene = Scene {
+            positions: (0..8).map(|i| (centre + corner(i)).to_array()).collect(),
+            ..Scene::default()
+        };
+        for quad in [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ] {
+            scene
+                .indices
+                .extend([0, 1, 2, 0, 2, 3].map(|k: usize| quad[k]));
+        }
+        scene.bounds = Bounds::of(scene.positions.iter().copied().map(Vec3::from));
+        let clusters = Clusters::of(&scene, &Bodies::of(&scene), &[(0, 36)]);
+        assert_eq!(clusters.list.len(), 1);
+        assert!(clusters.list[0].solid.is_some(), "a solid");
+        (scene, clusters.list[0])
+    }
+
+    fn view(centre: Vec3, from: Vec3, near: f32) -> View {
+        View {
+            camera: Camera {
+                eye: centre + from,
+                target: centre,
+                fov_deg: 45.0,
+                near,
+            },
+            size: UVec2::new(640, 360),
+            jitter: Vec2::ZERO,
+            sharpen: 0.0,
+            window: None,
+        }
+    }
+
+    /// Which faces of the box wind as `faces` says, of those that look toward the viewer and of those that do not.
+    fn drawn(scene: &Scene, clip: Mat4, faces: Faces, is_toward: impl Fn(Vec3, Vec3) -> bool) {
+        for triangle in scene.indices.chunks_exact(3) {
+            let corners = [0, 1, 2].map(|i| Vec3::from(scene.positions[triangle[i] as usize]));
+            let [a, b, c] = corners.map(|p| {
+                let p = clip.as_dmat4() * p.as_dvec3().extend(1.0);
+                DVec2::new(p.x, p.y) / p.w
+            });
+            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+            let clockwise = (b - a).perp_dot(c - a) > 0.0;
+            let is_drawn = clockwise == (faces == Faces::Clockwise);
+            assert_eq!(
+                is_drawn,
+                is_toward(normal, corners[0]),
+                "{faces:?} {normal}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_faces_that_are_drawn_look_at_the_viewer_wherever_the_scene_lies() {
+        for centre in [
+            Vec3::ZERO,
+            Vec3::new(14_678.0, 3.0, 9_605.0),
+            Vec3::splat(-2e5),
+        ] {
+            let (scene, cluster) = solid(centre);
+            for from in [
+                Vec3::new(5.0, 3.0, 4.0),
+                Vec3::new(-3.0, -4.0, 6.0),
+                Vec3::Y * 8.0,
+            ] {
+                let view = view(centre, from, 0.01);
+                let cull = Cull::camera(&view);
+                assert!(cull.sees(&cluster), "{centre} {from}");
+                let eye = view.camera.eye;
+                drawn(
+                    &scene,
+                    view.clip_from_world(),
+                    cull.faces(&cluster),
+                    |n, p| n.dot(eye - p) > 0.0,
+                );
+                let toward = from.normalize();
+                let map = shadow_fit::fit(toward, &scene.bounds, &scene.bounds, &view, 1024);
+                let cull = map.cull();
+                assert!(cull.sees(&cluster), "{centre} {from}: by the light");
+                drawn(
+                    &scene,
+                    map.shadow_from_world,
+                    cull.faces(&cluster),
+                    |n, _| n.dot(toward) > 0.0,
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn inside_of_a_solid_all_faces_are_drawn() {
+        let (_, cluster) = solid(Vec3::ZERO);
+        let inside = Cull::camera(&view(Vec3::ZERO, Vec3::new(0.5, 0.2, 0.0), 0.01));
+        assert_eq!(inside.faces(&cluster), Faces::Both);
+        // The near plane cuts the box although the eye stands before it.
+        let before = |near| Cull::camera(&view(Vec3::ZERO, Vec3::Z * 1.2, near)).faces(&cluster);
+        assert_eq!(before(0.5), Faces::Both);
+        assert_ne!(before(0.01), Faces::Both);
+    }
+
+    #[test]
+    fn what_lies_beside_the_view_is_not_seen() {
+        let (_, cluster) = solid(Vec3::new(50.0, 0.0, 0.0));
+        assert!(!Cull::camera(&view(Vec3::ZERO, Vec3::Z * 10.0, 0.01)).sees(&cluster));
     }
 }

@@ -37,7 +37,7 @@ impl ShadowView {
 
     /// What it does not see.
     pub fn cull(&self) -> Cull {
-        Cull::light(self.shadow_from_world, self.toward, self.inside)
+        Cull::light(self.shadow_from_world, self.toward, self.inside, self.texel)
     }
 }
 

@@ -156,18 +156,24 @@ fn wider_than_the_device_there_are_no_seams() {
 #[test]
 fn what_tiles_cannot_do_is_said() {
     let place = Place::new();
-    let run = Command::new(env!("CARGO_BIN_EXE_skylight"))
-        .current_dir(place.0.path())
-        .args(["render", "--size", "320x180", "--tile", "64"])
-        .args(["--false-colour", "luminance", "-o", "a.png"])
-        .output()
-        .expect("the program starts");
-    let said = String::from_utf8_lossy(&run.stderr).into_owned();
-    assert_eq!(
-        (run.status.code(), said.lines().count()),
-        (Some(2), 1),
-        "{said}"
-    );
-    assert!(said.contains("--tile"), "{said}");
-    assert_eq!(place.0.path().read_dir().expect("the folder").count(), 0);
+    for (words, named) in [
+        (["--false-colour", "luminance"], "--tile"),
+        (["--noise", "0.01"], "--noise"),
+    ] {
+        let run = Command::new(env!("CARGO_BIN_EXE_skylight"))
+            .current_dir(place.0.path())
+            .args(["render", "--size", "320x180", "--tile", "64"])
+            .args(words)
+            .args(["-o", "a.png"])
+            .output()
+            .expect("the program starts");
+        let said = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert_eq!(
+            (run.status.code(), said.lines().count()),
+            (Some(2), 1),
+            "{said}"
+        );
+        assert!(said.contains(named), "{said}");
+        assert_eq!(place.0.path().read_dir().expect("the folder").count(), 0);
+    }
 }

@@ -56,6 +56,10 @@ impl<'j> Tiled<'j> {
         let Some(plan) = plan(job, context) else {
             return Ok(None);
         };
+        if job.settings.noise.is_some() {
+            let what = "--noise is judged on whole pictures, not in tiles; say how many --samples, or choose a smaller --size";
+            return Err(SettingsError(what.to_owned()).into());
+        }
         let occludes = job.settings.visibility == Visibility::Ssao && job.settings.ao_radius > 0.0;
         let (size, coarser, window) = plan.overview(occludes);
         let settings = FrameSettings {

@@ -12,25 +12,37 @@ use super::pipeline::Pipeline;
 use super::sampler::Sampler;
 use super::work::{texel_bytes, texels};
 
-/// Which faces of triangles are drawn.
+/// How triangles wind in the picture (as Vulkan has it, rows running down).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Faces {
-    /// All.
+pub enum Winding {
+    /// Counter-clockwise.
     #[default]
-    Both,
-    /// Those that wind counter-clockwise in the picture (as Vulkan has it, rows running down).
     CounterClockwise,
-    /// Those that wind clockwise.
+    /// Clockwise.
     Clockwise,
+}
+
+/// Which faces of triangles are fronts, and which are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Faces {
+    /// How fronts wind.
+    pub front: Winding,
+    /// Whether fronts alone are drawn.
+    pub fronts_only: bool,
 }
 
 impl Faces {
     pub(super) fn state(self) -> (vk::CullModeFlags, vk::FrontFace) {
-        match self {
-            Self::Both => (vk::CullModeFlags::NONE, vk::FrontFace::COUNTER_CLOCKWISE),
-            Self::CounterClockwise => (vk::CullModeFlags::BACK, vk::FrontFace::COUNTER_CLOCKWISE),
-            Self::Clockwise => (vk::CullModeFlags::BACK, vk::FrontFace::CLOCKWISE),
-        }
+        let cull = if self.fronts_only {
+            vk::CullModeFlags::BACK
+        } else {
+            vk::CullModeFlags::NONE
+        };
+        let front = match self.front {
+            Winding::CounterClockwise => vk::FrontFace::COUNTER_CLOCKWISE,
+            Winding::Clockwise => vk::FrontFace::CLOCKWISE,
+        };
+        (cull, front)
     }
 }
 

@@ -53,7 +53,7 @@ pub use access::Use;
 pub use ash::vk::Format;
 pub use buffer::{Buffer, BufferKind};
 pub use context::{Context, ContextOptions};
-pub use draws::{Draws, Faces};
+pub use draws::{Draws, Faces, Winding};
 pub use error::{GpuError, Result};
 pub use image::{Image, ImageDesc, ImageKind};
 pub use layout::{GpuStruct, check_layout};

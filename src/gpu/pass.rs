@@ -116,7 +116,7 @@ impl<'r> Pass<'r> {
             push: ArrayVec::new(),
             pushed_anew: true,
             area: None,
-            faces: Faces::Both,
+            faces: Faces::default(),
             buffer_bytes: 0,
         }
     }

@@ -48,6 +48,15 @@ impl Push {
     }
 }
 
+gpu_struct! {
+    /// Camera and material of a lean draw.
+    pub struct LeanPush {
+        clip_from_world: [[f32; 4]; 4],
+        diffuse: Vec3,
+        material: u32,
+    }
+}
+
 /// The images.
 pub struct Surfaces {
     /// World normal on the viewer's side, octahedral, 16 bits a component.
@@ -98,6 +107,8 @@ fn decode_normal([x, y]: [f32; 2]) -> [f32; 3] {
 
 /// The pass and its images.
 pub struct Gbuffer {
+    /// For most surfaces.
+    lean: Pipeline,
     /// By whether ρ_d and ρ_s have maps: a lookup that is not needed costs as much as one that is.
     pipelines: [[Pipeline; 2]; 2],
     details: Details,
@@ -133,6 +144,23 @@ fn pipeline(
     )
 }
 
+fn lean_pipeline(context: &Arc<Context>, formats: &[Format]) -> Result<Pipeline> {
+    Pipeline::new(
+        context,
+        &PipelineDesc {
+            name: "G-buffer, lean",
+            stages: &[&shaders::GBUFFER_LEAN_VERT, &shaders::GBUFFER_LEAN_FRAG],
+            vertex: &[Format::R32G32B32_SFLOAT, Format::R32G32B32A32_SFLOAT],
+            colors: formats,
+            depth: Depth::Write {
+                format: Format::D32_SFLOAT,
+                slope_bias: 0.0,
+            },
+            constants: &[],
+        },
+    )
+}
+
 impl Gbuffer {
     /// Images of `size` pixels, and what drawing `geometry` takes.
     ///
@@ -155,6 +183,7 @@ impl Gbuffer {
             depth: image("depth", Format::D32_SFLOAT)?,
         };
         Ok(Self {
+            lean: lean_pipeline(context, &formats)?,
             pipelines,
             details: Details::new(context, geometry, &formats)?,
             surfaces,
@@ -176,13 +205,37 @@ impl Gbuffer {
         let clip_from_world = view.clip_from_world().to_cols_array_2d();
         let clear = Load::Clear([0.0; 4]);
         let cull = Cull::camera(view);
-        let pass = recorder.pass("G-buffer", &self.pipelines[0][0]);
+        let pass = recorder.pass("G-buffer", &self.lean);
         self.surfaces
             .colors(pass, clear)
             .depth(&self.surfaces.depth, clear)
             .draws(|draws| {
+                geometry.draw_lean(draws, &cull, |draws, bound| {
+                    draws.push(&LeanPush {
+                        clip_from_world,
+                        diffuse: bound.diffuse,
+                        material: bound.material,
+                    });
+                });
+            });
+        if geometry.has_plain() {
+            self.record_plain(recorder, geometry, view, &cull);
+        }
+        self.details
+            .record(recorder, geometry, &self.surfaces, view, &cull);
+        &self.surfaces
+    }
+
+    /// Draws what has maps, or normals that do not say which side is the front.
+    fn record_plain(&self, recorder: &mut Recorder, geometry: &Geometry, view: &View, cull: &Cull) {
+        let clip_from_world = view.clip_from_world().to_cols_array_2d();
+        let pass = recorder.pass("G-buffer", &self.pipelines[0][0]);
+        self.surfaces
+            .colors(pass, Load::Keep)
+            .depth(&self.surfaces.depth, Load::Keep)
+            .draws(|draws| {
                 let (eye, mut variant) = (view.camera.eye, [0, 0]);
-                geometry.draw_plain(draws, &cull, |draws, bound| {
+                geometry.draw_plain(draws, cull, |draws, bound| {
                     let maps = [bound.diffuse_map, bound.specular_map];
                     let wanted = maps.map(|m| usize::from(m.is_some()));
                     if wanted != variant {
@@ -195,9 +248,6 @@ impl Gbuffer {
                     draws.push(&Push::of(clip_from_world, eye, view.sharpen, bound));
                 });
             });
-        self.details
-            .record(recorder, geometry, &self.surfaces, view, &cull);
-        &self.surfaces
     }
 }
 
@@ -231,6 +281,10 @@ mod tests {
                 check_layout(Push::FIELDS, stage.push.expect("push")),
                 Ok(())
             );
+        }
+        for stage in [&shaders::GBUFFER_LEAN_VERT, &shaders::GBUFFER_LEAN_FRAG] {
+            let push = stage.push.expect("push");
+            assert_eq!(check_layout(LeanPush::FIELDS, push), Ok(()));
         }
     }
 }

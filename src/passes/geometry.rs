@@ -46,6 +46,11 @@ impl Kind {
     pub fn is_detailed(&self) -> bool {
         self.colours || self.normal_map || self.cut_out
     }
+
+    /// Whether nothing of it varies over a material.
+    fn is_bare(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// A material as draws need it.
@@ -186,6 +191,17 @@ impl Geometry {
         self.kinds().any(varies)
     }
 
+    /// Whether [`Self::draw_plain`] has anything to draw.
+    pub fn has_plain(&self) -> bool {
+        let plain = |p: &Part, c: &Cluster| !p.kind.is_detailed() && !is_lean(p, c);
+        let mut parts = self.parts.iter();
+        parts.any(|p| {
+            self.clusters[p.clusters.clone()]
+                .iter()
+                .any(|c| plain(p, c))
+        })
+    }
+
     /// Draws everything that casts a shadow into what `cull` sees and has no holes, positions only.
     pub fn draw_positions(&self, draws: &mut Draws<'_, '_>, cull: &Cull) {
         if self.clusters.is_empty() {
@@ -211,7 +227,18 @@ impl Geometry {
         self.is_specular
     }
 
-    /// Draws the parts that are not detailed; `bind` is called with each new material.
+    /// Draws surfaces without maps whose front faces are on the side of their normals; `bind` is called with each new material.
+    pub fn draw_lean<'g, 'r>(
+        &'g self,
+        draws: &mut Draws<'_, 'r>,
+        cull: &Cull,
+        bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
+    ) {
+        draws.geometry(&[&self.positions, &self.normals], &self.indices);
+        self.draw_parts(draws, is_lean, cull, bind);
+    }
+
+    /// Draws the other parts that are not detailed; `bind` is called with each new material.
     pub fn draw_plain<'g, 'r>(
         &'g self,
         draws: &mut Draws<'_, 'r>,
@@ -222,7 +249,8 @@ impl Geometry {
             &[&self.positions, &self.normals, &self.texcoords],
             &self.indices,
         );
-        self.draw_parts(draws, |part| !part.kind.is_detailed(), cull, bind);
+        let plain = |p: &Part, c: &Cluster| !p.kind.is_detailed() && !is_lean(p, c);
+        self.draw_parts(draws, plain, cull, bind);
     }
 
     /// Draws the detailed parts; `bind` is called with each new material.
@@ -238,7 +266,7 @@ impl Geometry {
         let plain = [&self.positions, &self.normals, &self.texcoords];
         let streams = [plain[0], plain[1], plain[2], colours, tangents];
         draws.geometry(&streams, &self.indices);
-        self.draw_parts(draws, |part| part.kind.is_detailed(), cull, bind);
+        self.draw_parts(draws, |part, _| part.kind.is_detailed(), cull, bind);
     }
 
     /// Draws positions and texture coordinates of the parts with holes; `bind` is called with each new material.
@@ -249,19 +277,21 @@ impl Geometry {
         bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
     ) {
         draws.geometry(&[&self.positions, &self.texcoords], &self.indices);
-        self.draw_parts(draws, |part| part.casts && part.kind.cut_out, cull, bind);
+        let cut_out = |p: &Part, _: &Cluster| p.casts && p.kind.cut_out;
+        self.draw_parts(draws, cut_out, cull, bind);
     }
 
     fn draw_parts<'g, 'r>(
         &'g self,
         draws: &mut Draws<'_, 'r>,
-        wanted: impl Fn(&Part) -> bool,
+        wanted: impl Fn(&Part, &Cluster) -> bool,
         cull: &Cull,
         mut bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
     ) {
         let mut current = None;
-        for part in self.parts.iter().filter(|p| wanted(p)) {
-            for run in Runs::new(&self.clusters[part.clusters.clone()], cull) {
+        for part in &self.parts {
+            let clusters = self.clusters[part.clusters.clone()].iter();
+            for run in Runs::new(clusters.filter(|c| wanted(part, c)), cull) {
                 if current != Some((part.kind, part.material)) {
                     bind(draws, &self.bound(part));
                     current = Some((part.kind, part.material));
@@ -286,6 +316,11 @@ impl Geometry {
             white: &self.white,
         }
     }
+}
+
+/// Whether the pipeline with the fewest vertex attributes can draw a cluster.
+fn is_lean(part: &Part, cluster: &Cluster) -> bool {
+    part.kind.is_bare() && cluster.is_wound
 }
 
 /// The parts of a scene in the order in which they are drawn, and their clusters.

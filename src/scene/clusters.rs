@@ -23,6 +23,8 @@ pub struct Cluster {
     pub bounds: Bounds,
     /// Where the triangles are part of solids.
     pub solid: Option<Solid>,
+    /// Whether at every triangle all three stored normals are on the side from which it winds counter-clockwise.
+    pub is_wound: bool,
 }
 
 /// What is known of triangles of solids: from outside, none of their back faces can be seen.
@@ -58,11 +60,14 @@ impl Clusters {
         let splitter = Splitter { scene, bodies };
         for (first, count) in runs {
             let start = made.list.len();
-            let (mut solid, mut open): (Vec<u32>, Vec<u32>) =
-                (first / 3..(first + count) / 3).partition(|t| splitter.body(*t).is_solid);
-            for (triangles, is_solid) in [(&mut solid, true), (&mut open, false)] {
-                for group in splitter.split(triangles) {
-                    made.push(&splitter, &group, is_solid);
+            let mut kinds: [Vec<u32>; 4] = Default::default();
+            for triangle in first / 3..(first + count) / 3 {
+                let (is_solid, is_wound) = splitter.kind(triangle);
+                kinds[2 * usize::from(!is_solid) + usize::from(!is_wound)].push(triangle);
+            }
+            for mut triangles in kinds {
+                for group in splitter.split(&mut triangles) {
+                    made.push(&splitter, &group);
                 }
             }
             made.of_run.push(start..made.list.len());
@@ -70,13 +75,16 @@ impl Clusters {
         made
     }
 
-    fn push(&mut self, splitter: &Splitter<'_>, triangles: &[u32], is_solid: bool) {
+    /// Takes triangles of one kind as a cluster.
+    fn push(&mut self, splitter: &Splitter<'_>, triangles: &[u32]) {
+        let (is_solid, is_wound) = splitter.kind(triangles[0]);
         let corners = triangles.iter().flat_map(|t| splitter.positions(*t));
         self.list.push(Cluster {
             first: self.indices.len() as u32,
             count: 3 * triangles.len() as u32,
             bounds: Bounds::of(corners),
             solid: is_solid.then(|| splitter.solid(triangles)),
+            is_wound,
         });
         let indices = triangles.iter().flat_map(|t| splitter.corners(*t));
         self.indices.extend(indices);
@@ -101,6 +109,19 @@ impl Splitter<'_> {
     fn body(&self, triangle: u32) -> &super::Body {
         let vertex = self.scene.indices[3 * triangle as usize] as usize;
         &self.bodies.list[self.bodies.of_vertex[vertex] as usize]
+    }
+
+    /// Whether it is part of a solid, and whether it is [`Cluster::is_wound`].
+    fn kind(&self, triangle: u32) -> (bool, bool) {
+        let [a, b, c] = self.positions(triangle);
+        let face = (b - a).cross(c - a);
+        let normals = &self.scene.normals;
+        let agrees = |v: u32| {
+            let normal = normals.get(v as usize);
+            normal.is_some_and(|n| face.dot((*n).into()) > 0.0)
+        };
+        let is_wound = self.corners(triangle).into_iter().all(agrees);
+        (self.body(triangle).is_solid, is_wound)
     }
 
     /// Groups of at most [`MOST`] triangles.

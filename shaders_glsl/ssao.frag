@@ -15,16 +15,26 @@ layout(location = 0) out uint occlusion; // A and the distance along the view ax
 
 layout(constant_id = 0) const int STEPS = 12;    // on each side of the slice
 layout(constant_id = 1) const int DOWNSCALE = 2; // pixels of the G-buffer to one of the occluders, each way
-layout(constant_id = 2) const bool SPARSE = true; // every second of the occluders, as the black fields of a chessboard
 
 layout(set = 0, binding = 0) uniform usampler2D occluders;
 layout(set = 0, binding = 1) uniform usampler2D normal;
 layout(set = 0, binding = 2, scalar) uniform View { VIEW_BLOCK } view;
 
+layout(set = 0, binding = 3) uniform sampler2D cover; // depth seen from the zenith, reversed: 1 is highest
+layout(set = 0, binding = 4, scalar) uniform Cover {
+    mat4 from_view; // view space to the map's clip space
+    float texel;    // metres
+    float slack;    // depth by which a point must be below the map to be under it
+    int rays;       // of a slice that look for cover; 0 where the map is too coarse
+} zenith;
+
 layout(push_constant, scalar) uniform Push {
     float radius; // metres
     float phase;  // decorrelates frames that are averaged, 0..1
 } push;
+
+// Of a ray that looks for cover.
+const int RAY_STEPS = 3;
 
 const float SECTORS = 32.0;
 // What rises less than this over the tangent plane (a sine) is that plane, not an occluder: samples lie at pixel centres,
@@ -134,31 +144,60 @@ uint blocked_sectors(Side side, float jitter, float dither) {
     return sectors;
 }
 
-void main() {
-    ivec2 own = ivec2(gl_FragCoord.xy);
-    ivec2 texel = SPARSE ? ivec2(2 * own.x + (own.y & 1), own.y) : own;
-    float distance = packed_distance(texelFetch(occluders, texel, 0).r);
-    if (distance >= 0.5 * NOWHERE) {
-        occlusion = occlusion_pack(1.0, 0.0);
-        return;
+/// Depth of what is highest at a point of the map's clip space; 0 where nothing is.
+float highest(vec3 at) {
+    vec2 size = vec2(textureSize(cover, 0));
+    return texelFetch(cover, ivec2(clamp((at.xy * 0.5 + 0.5) * size, vec2(0.0), size - 1.0)), 0).r;
+}
+
+/// Whether a ray from a point under cover passes up through it: from below it to above it, with the cover between the two.
+bool passes_cover(vec3 from, vec3 step, float jitter) {
+    float before = from.z;
+    bool under = true, blocked = false;
+    for (int i = 0; i < RAY_STEPS; ++i) {
+        vec3 at = from + step * (float(i) + 0.5 + 0.5 * jitter);
+        float top = highest(at);
+        blocked = blocked || (under && at.z > top && top > before);
+        under = at.z < top - zenith.slack;
+        before = at.z;
     }
-    vec2 full_size = vec2(textureSize(normal, 0));
-    ray_step = 2.0 * float(DOWNSCALE) / full_size * view.ray_scale;
-    ray_base = view_ray(0.5 / full_size, view.ray_scale, view.ray_offset).xy;
-    p = point(texel, distance);
-    v = normalize(-p);
-    n = normal_at(texel);
-    origin = vec2(texel) + 0.5;
-    // A pattern of 4x4 occluders of directions and step offsets, after Jimenez et al., taken out again by the 4x4 blur. Of the
-    // sparse ones those are eight, two in a row.
-    ivec2 cell = own & 3;
-    float order = SPARSE ? float(((cell.x & 1) * 4 + (cell.y & 1) * 2 + (cell.y >> 1))) / 8.0
-                         : float(((cell.x + cell.y) & 3) * 4 + cell.x) / 16.0;
-    float turn = fract(order + push.phase);
-    float offset = SPARSE ? float((cell.y * 3 + (cell.x & 1) * 2) & 3) : float((cell.y - cell.x) & 3);
-    float jitter = fract(offset * 0.25 + 0.125 + push.phase * 7.0);
-    float dither = fract(turn * 7.0 + jitter);
-    // The slice turns evenly about v, which leaves the image plane's normal toward the picture's edges.
+    return blocked;
+}
+
+/// Sectors of one side up to a direction of the slice (along the axis, along the view direction, unit); none on the other side.
+float sectors_up_to(vec2 direction, Side side) {
+    return direction.x > 0.0 ? weight(direction.y, side.n) * side.per_weight : 0.0;
+}
+
+/// The sectors of both sides that lie behind a cover which the picture need not show: rays fan out from points under one.
+uvec2 covered_sectors(Side plus, Side minus, float jitter, float dither) {
+    vec3 from = (zenith.from_view * vec4(p + n * (1.5 * zenith.texel), 1.0)).xyz;
+    // Where no pixel of a group is under cover nothing of this is computed.
+    int rays = highest(from) > from.z + zenith.slack ? zenith.rays : 0;
+    // Between the tangents even in the sine of the angle to the normal: even in their cosine's weight.
+    vec2 tangent = vec2(plus.n.y, -plus.n.x);
+    vec2 low = -tangent;
+    uvec2 sectors = uvec2(0u);
+    for (int i = 0; i < rays; ++i) {
+        float width = 2.0 / float(rays);
+        float sine = width * float(i + 1) - 1.0;
+        vec2 high = plus.n * sqrt(max(1.0 - sine * sine, 0.0)) + tangent * sine;
+        sine -= width * dither;
+        vec2 middle = plus.n * sqrt(max(1.0 - sine * sine, 0.0)) + tangent * sine;
+        vec3 step = (plus.axis * middle.x + v * middle.y) * (push.radius / float(RAY_STEPS));
+        if (passes_cover(from, mat3(zenith.from_view) * step, jitter)) {
+            sectors.x |= between(sectors_up_to(low, plus), sectors_up_to(high, plus), dither);
+            vec2 mirrored = vec2(-1.0, 1.0);
+            sectors.y |= between(sectors_up_to(low * mirrored, minus), sectors_up_to(high * mirrored, minus), dither);
+        }
+        low = high;
+    }
+    return sectors;
+}
+
+/// 1 - A by the slice at a share `turn` of half a circle.
+float slice_occlusion(float turn, float jitter, float dither, float distance) {
+    // Slices turn evenly about v, which leaves the image plane's normal toward the picture's edges.
     vec3 right = normalize(vec3(v.z, 0.0, -v.x));
     vec3 axis = right * cos(turn * PI) + cross(v, right) * sin(turn * PI);
     vec2 slice_n = vec2(dot(n, axis), dot(n, v));
@@ -172,7 +211,31 @@ void main() {
     vec2 stride = (axis.xy - axis.z * p.xy / p.z) * push.radius / (distance * ray_step);
     Side plus = Side(axis, slice_n, stride, SECTORS * plus_weight / both, SECTORS / both);
     Side minus = Side(-axis, vec2(-slice_n.x, slice_n.y), -stride, SECTORS * minus_weight / both, SECTORS / both);
-    int count = bitCount(blocked_sectors(plus, jitter, dither)) + bitCount(blocked_sectors(minus, jitter, dither));
+    uvec2 sectors = uvec2(blocked_sectors(plus, jitter, dither), blocked_sectors(minus, jitter, dither));
+    sectors |= covered_sectors(plus, minus, jitter, dither);
+    return length_n * both * float(bitCount(sectors.x) + bitCount(sectors.y)) / SECTORS;
+}
+
+void main() {
+    ivec2 own = ivec2(gl_FragCoord.xy);
+    ivec2 texel = own * OCCLUSION_SPACING;
+    float distance = packed_distance(texelFetch(occluders, texel, 0).r);
+    if (distance >= 0.5 * NOWHERE) {
+        occlusion = occlusion_pack(1.0, 0.0);
+        return;
+    }
+    vec2 full_size = vec2(textureSize(normal, 0));
+    ray_step = 2.0 * float(DOWNSCALE) / full_size * view.ray_scale;
+    ray_base = view_ray(0.5 / full_size, view.ray_scale, view.ray_offset).xy;
+    p = point(texel, distance);
+    v = normalize(-p);
+    n = normal_at(texel);
+    origin = vec2(texel) + 0.5;
+    // A pattern of 4x4 directions and step offsets, after Jimenez et al., taken out again by the blur.
+    ivec2 cell = own & 3;
+    float turn = fract(float(((cell.x + cell.y) & 3) * 4 + cell.x) / 16.0 + push.phase);
+    float jitter = fract(float((cell.y - cell.x) & 3) * 0.25 + 0.125 + push.phase * 7.0);
+    float dither = fract(turn * 7.0 + jitter);
     // Not cut at 0: a single slice may block more than its share (up to pi/2), and only the mean over many is A.
-    occlusion = occlusion_pack(1.0 - length_n * both * float(count) / SECTORS, distance);
+    occlusion = occlusion_pack(1.0 - slice_occlusion(turn, jitter, dither, distance), distance);
 }

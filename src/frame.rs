@@ -21,6 +21,7 @@ use crate::gpu::{Context, Image, Recorder, Result};
 use crate::passes::accumulate::Accumulate;
 use crate::passes::background::Background;
 use crate::passes::cascades::SunViews;
+use crate::passes::cover::Cover;
 use crate::passes::dome::Gathered;
 use crate::passes::dome_fit::{self, Receivers};
 use crate::passes::exposure::Exposure;
@@ -62,6 +63,7 @@ pub struct Frame {
     irradiance: Irradiance,
     shadow: Shadow,
     gbuffer: Gbuffer,
+    cover: Cover,
     ssao: Ssao,
     lighting: Lighting,
     background: Background,
@@ -93,6 +95,7 @@ impl Frame {
             let lighting = scope.spawn(move || Lighting::new(device, size, settings.lighting));
             let background = scope.spawn(move || Background::new(device, settings.lighting));
             Ok(Self {
+                cover: Cover::new(device, &geometry)?,
                 shadow: settings.shadow(device, &geometry)?,
                 gbuffer: Gbuffer::new(device, &geometry, size)?,
                 converging: Converging::new(device, &geometry, &settings)?,
@@ -231,7 +234,13 @@ impl Frame {
             (Some(dome), Some(index)) if !dome.begins_with_occlusion(index) => self.ssao.image(),
             _ => match self.parts.occlusion(index) {
                 Some(of_whole) => of_whole,
-                None => self.ssao.record(rec, surfaces, &view, sample.phase),
+                None => {
+                    if self.settings.ssao.radius > 0.0 {
+                        self.cover.record(rec, &self.geometry);
+                    }
+                    self.ssao
+                        .record(rec, surfaces, &view, &self.cover, sample.phase)
+                }
             },
         };
 

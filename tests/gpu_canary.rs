@@ -112,7 +112,7 @@ fn draw_everything(device: &mut Device) -> Vec<u8> {
         downscale: 2,
         ..SsaoSettings::default()
     };
-    set.lighting.occlusion_downscale = 2;
+    set.lighting.occlusion_downscale = set.ssao.pixels_per_texel();
     let frame = device.frame(
         &scene,
         set,

@@ -137,7 +137,7 @@ fn at_rest_the_picture_goes_over_to_the_truth_without_a_jump() {
         set.ssao.radius,
         set.ssao.downscale,
         set.lighting.occlusion_downscale,
-    ) = (5.0, 2, 2);
+    ) = (5.0, 2, 4);
     let mut frame = device.run(|rec| Frame::new(rec, &scene, set).expect("a frame"));
     for _ in 0..8 {
         device.run(|rec| frame.preview(rec, &day, &view));

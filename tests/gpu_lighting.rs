@@ -71,7 +71,7 @@ fn occluded(width: u32, height: u32) -> FrameSettings {
         downscale: 2,
         ..SsaoSettings::default()
     };
-    set.lighting.occlusion_downscale = 2;
+    set.lighting.occlusion_downscale = set.ssao.pixels_per_texel();
     set
 }
 

@@ -28,7 +28,7 @@ fn with_occlusion(mut set: FrameSettings, radius: f32, downscale: u32) -> FrameS
         downscale,
         ..SsaoSettings::default()
     };
-    set.lighting.occlusion_downscale = downscale;
+    set.lighting.occlusion_downscale = set.ssao.pixels_per_texel();
     showing(Show::Occlusion, set)
 }
 

@@ -61,7 +61,7 @@ fn settings() -> FrameSettings {
             shadows: Shadows::default(),
             mirrors: skylight::passes::reflection::Mirrors::default(),
             has_albedo: true,
-            occlusion_downscale: SsaoSettings::default().downscale,
+            occlusion_downscale: SsaoSettings::default().pixels_per_texel(),
         },
         tone: ToneSettings {
             show,

@@ -1,6 +1,9 @@
 // Words of the ambient occlusion: a distance along the view axis (m) in the upper 22 bits, to 3e-5 of it, and ten bits of
 // something else. One fetch instead of two, and no halves to widen.
 
+// Occluders to a point at which A is computed, each way.
+const int OCCLUSION_SPACING = 2;
+
 /// Distance where nothing is, metres: farther than any radius.
 const float NOWHERE = 1e18;
 

@@ -2,7 +2,6 @@
 
 /// A, upsampled without crossing depth edges. Texel k of the occlusion was computed at pixel k * downscale of the picture.
 float ambient_occlusion(usampler2D occlusion, int downscale, ivec2 pixel, float distance) {
-    if (downscale == 1) return occlusion_unpack(texelFetch(occlusion, pixel, 0).r).x;
     vec2 at = vec2(pixel) / float(downscale);
     ivec2 base = ivec2(floor(at));
     vec2 f = at - vec2(base);

@@ -23,7 +23,7 @@ use crate::passes::lighting::{LightingSettings, Precision, Shadows, Show};
 use crate::passes::ssao::SsaoSettings;
 use crate::passes::tone_map::{Scale, ToneSettings};
 use crate::scene::{self, Camera, LoadOptions, Loaded, Scene};
-use crate::settings::{AoResolution, Exposure, Fresnel, Options, Penumbra, Preset, Settings};
+use crate::settings::{Exposure, Fresnel, Options, Penumbra, Preset, Settings};
 
 /// How a scene is to be loaded.
 pub fn load_options(options: &Options) -> LoadOptions {
@@ -172,9 +172,10 @@ impl Job {
     /// The settings of the frame.
     pub fn frame_settings(&self, show: Show, precision: Precision) -> FrameSettings {
         let s = &self.settings;
-        let downscale = match s.ao_resolution {
-            AoResolution::Full => 1,
-            AoResolution::Half => 2,
+        let ssao = SsaoSettings {
+            radius: s.ao_radius as f32,
+            downscale: s.ao_resolution.downscale(s.size.height),
+            ..SsaoSettings::default()
         };
         FrameSettings {
             size: UVec2::new(s.size.width, s.size.height),
@@ -183,11 +184,7 @@ impl Job {
             sky_edge: self.sky_edge(),
             irradiance: self.irradiance_settings(),
             shadow_resolution: s.shadow_size,
-            ssao: SsaoSettings {
-                radius: s.ao_radius as f32,
-                downscale,
-                ..SsaoSettings::default()
-            },
+            ssao,
             lighting: LightingSettings {
                 show,
                 precision,
@@ -198,7 +195,7 @@ impl Job {
                     0.0
                 },
                 has_albedo: true,
-                occlusion_downscale: downscale,
+                occlusion_downscale: ssao.pixels_per_texel(),
                 fresnel: s.fresnel == Fresnel::Schlick,
                 shadows: Shadows {
                     cascades: 0,

@@ -163,7 +163,7 @@ pub struct LightingSettings {
     pub specular_scale: f32,
     /// Darkens the sun's limb (u of I = I₀ (1 − u (1 − cos θ))); 0: a uniform disc.
     pub limb_darkening: f32,
-    /// Pixels to a texel of the occlusion, each way.
+    /// Pixels to a texel of A, each way: [`super::ssao::SsaoSettings::pixels_per_texel`].
     pub occlusion_downscale: u32,
     /// Whether ρ_d of each pixel is in an image, which [`crate::frame::Frame`] sets: scenes without maps have none.
     pub has_albedo: bool,

@@ -5,6 +5,7 @@
 pub mod accumulate;
 pub mod background;
 pub mod cascades;
+pub mod cover;
 pub mod cube_route;
 pub mod cull;
 pub mod details;

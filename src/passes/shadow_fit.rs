@@ -98,20 +98,52 @@ pub fn fit(
     } else {
         (casters, whole)
     };
+    let step = if follows {
+        (CENTRE_STEP * resolution as f32).floor().max(1.0)
+    } else {
+        1.0
+    };
+    let centre = covered.centre().truncate();
+    square(
+        [right, up, toward],
+        &casters,
+        centre,
+        side,
+        step,
+        resolution,
+    )
+}
+
+/// The map that shows all of `casters`, whatever the view.
+pub fn fit_all(direction: Vec3, casters: &Bounds, resolution: u32) -> ShadowView {
+    let axes = axes(direction);
+    let to_light = |p: Vec3| Vec3::from_array(axes.map(|axis| axis.dot(p)));
+    let casters = Bounds::of(casters.corners().map(to_light));
+    let side = casters.extent().truncate().max_element().max(1e-3);
+    let centre = casters.centre().truncate();
+    square(axes, &casters, centre, side, 1.0, resolution)
+}
+
+/// A square map around a centre that is rounded to steps of so many texels, deep enough for `casters` (in the axes).
+fn square(
+    axes: [Vec3; 3],
+    casters: &Bounds,
+    centre: Vec2,
+    side: f32,
+    step: f32,
+    resolution: u32,
+) -> ShadowView {
+    let [right, up, toward] = axes;
     // Two texels of margin on each side for the filter and the rounding.
     let side = side * (1.0 + 4.0 / resolution as f32);
     let texel = side / resolution as f32;
-    let step = if follows {
-        texel * (CENTRE_STEP * resolution as f32).floor().max(1.0)
-    } else {
-        texel
-    };
-    let centre = (covered.centre().truncate() / step).round() * step;
+    let step = step * texel;
+    let centre = (centre / step).round() * step;
     ShadowView {
-        shadow_from_world: orthographic([right, up, toward], centre, side, &casters),
+        shadow_from_world: orthographic(axes, centre, side, casters),
         texel,
-        texel_depth: texel / depth_range(&casters).1,
-        toward: sun_direction,
+        texel_depth: texel / depth_range(casters).1,
+        toward,
         inside: right * centre.x + up * centre.y + toward * casters.centre().z,
     }
 }

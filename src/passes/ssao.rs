@@ -7,6 +7,7 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
+use super::cover::Cover;
 use super::fullscreen;
 use super::gbuffer::Surfaces;
 use super::view::View;
@@ -31,10 +32,20 @@ gpu_struct! {
 pub struct SsaoSettings {
     /// Metres; 0 turns it off (A = 1).
     pub radius: f32,
-    /// Pixels of the picture to one of the occlusion, each way: 1, or 2, of which every second is computed.
+    /// Pixels of the picture to an occluder, each way; A is computed at every [`SPACING`]th.
     pub downscale: u32,
     /// Samples on each side of the slice.
     pub steps: u32,
+}
+
+/// Occluders to a point at which A is computed, each way.
+const SPACING: u32 = 2;
+
+impl SsaoSettings {
+    /// Pixels of the picture to a texel of A, each way.
+    pub fn pixels_per_texel(&self) -> u32 {
+        self.downscale * SPACING
+    }
 }
 
 impl Default for SsaoSettings {
@@ -67,26 +78,14 @@ impl Ssao {
     /// # Errors
     /// When the device refuses.
     pub fn new(context: &Arc<Context>, size: [u32; 2], settings: SsaoSettings) -> Result<Self> {
-        let is_sparse = settings.downscale > 1;
-        let constants = [
-            ("STEPS", settings.steps),
-            ("DOWNSCALE", settings.downscale),
-            ("SPARSE", is_sparse.into()),
-        ];
+        let constants = [("STEPS", settings.steps), ("DOWNSCALE", settings.downscale)];
         let [width, height] = size.map(|edge| edge.div_ceil(settings.downscale));
-        let noisy = [if is_sparse { width.div_ceil(2) } else { width }, height];
         let image = |name, size| Image::new(context, &ImageDesc::flat(name, FORMAT, size));
-        let smooth = [("SPARSE", is_sparse.into())];
+        let points = [width, height].map(|edge| edge.div_ceil(SPACING));
         Ok(Self {
             settings,
             trace: fullscreen(context, "SSAO", &shaders::SSAO_FRAG, FORMAT, &constants)?,
-            blur: fullscreen(
-                context,
-                "SSAO blur",
-                &shaders::SSAO_BLUR_FRAG,
-                FORMAT,
-                &smooth,
-            )?,
+            blur: fullscreen(context, "SSAO blur", &shaders::SSAO_BLUR_FRAG, FORMAT, &[])?,
             pack: fullscreen(
                 context,
                 "SSAO occluders",
@@ -95,8 +94,8 @@ impl Ssao {
                 &[("DOWNSCALE", settings.downscale)],
             )?,
             occluders: image("occluders", [width, height])?,
-            noisy: image("occlusion, noisy", noisy)?,
-            smooth: image("occlusion", [width, height])?,
+            noisy: image("occlusion, noisy", points)?,
+            smooth: image("occlusion", points)?,
         })
     }
 
@@ -116,6 +115,7 @@ impl Ssao {
         recorder: &mut Recorder,
         surfaces: &Surfaces,
         view: &View,
+        cover: &Cover,
         phase: f32,
     ) -> &Image {
         if self.settings.radius <= 0.0 {
@@ -142,6 +142,8 @@ impl Ssao {
             .sample("occluders", &self.occluders, Sampler::Nearest)
             .sample("normal", &surfaces.normal, Sampler::Nearest)
             .uniform("view", &view.block())
+            .sample("cover", cover.image(), Sampler::Nearest)
+            .uniform("zenith", &cover.block(view, self.settings.radius))
             .push(&Push {
                 radius: self.settings.radius,
                 phase,

@@ -107,11 +107,24 @@ pub struct Limits {
 /// How finely ambient occlusion is computed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum AoResolution {
-    /// Every pixel.
-    Full,
-    /// Every second pixel of every second row.
+    /// Half from 720 rows on, full below.
     #[default]
+    Auto,
+    /// From every pixel, at every second of every second row.
+    Full,
+    /// From every second pixel of every second row, at every fourth of every fourth.
     Half,
+}
+
+impl AoResolution {
+    /// Pixels of a picture of so many rows to an occluder, each way.
+    pub fn downscale(self, rows: u32) -> u32 {
+        match self {
+            Self::Full => 1,
+            Self::Half => 2,
+            Self::Auto => 1 + u32::from(rows >= 720),
+        }
+    }
 }
 
 /// A finite number.

@@ -219,7 +219,7 @@ pub fn settings(width: u32, height: u32) -> FrameSettings {
             fresnel: false,
             mirrors: skylight::passes::reflection::Mirrors::default(),
             has_albedo: true,
-            occlusion_downscale: 1,
+            occlusion_downscale: 2,
             shadows: Shadows::default(),
         },
         tone: ToneSettings {

@@ -36,7 +36,7 @@ layout(push_constant, scalar) uniform Push {
 } push;
 
 void main() {
-    vec3 c = texelFetch(radiance, ivec2(gl_FragCoord.xy), 0).rgb;
+    vec3 c = textureLod(radiance, gl_FragCoord.xy / vec2(textureSize(radiance, 0)), 0.0).rgb;
     if (FALSE_COLOUR) {
         float l = luminance(c);
         float share = clamp(log2(max(l, 1e-30)) * push.exposure + push.offset, 0.0, 1.0);

@@ -34,7 +34,7 @@ layout(push_constant, scalar) uniform Push {
 } push;
 
 // Of a ray that looks for cover.
-const int RAY_STEPS = 3;
+const int RAY_STEPS = 2;
 
 const float SECTORS = 32.0;
 // What rises less than this over the tangent plane (a sine) is that plane, not an occluder: samples lie at pixel centres,
@@ -48,6 +48,7 @@ vec3 n;        // unit
 vec2 origin;   // texels
 vec2 ray_step; // of a texel, of rays with z = -1
 vec2 ray_base; // of texel 0
+vec2 texel_size; // of the picture's
 
 vec3 point(ivec2 texel, float distance) {
     return vec3(vec2(texel) * ray_step + ray_base, -1.0) * distance;
@@ -98,10 +99,11 @@ uint between(float a, float b, float dither) {
 }
 
 /// The sectors that one sample blocks: a box seen from p, from its front to its back, as wide as the step.
-uint blocked_by(ivec2 texel, Side side, float half_width, float dither) {
-    uint word = texelFetch(occluders, texel, 0).r;
+uint blocked_by(vec2 texel, Side side, float half_width, float dither) {
+    // A nearest lookup costs a software device less than a fetch, which it checks against the edges.
+    uint word = textureLod(occluders, (texel + 0.5) * texel_size, 0.0).r;
     float distance = packed_distance(word);
-    vec3 delta = point(texel, distance) - p;
+    vec3 delta = vec3(texel * ray_step + ray_base, -1.0) * distance - p;
     float r2 = dot(delta, delta);
     float over_plane = dot(delta, n);
     vec2 q = vec2(abs(dot(delta, side.axis)), dot(delta, v));
@@ -143,7 +145,7 @@ uint blocked_sectors(Side side, float jitter, float dither) {
     for (int i = 0; i < STEPS; ++i) {
         // Steps grow with the distance.
         float s = (float(i) + jitter) / float(STEPS);
-        ivec2 texel = ivec2(origin + side.stride * min(max(s * s, first), last));
+        vec2 texel = floor(origin + side.stride * min(max(s * s, first), last));
         sectors |= blocked_by(texel, side, half_width * s, dither);
     }
     if (last < 1.0) sectors |= blocked_past(ivec2(origin + side.stride * last), side, dither);
@@ -152,20 +154,22 @@ uint blocked_sectors(Side side, float jitter, float dither) {
 
 /// Depth of what is highest at a point of the map's clip space; 0 where nothing is.
 float highest(vec3 at) {
-    vec2 size = vec2(textureSize(cover, 0));
-    return texelFetch(cover, ivec2(clamp((at.xy * 0.5 + 0.5) * size, vec2(0.0), size - 1.0)), 0).r;
+    return textureLod(cover, at.xy * 0.5 + 0.5, 0.0).r;
 }
 
-/// Whether a ray from a point under cover passes up through it: from below it to above it, with the cover between the two.
+/// Whether a ray from a point under cover passes up through it: from below it to above it, with cover where it would meet a level
+/// one as high as over the point before.
 bool passes_cover(vec3 from, vec3 step, float jitter) {
-    float before = from.z;
-    bool under = true, blocked = false;
+    vec3 last = from;
+    float top = highest(from);
+    bool blocked = false;
     for (int i = 0; i < RAY_STEPS; ++i) {
         vec3 at = from + step * (float(i) + 0.5 + 0.5 * jitter);
-        float top = highest(at);
-        blocked = blocked || (under && at.z > top && top > before);
-        under = at.z < top - zenith.slack;
-        before = at.z;
+        vec3 met = mix(last, at, clamp((top - last.z) / max(at.z - last.z, 1e-9), 0.0, 1.0));
+        // Where nothing is the map is 0.
+        blocked = blocked || (last.z <= top && top < at.z && highest(met) > max(last.z, 0.0));
+        top = highest(at);
+        last = at;
     }
     return blocked;
 }
@@ -233,6 +237,7 @@ void main() {
     vec2 full_size = vec2(textureSize(normal, 0));
     ray_step = 2.0 * float(DOWNSCALE) / full_size * view.ray_scale;
     ray_base = view_ray(0.5 / full_size, view.ray_scale, view.ray_offset).xy;
+    texel_size = 1.0 / vec2(textureSize(occluders, 0));
     p = point(texel, distance);
     v = normalize(-p);
     n = normal_at(texel);
@@ -241,7 +246,8 @@ void main() {
     ivec2 cell = own & 3;
     float turn = fract(float(((cell.x + cell.y) & 3) * 4 + cell.x) / 16.0 + push.phase);
     float jitter = fract(float((cell.y - cell.x) & 3) * 0.25 + 0.125 + push.phase * 7.0);
-    float dither = fract(turn * 7.0 + jitter);
+    // By the golden ratio: no sum of the two above, which repeats within the pattern.
+    float dither = fract(float(4 * cell.y + cell.x) * 0.6180340 + 0.5 + push.phase * 5.0);
     // Not cut at 0: a single slice may block more than its share (up to pi/2), and only the mean over many is A.
     occlusion = occlusion_pack(1.0 - slice_occlusion(turn, jitter, dither, distance), distance);
 }

@@ -27,11 +27,11 @@ void main() {
     float slope = min(abs(distance_at(texel - ivec2(1, 0)) - centre), abs(distance_at(texel + ivec2(1, 0)) - centre))
                 + min(abs(distance_at(texel - ivec2(0, 1)) - centre), abs(distance_at(texel + ivec2(0, 1)) - centre));
     float scale = 1.0 / (0.01 * centre + 3.0 * slope * float(OCCLUSION_SPACING) + 1e-6);
-    ivec2 last = textureSize(noisy_occlusion, 0) - 1;
+    vec2 size = vec2(textureSize(noisy_occlusion, 0));
     vec2 sum = vec2(0.0);
     for (int y = -2; y <= 2; ++y) {
         for (int x = -2; x <= 2; ++x) {
-            vec2 tap = occlusion_unpack(texelFetch(noisy_occlusion, clamp(own + ivec2(x, y), ivec2(0), last), 0).r);
+            vec2 tap = occlusion_unpack(textureLod(noisy_occlusion, (gl_FragCoord.xy + vec2(x, y)) / size, 0.0).r);
             // Five texels of which the outer ones count half are as wide as four, and centred.
             float inside = (abs(x) == 2 ? 0.5 : 1.0) * (abs(y) == 2 ? 0.5 : 1.0);
             float step = abs(tap.y - centre) * scale;

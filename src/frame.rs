@@ -235,11 +235,8 @@ impl Frame {
             _ => match self.parts.occlusion(index) {
                 Some(of_whole) => of_whole,
                 None => {
-                    if self.settings.ssao.radius > 0.0 {
-                        self.cover.record(rec, &self.geometry);
-                    }
-                    self.ssao
-                        .record(rec, surfaces, &view, &self.cover, sample.phase)
+                    let cover = self.cover.record(rec, &self.geometry);
+                    self.ssao.record(rec, surfaces, &view, cover, sample.phase)
                 }
             },
         };

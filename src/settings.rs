@@ -1,6 +1,7 @@
 //! What a picture is made with: [`Options`] as the user gave them, on the command line or in a scene file, and
 //! [`Settings`] with everything decided.
 
+mod ao_resolution;
 mod command;
 mod parameters;
 mod resolve;
@@ -16,12 +17,13 @@ pub use crate::frame::{Filter, Visibility};
 pub use crate::gpu::Optional;
 use crate::passes::dome::MOST_DIRECTIONS;
 pub use crate::passes::reflection::{Mirrors, Phong, Reflections};
+pub use ao_resolution::AoResolution;
 pub(crate) use parameters::name;
 pub use resolve::{CameraParts, Exposure, Settings};
 pub use sun_input::SunInput;
 pub use values::{
-    AoResolution, Direction, ExposureMode, Fresnel, Limits, Penumbra, Place, Preset, Show, Size,
-    SolarTime, Switch,
+    Direction, ExposureMode, Fresnel, Limits, Penumbra, Place, Preset, Show, Size, SolarTime,
+    Switch,
 };
 pub(crate) use values::{exposure_factor, ratio, sun as direction};
 

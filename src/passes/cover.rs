@@ -56,7 +56,7 @@ impl Cover {
     }
 
     /// Draws the map, once. Whatever the view, it shows the whole scene.
-    pub fn record(&mut self, recorder: &mut Recorder, geometry: &Geometry) {
+    pub fn record(&mut self, recorder: &mut Recorder, geometry: &Geometry) -> &Self {
         if !std::mem::replace(&mut self.is_drawn, true) {
             let tile = Tile {
                 view: self.view,
@@ -66,6 +66,7 @@ impl Cover {
             self.casters
                 .record(recorder, "cover", geometry, &[tile], &self.depth);
         }
+        self
     }
 
     /// The map: reversed depth, 1 is highest.

@@ -104,29 +104,6 @@ pub struct Limits {
     pub max_file_mib: Option<u32>,
 }
 
-/// How finely ambient occlusion is computed.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub enum AoResolution {
-    /// Half from 720 rows on, full below.
-    #[default]
-    Auto,
-    /// From every pixel, at every second of every second row.
-    Full,
-    /// From every second pixel of every second row, at every fourth of every fourth.
-    Half,
-}
-
-impl AoResolution {
-    /// Pixels of a picture of so many rows to an occluder, each way.
-    pub fn downscale(self, rows: u32) -> u32 {
-        match self {
-            Self::Full => 1,
-            Self::Half => 2,
-            Self::Auto => 1 + u32::from(rows >= 720),
-        }
-    }
-}
-
 /// A finite number.
 pub(super) fn number(text: &str) -> Result<f64, String> {
     let value: f64 = text

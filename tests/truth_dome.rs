@@ -10,7 +10,6 @@ mod truth;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use serde_json::Value;
 use skylight::compare::{Picture, Referred, Statistics, eroded, exposure_of, flip};
@@ -57,12 +56,15 @@ impl Compared {
         let folder = shared.join("truth");
         let read = |what: &str| Exr::read(&folder.join(format!("{name}_{what}.exr")));
         let json = fs::read(folder.join(format!("{name}.json"))).expect("the view");
+        let view: Value = serde_json::from_slice(&json).expect("JSON");
+        let samples = samples().to_string();
+        let further = ["--visibility", "dome", "--samples", &samples];
         let aov = read("aov");
         let geometry: Vec<bool> = aov.channel("depth.T").iter().map(|d| *d > 0.0).collect();
         Self {
             name,
             reference: picture(&read("direct")),
-            ours: render(shared, &serde_json::from_slice(&json).expect("JSON")),
+            ours: picture(&truth::render(shared, &view, &further)),
             inside: eroded(aov.size, &geometry),
             folder,
         }
@@ -89,51 +91,6 @@ impl Compared {
         let of = |i: usize| range.contains(&share[i]) && (!up || height[i] > 0.999);
         eroded(aov.size, &(0..share.len()).map(of).collect::<Vec<_>>())
     }
-}
-
-/// Renders the view with the real program.
-fn render(shared: &Path, view: &Value) -> Picture {
-    let folder = tempfile::tempdir().expect("a scratch folder");
-    let (scene, output) = (folder.path().join("s.toml"), folder.path().join("a.exr"));
-    let file = |model: &Value| {
-        shared
-            .join("scenes")
-            .join(model["file"].as_str().expect("a name"))
-    };
-    let mesh =
-        |model: &Value| format!("[[mesh]]\nfile = {:?}\n", file(model).display().to_string());
-    let models = view["objs"].as_array().expect("models").iter();
-    fs::write(&scene, models.map(mesh).collect::<String>()).expect("a scene file");
-    let words = |list: &Value| {
-        let numbers = list.as_array().expect("a list").iter();
-        numbers.map(Value::to_string).collect::<Vec<_>>().join(",")
-    };
-    let (sun, camera) = (&view["sun"], &view["camera"]);
-    let ended = Command::new(env!("CARGO_BIN_EXE_skylight"))
-        .args([Path::new("render"), &scene, Path::new("-o"), &output])
-        .args([
-            "--quiet",
-            "--size",
-            "640x360",
-            "--ground-albedo",
-            "0",
-            "--specular",
-            "0",
-        ])
-        .args(["--visibility", "dome", "--samples", &samples().to_string()])
-        .arg(format!(
-            "--sun={},{}",
-            sun["azimuth_deg"], sun["elevation_deg"]
-        ))
-        .arg(format!("--turbidity={}", view["turbidity"]))
-        .arg(format!("--eye={}", words(&camera["origin"])))
-        .arg(format!("--target={}", words(&camera["target"])))
-        .arg(format!("--fov={}", camera["vfov"]))
-        .output()
-        .expect("the program starts");
-    let complaint = String::from_utf8_lossy(&ended.stderr).into_owned();
-    assert!(ended.status.success(), "{complaint}");
-    picture(&Exr::read(&output))
 }
 
 #[test]

@@ -17,7 +17,7 @@ pub enum Visibility {
     Ssao,
     /// Shadow maps from directions of the sky: converges to the truth over the samples.
     Dome,
-    /// The same, beginning with ambient occlusion, which fades: for what stops moving (previews are drawn as with `Ssao`).
+    /// The same, beginning with the preview, which fades: for what stops moving (previews are drawn as with `Ssao`).
     #[value(skip)]
     Progressive,
 }

@@ -213,8 +213,7 @@ impl Frame {
         let sun_views = match dome {
             Some(_) => {
                 let receivers = Receivers::new(bounds, &view);
-                let shift = sample.jitter + 0.5;
-                let sun = sample.sun_direction;
+                let (sun, shift) = (sample.sun_direction, sample.texel);
                 SunViews::one(dome_fit::fit(sun, bounds, &receivers, resolution, shift))
             }
             None => {

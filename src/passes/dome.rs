@@ -10,7 +10,7 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, Vec3};
+use glam::Vec3;
 
 use crate::daylight::dome::{DomeLight, SkyDome, ground_light};
 use crate::daylight::sampling;
@@ -100,6 +100,9 @@ pub struct Dome {
     is_shown: bool,
 }
 
+/// Tells the scrambling of the ground's directions from that of the sky's.
+const GROUND: u32 = 0x0640_0000;
+
 const FORMAT: Format = Format::R32G32B32A32_SFLOAT;
 
 /// Tiles in a row of the image of maps.
@@ -172,7 +175,9 @@ impl Dome {
         let views: Vec<ShadowView> = (0u32..)
             .zip(&lights)
             .map(|(k, light)| {
-                let shift = sampling::r2(index * self.settings.directions + k).as_vec2();
+                // Not in step with the directions, or every direction would have a shift of its own.
+                let number = index.wrapping_mul(self.settings.directions) + k;
+                let shift = sampling::richtmyer(number).as_vec2();
                 let toward = light.direction.as_vec3();
                 fit(
                     toward,
@@ -215,14 +220,14 @@ impl Dome {
             return Vec::new();
         };
         let (of_sky, of_ground) = self.counts(daylight);
-        let shift = sampling::r2(self.settings.seed);
-        let point = |count: u32, k: u32, from: u32| -> DVec2 {
-            sampling::rotate(sampling::r2(from.wrapping_add(index * count + k)), shift)
+        let seed = self.settings.seed;
+        let point = |count: u32, k: u32, which: u32| {
+            sampling::scrambled_sobol(index.wrapping_mul(count) + k, seed ^ which)
         };
         let above = (0..of_sky).map(|k| (sky.light(daylight, point(of_sky, k, 0)), of_sky));
         let below = (0..of_ground).map(|k| {
             (
-                ground_light(daylight, point(of_ground, k, 1 << 21)),
+                ground_light(daylight, point(of_ground, k, GROUND)),
                 of_ground,
             )
         });

@@ -17,13 +17,16 @@ use truth::{Exr, VIEWS};
 
 const SAMPLES: u32 = 64;
 
-/// Bounds of 64 samples.
+/// Bounds of every number of samples.
 const MEAN_RATIO: f64 = 0.01;
-const RMSE: f64 = 0.045;
-const MEDIAN: f64 = 0.02;
-/// With 256 samples. With 64 the low sun's long shadows differ by 0.0305: the noise of both.
 const FLIP: f64 = 0.03;
-const FLIP_OF_FEW: f64 = 0.033;
+/// Bounds of 64 samples.
+const RMSE_OF_FEW: f64 = 0.04;
+const MEDIAN_OF_FEW: f64 = 0.02;
+/// Bounds of 256 samples. Of the median, 1.20 % are the truth's own under the low sun: what is left when the local median of the
+/// difference is taken away.
+const RMSE: f64 = 0.03;
+const MEDIAN: f64 = 0.0125;
 
 fn samples() -> u32 {
     match std::env::var("SKYLIGHT_TRUTH_SAMPLES") {
@@ -98,6 +101,12 @@ fn every_view_converges_to_the_path_tracers() {
     let Some(shared) = common::shared() else {
         return;
     };
+    let is_few = samples() < 256;
+    let (rmse, median) = if is_few {
+        (RMSE_OF_FEW, MEDIAN_OF_FEW)
+    } else {
+        (RMSE, MEDIAN)
+    };
     let mut faults = Vec::new();
     for name in VIEWS {
         let compared = Compared::new(&shared, name);
@@ -112,13 +121,9 @@ fn every_view_converges_to_the_path_tracers() {
         );
         for (what, value, limit) in [
             ("mean ratio - 1", (s.mean_ratio - 1.0).abs(), MEAN_RATIO),
-            ("RMSE/mean", s.rmse_over_mean, RMSE),
-            ("median", s.median, MEDIAN),
-            (
-                "FLIP",
-                flip,
-                if samples() < 256 { FLIP_OF_FEW } else { FLIP },
-            ),
+            ("RMSE/mean", s.rmse_over_mean, rmse),
+            ("median", s.median, median),
+            ("FLIP", flip, FLIP),
         ] {
             if value.is_nan() || value > limit {
                 faults.push(format!("{name}: {what} is {value:.4}, allowed {limit}"));

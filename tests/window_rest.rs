@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use running::{Running, difference, program};
 use skylight::compare::{Picture, read};
-use x::until;
+use x::{keysym, until};
 
 /// Under a porch, where ambient occlusion lets in too much sky.
 const VIEW: [&str; 8] = [
@@ -148,5 +148,22 @@ fn who_asks_for_ambient_occlusion_keeps_it() {
     let flip = difference(&ssao, &shown);
     println!("FLIP of the window against render with ambient occlusion: {flip:.4}");
     assert!(flip < 0.01, "{flip}");
+    running.close_well();
+}
+
+#[test]
+fn at_rest_the_panel_tells_of_the_last_frame() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let running = Running::new(&["--size", "640x360", "--samples", "3"]);
+    until("the scene", || {
+        (running.display.title(running.window) != "skylight").then_some(())
+    });
+    let rested = running.picture();
+    // Away and back: laid out anew, with nothing more to draw.
+    running.after(|display| display.key(keysym::TAB, false));
+    let again = running.after(|display| display.key(keysym::TAB, false));
+    let apart = difference(&rested, &again);
+    println!("FLIP of the panel at rest against the panel laid out anew: {apart:.6}");
+    assert!(rested == again, "{apart}");
     running.close_well();
 }

@@ -3,7 +3,6 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "constants.glsl"
 #include "materials.glsl"
-#include "occlusion.glsl"
 #include "octahedral.glsl"
 #include "view.glsl"
 #include "dome.glsl"
@@ -22,11 +21,8 @@ layout(constant_id = 1) const bool SHOW_OCCLUSION = false;
 // Whether it is shown at all.
 layout(constant_id = 2) const bool SKY = true;
 layout(constant_id = 3) const int DIRECTIONS = 4;
-// Begin with ambient occlusion, as if it had come from earlier frames.
-layout(constant_id = 4) const bool PRIOR = false;
-layout(constant_id = 5) const int OCCLUSION_DOWNSCALE = 2;
 // As of lighting.frag.
-layout(constant_id = 6) const bool ALBEDO_IMAGE = true;
+layout(constant_id = 4) const bool ALBEDO_IMAGE = true;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform usampler2D normal;
@@ -38,15 +34,12 @@ layout(set = 0, binding = 6) uniform sampler2D maps;           // reversed: 1 is
 layout(set = 0, binding = 7) uniform samplerCube sky_irradiance; // E of sky and ground, klx
 layout(set = 0, binding = 8, scalar) uniform View { VIEW_BLOCK } view;
 layout(set = 0, binding = 9, scalar) uniform Dome { DOME_BLOCK } dome;
-
-layout(set = 0, binding = 10) uniform usampler2D occlusion;
-layout(set = 0, binding = 11) uniform usampler2D material;
-layout(set = 0, binding = 12) uniform sampler2D materials; // see materials.glsl
+layout(set = 0, binding = 10) uniform usampler2D material;
+layout(set = 0, binding = 11) uniform sampler2D materials; // see materials.glsl
 
 layout(push_constant, scalar) uniform Push {
-    vec3 ground;     // radiance below the horizon, kcd/m^2
-    float sky_share; // of this frame in the mean of the sky's light, 0..1
-    float share;     // and in that of the rest
+    vec3 ground; // radiance below the horizon, kcd/m^2
+    float share; // of this frame in the means, 0..1
 } push;
 
 #include "face.glsl"
@@ -70,14 +63,9 @@ vec4 light_of_directions(vec3 world, vec3 n, vec3 face) {
 
 void gather(ivec2 pixel, float d) {
     vec3 n = normal_unpack(texelFetch(normal, pixel, 0).r);
-    vec3 p = in_view(pixel, d);
-    vec3 world = view.eye + view.world_from_view * p;
+    vec3 world = view.eye + view.world_from_view * in_view(pixel, d);
     sky = light_of_directions(world, n, face_normal(pixel, d, n));
     vec3 open = textureLod(sky_irradiance, n, 0.0).rgb;
-    if (PRIOR) {
-        float A = ambient_occlusion(occlusion, OCCLUSION_DOWNSCALE, pixel, -p.z);
-        sky = mix(vec4(A * open, luminance(open)), sky, push.sky_share);
-    }
     if (SHOW_OCCLUSION) {
         sky.rgb = vec3(luminance(sky.rgb));
         rest.a = 1.0;
@@ -99,6 +87,6 @@ void main() {
     rest = vec4(texelFetch(frame, pixel, 0).rgb, 0.0);
     if (SKY && d > 0.0) gather(pixel, d);
     if (push.share >= 1.0) return;
-    sky = mix(texelFetch(previous_sky, pixel, 0), sky, push.sky_share);
+    sky = mix(texelFetch(previous_sky, pixel, 0), sky, push.share);
     rest = mix(texelFetch(previous_rest, pixel, 0), rest, push.share);
 }

@@ -1,5 +1,4 @@
 #version 460
-#extension GL_EXT_scalar_block_layout : require
 
 // The picture with its mirrors: the sky in them, by the share V of it that is not hidden.
 
@@ -9,15 +8,11 @@ layout(set = 0, binding = 0) uniform sampler2D picture; // without mirrors
 layout(set = 0, binding = 1) uniform sampler2D mirror;
 layout(set = 0, binding = 2) uniform sampler2D lobe;
 
-layout(push_constant, scalar) uniform Push {
-    float open; // share of a prior that nothing is hidden, 0..1
-} push;
-
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 reflected = texelFetch(mirror, pixel, 0);
     float whole = texelFetch(lobe, pixel, 0).r;
     // No direction in the lobe yet: nothing is known to hide the sky.
     float V = whole > 0.0 ? reflected.a / whole : 1.0;
-    radiance = vec4(texelFetch(picture, pixel, 0).rgb + mix(V, 1.0, push.open) * reflected.rgb, 1.0);
+    radiance = vec4(texelFetch(picture, pixel, 0).rgb + V * reflected.rgb, 1.0);
 }

@@ -204,17 +204,19 @@ impl Frame {
             window: self.parts.window,
         };
 
-        let (shadow, lighting, dome) = match converging {
-            Some(c) => (&mut c.shadow, &mut c.lighting, Some(&mut c.dome)),
-            None => (&mut self.shadow, &mut self.lighting, None),
+        let (shadow, lighting, dome, fade) = match converging {
+            Some(c) => {
+                let fade = c.fade.as_mut().map(|fade| (fade, self.lighting.image()));
+                (&mut c.shadow, &mut c.lighting, Some(&mut c.dome), fade)
+            }
+            None => (&mut self.shadow, &mut self.lighting, None, None),
         };
         let (bounds, casters) = (self.geometry.bounds(), self.geometry.casters());
         let resolution = shadow.resolution();
         let sun_views = match dome {
             Some(_) => {
                 let receivers = Receivers::new(bounds, &view);
-                let shift = sample.jitter + 0.5;
-                let sun = sample.sun_direction;
+                let (sun, shift) = (sample.sun_direction, sample.texel);
                 SunViews::one(dome_fit::fit(sun, bounds, &receivers, resolution, shift))
             }
             None => {
@@ -230,9 +232,9 @@ impl Frame {
         let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
         let shadow_map = shadow.record(rec, &self.geometry, &sun_views);
         let surfaces = self.gbuffer.record(rec, &self.geometry, &view);
-        let occlusion = match (&dome, index) {
-            (Some(dome), Some(index)) if !dome.begins_with_occlusion(index) => self.ssao.image(),
-            _ => match self.parts.occlusion(index) {
+        let occlusion = match &dome {
+            Some(_) => self.ssao.image(),
+            None => match self.parts.occlusion(index) {
                 Some(of_whole) => of_whole,
                 None => {
                     let cover = self.cover.record(rec, &self.geometry);
@@ -260,10 +262,16 @@ impl Frame {
                     materials,
                     frame,
                     sky_irradiance,
-                    occlusion,
                     sky_radiance: sky.radiance,
                 };
-                dome.record(rec, &self.geometry, &gathered, daylight, &view, index)
+                let picture = dome.record(rec, &self.geometry, &gathered, daylight, &view, index);
+                let is_previewed = self.drawn.is_some_and(|drawn| !drawn.is_averaged);
+                match fade {
+                    Some((fade, preview)) => {
+                        fade.record(rec, preview, picture, index, is_previewed)
+                    }
+                    None => picture,
+                }
             }
             (None, Some(accumulate), Some(index)) => accumulate.record(rec, frame, index),
             _ => frame,
@@ -299,7 +307,7 @@ impl Frame {
     pub fn radiance(&self) -> &Image {
         let is_averaged = self.drawn.is_some_and(|drawn| drawn.is_averaged);
         match (&self.converging, &self.accumulate) {
-            (Some(converging), _) if is_averaged => converging.dome.image(),
+            (Some(converging), _) if is_averaged => converging.image(),
             (None, Some(accumulate)) if is_averaged => accumulate.image(),
             _ => self.lighting.image(),
         }

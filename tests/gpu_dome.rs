@@ -131,7 +131,7 @@ fn at_rest_the_picture_goes_over_to_the_truth_without_a_jump() {
     let converged = device.picture(&scene, showing(Show::Sky, dome(64, 128)), &day, &view);
     let truth = mean(&converged);
 
-    let mut set = showing(Show::Sky, dome(64, 1));
+    let mut set = showing(Show::Sky, dome(64, 128));
     set.sampling.visibility = Visibility::Progressive;
     (
         set.ssao.radius,
@@ -147,8 +147,8 @@ fn at_rest_the_picture_goes_over_to_the_truth_without_a_jump() {
     let list = means(&mut device, &mut frame, &day, &view, 128);
     for (i, now) in list.iter().enumerate() {
         assert!(
-            // The first steps are as large as ambient occlusion is off: it counts the ground before a wall as lost sky.
-            (now / last - 1.0).abs() < 0.03,
+            // Ambient occlusion is a quarter off: it counts the ground before a wall as lost sky.
+            (now / last - 1.0).abs() < 0.01,
             "frame {i}: {last} to {now}"
         );
         last = *now;

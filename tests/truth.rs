@@ -3,15 +3,18 @@
 //! No specular, no ground light, and the sun's and the sky's own light without interreflection. Pixels in doubt are left
 //! out and counted: those within 2 pixels of an edge of the geometry or of a shadow.
 
+#[path = "common/mod.rs"]
 mod common;
+#[path = "common/truth.rs"]
+mod truth;
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use glam::DVec3;
 use serde_json::Value;
+use truth::Exr;
 
 const SIZE: [usize; 2] = [640, 360];
 const PIXELS: usize = SIZE[0] * SIZE[1];
@@ -48,14 +51,10 @@ const fn view(name: &'static str, ratio: [f64; 2], rmse: f64, p95: f64) -> View 
 struct Picture(BTreeMap<String, Vec<f64>>);
 
 impl Picture {
-    fn read(path: &Path) -> Self {
-        use exr::prelude::*;
-        let image = read_all_flat_layers_from_file(path)
-            .unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-        let channels = image.layer_data[0].channel_data.list.iter().map(|channel| {
-            let values: Vec<f64> = channel.sample_data.values_as_f32().map(f64::from).collect();
-            assert_eq!(values.len(), PIXELS, "{}", path.display());
-            (channel.name.to_string(), values)
+    fn new(exr: Exr) -> Self {
+        let channels = exr.channels.into_iter().map(|(name, values)| {
+            assert_eq!(values.len(), PIXELS, "{name}");
+            (name, values.into_iter().map(f64::from).collect())
         });
         Self(channels.collect())
     }
@@ -127,11 +126,6 @@ fn vector(value: &Value) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
-fn words(value: &Value) -> String {
-    let numbers = value.as_array().expect("a list").iter();
-    numbers.map(Value::to_string).collect::<Vec<_>>().join(",")
-}
-
 /// A view of the truth beside ours.
 struct Compared {
     parameters: Value,
@@ -145,9 +139,9 @@ impl Compared {
         let json = fs::read(folder.join(format!("{name}.json"))).expect("the view");
         let parameters: Value = serde_json::from_slice(&json).expect("JSON");
         let layers = ["sun", "sky", "direct", "aov", "ao_inf"];
-        let read = |layer| Picture::read(&folder.join(format!("{name}_{layer}.exr")));
+        let read = |layer| Picture::new(Exr::read(&folder.join(format!("{name}_{layer}.exr"))));
         Self {
-            ours: render(shared, &parameters),
+            ours: Picture::new(truth::render(shared, &parameters, &["--layers"])),
             truth: layers.map(|layer| (layer, read(layer))).into(),
             parameters,
         }
@@ -244,41 +238,6 @@ impl Compared {
             inside.iter().map(error).collect(),
         )
     }
-}
-
-/// Renders the view with the real program.
-fn render(shared: &Path, view: &Value) -> Picture {
-    let folder = tempfile::tempdir().expect("a scratch folder");
-    let (scene, output) = (folder.path().join("s.toml"), folder.path().join("a.exr"));
-    let objects = view["objs"].as_array().expect("models").iter();
-    let mesh = |object: &Value| {
-        let file = shared
-            .join("scenes")
-            .join(object["file"].as_str().expect("a name"));
-        format!("[[mesh]]\nfile = {:?}\n", file.display().to_string())
-    };
-    fs::write(&scene, objects.map(mesh).collect::<String>()).expect("a scene file");
-    let (sun, camera) = (&view["sun"], &view["camera"]);
-    let output_of = Command::new(env!("CARGO_BIN_EXE_skylight"))
-        .arg("render")
-        .arg(&scene)
-        .arg("-o")
-        .arg(&output)
-        .args(["--layers", "--quiet", "--size", "640x360"])
-        .args(["--ground-albedo", "0", "--specular", "0"])
-        .arg(format!(
-            "--sun={},{}",
-            sun["azimuth_deg"], sun["elevation_deg"]
-        ))
-        .arg(format!("--turbidity={}", view["turbidity"]))
-        .arg(format!("--eye={}", words(&camera["origin"])))
-        .arg(format!("--target={}", words(&camera["target"])))
-        .arg(format!("--fov={}", camera["vfov"]))
-        .output()
-        .expect("the program starts");
-    let stderr = String::from_utf8_lossy(&output_of.stderr).into_owned();
-    assert!(output_of.status.success(), "{stderr}");
-    Picture::read(&output)
 }
 
 /// What is asked of every view; failures are collected, so that all figures are seen.

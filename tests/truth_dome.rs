@@ -10,7 +10,6 @@ mod truth;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use serde_json::Value;
 use skylight::compare::{Picture, Referred, Statistics, eroded, exposure_of, flip};
@@ -18,13 +17,16 @@ use truth::{Exr, VIEWS};
 
 const SAMPLES: u32 = 64;
 
-/// Bounds of 64 samples.
+/// Bounds of every number of samples.
 const MEAN_RATIO: f64 = 0.01;
-const RMSE: f64 = 0.045;
-const MEDIAN: f64 = 0.02;
-/// With 256 samples. With 64 the low sun's long shadows differ by 0.0305: the noise of both.
 const FLIP: f64 = 0.03;
-const FLIP_OF_FEW: f64 = 0.033;
+/// Bounds of 64 samples.
+const RMSE_OF_FEW: f64 = 0.04;
+const MEDIAN_OF_FEW: f64 = 0.02;
+/// Bounds of 256 samples. Of the median, 1.20 % are the truth's own under the low sun: what is left when the local median of the
+/// difference is taken away.
+const RMSE: f64 = 0.03;
+const MEDIAN: f64 = 0.0125;
 
 fn samples() -> u32 {
     match std::env::var("SKYLIGHT_TRUTH_SAMPLES") {
@@ -57,12 +59,15 @@ impl Compared {
         let folder = shared.join("truth");
         let read = |what: &str| Exr::read(&folder.join(format!("{name}_{what}.exr")));
         let json = fs::read(folder.join(format!("{name}.json"))).expect("the view");
+        let view: Value = serde_json::from_slice(&json).expect("JSON");
+        let samples = samples().to_string();
+        let further = ["--visibility", "dome", "--samples", &samples];
         let aov = read("aov");
         let geometry: Vec<bool> = aov.channel("depth.T").iter().map(|d| *d > 0.0).collect();
         Self {
             name,
             reference: picture(&read("direct")),
-            ours: render(shared, &serde_json::from_slice(&json).expect("JSON")),
+            ours: picture(&truth::render(shared, &view, &further)),
             inside: eroded(aov.size, &geometry),
             folder,
         }
@@ -91,55 +96,16 @@ impl Compared {
     }
 }
 
-/// Renders the view with the real program.
-fn render(shared: &Path, view: &Value) -> Picture {
-    let folder = tempfile::tempdir().expect("a scratch folder");
-    let (scene, output) = (folder.path().join("s.toml"), folder.path().join("a.exr"));
-    let file = |model: &Value| {
-        shared
-            .join("scenes")
-            .join(model["file"].as_str().expect("a name"))
-    };
-    let mesh =
-        |model: &Value| format!("[[mesh]]\nfile = {:?}\n", file(model).display().to_string());
-    let models = view["objs"].as_array().expect("models").iter();
-    fs::write(&scene, models.map(mesh).collect::<String>()).expect("a scene file");
-    let words = |list: &Value| {
-        let numbers = list.as_array().expect("a list").iter();
-        numbers.map(Value::to_string).collect::<Vec<_>>().join(",")
-    };
-    let (sun, camera) = (&view["sun"], &view["camera"]);
-    let ended = Command::new(env!("CARGO_BIN_EXE_skylight"))
-        .args([Path::new("render"), &scene, Path::new("-o"), &output])
-        .args([
-            "--quiet",
-            "--size",
-            "640x360",
-            "--ground-albedo",
-            "0",
-            "--specular",
-            "0",
-        ])
-        .args(["--visibility", "dome", "--samples", &samples().to_string()])
-        .arg(format!(
-            "--sun={},{}",
-            sun["azimuth_deg"], sun["elevation_deg"]
-        ))
-        .arg(format!("--turbidity={}", view["turbidity"]))
-        .arg(format!("--eye={}", words(&camera["origin"])))
-        .arg(format!("--target={}", words(&camera["target"])))
-        .arg(format!("--fov={}", camera["vfov"]))
-        .output()
-        .expect("the program starts");
-    let complaint = String::from_utf8_lossy(&ended.stderr).into_owned();
-    assert!(ended.status.success(), "{complaint}");
-    picture(&Exr::read(&output))
-}
-
 #[test]
 fn every_view_converges_to_the_path_tracers() {
     let Some(shared) = common::shared() else {
         return;
+    };
+    let is_few = samples() < 256;
+    let (rmse, median) = if is_few {
+        (RMSE_OF_FEW, MEDIAN_OF_FEW)
+    } else {
+        (RMSE, MEDIAN)
     };
     let mut faults = Vec::new();
     for name in VIEWS {
@@ -155,13 +121,9 @@ fn every_view_converges_to_the_path_tracers() {
         );
         for (what, value, limit) in [
             ("mean ratio - 1", (s.mean_ratio - 1.0).abs(), MEAN_RATIO),
-            ("RMSE/mean", s.rmse_over_mean, RMSE),
-            ("median", s.median, MEDIAN),
-            (
-                "FLIP",
-                flip,
-                if samples() < 256 { FLIP_OF_FEW } else { FLIP },
-            ),
+            ("RMSE/mean", s.rmse_over_mean, rmse),
+            ("median", s.median, median),
+            ("FLIP", flip, FLIP),
         ] {
             if value.is_nan() || value > limit {
                 faults.push(format!("{name}: {what} is {value:.4}, allowed {limit}"));

@@ -70,6 +70,36 @@ pub fn sobol(index: u32) -> DVec2 {
     DVec2::new(radical_inverse(index), f64::from(bits) / 2f64.powi(32))
 }
 
+/// Laine & Karras 2011, "Stratified Sampling for Stochastic Transparency": nested uniform scrambling of bits, each flipped or not
+/// by those above it (Owen 1995); the multipliers are those of Burley 2020, "Practical Hash-based Owen Scrambling".
+fn scrambled(bits: u32, seed: u32) -> u32 {
+    let mut v = bits.reverse_bits();
+    v ^= v.wrapping_mul(0x3d20_adea);
+    v = v.wrapping_add(seed);
+    v = v.wrapping_mul((seed >> 16) | 1);
+    v ^= v.wrapping_mul(0x0552_6c56);
+    v ^= v.wrapping_mul(0x53a2_2864);
+    v.reverse_bits()
+}
+
+/// Point `index` of [`sobol`], scrambled by `seed`: every seed has other points of the same spread, and two seeds have no
+/// relation to each other, nor to [`r2`].
+pub fn scrambled_sobol(index: u32, seed: u32) -> DVec2 {
+    // Numbers of at most 32 bits: the casts lose nothing.
+    let bits = (sobol(index) * 2f64.powi(32)).to_array().map(|v| v as u32);
+    let seeds = [tea::<4>(seed, 0), tea::<4>(seed, 1)];
+    DVec2::new(
+        f64::from(scrambled(bits[0], seeds[0])) / 2f64.powi(32),
+        f64::from(scrambled(bits[1], seeds[1])) / 2f64.powi(32),
+    )
+}
+
+/// Multiples of √2 and √3 (Richtmyer 1951), point `index` in [0, 1)²: less even than [`r2`], and not in step with it.
+pub fn richtmyer(index: u32) -> DVec2 {
+    let roots = DVec2::new(std::f64::consts::SQRT_2, 3f64.sqrt());
+    (DVec2::splat(0.5) + f64::from(index) * roots).fract()
+}
+
 /// Cranley & Patterson 1976: a point set shifted on the torus, so that texels can differ without losing its spread.
 pub fn rotate(point: DVec2, shift: DVec2) -> DVec2 {
     (point + shift).fract()
@@ -148,6 +178,56 @@ mod tests {
             seen[p.y as usize * 8 + p.x as usize] = true;
         }
         assert!(seen.iter().all(|&s| s));
+    }
+
+    #[test]
+    fn scrambling_keeps_one_point_in_every_elementary_interval() {
+        for seed in 0..20 {
+            for (columns, rows) in [(64, 1), (16, 4), (8, 8), (2, 32)] {
+                let mut seen = [false; 64];
+                for i in 0..64 {
+                    let p =
+                        scrambled_sobol(i, seed) * DVec2::new(f64::from(columns), f64::from(rows));
+                    seen[p.y as usize * columns as usize + p.x as usize] = true;
+                }
+                assert!(seen.iter().all(|&s| s), "{seed} {columns} {rows}");
+            }
+        }
+        assert_ne!(scrambled_sobol(5, 0), scrambled_sobol(5, 1));
+    }
+
+    /// Spread of the numbers of pairs of points of two sequences in cells of 8x8x8x8, against what chance would have.
+    fn dependence(a: &dyn Fn(u32) -> DVec2, b: &dyn Fn(u32) -> DVec2) -> f64 {
+        const CELLS: usize = 4096;
+        let mut counts = vec![0u32; CELLS];
+        for i in 0..16 * CELLS as u32 {
+            let cell = |p: DVec2| (p.x * 8.0) as usize * 8 + (p.y * 8.0) as usize;
+            counts[cell(a(i)) * 64 + cell(b(i))] += 1;
+        }
+        // Each count should be 16.
+        let squares: f64 = counts.iter().map(|n| (f64::from(*n) - 16.0).powi(2)).sum();
+        // Of independent points this is the variance of a count, 16.
+        squares / CELLS as f64 / 16.0
+    }
+
+    #[test]
+    fn sequences_that_are_drawn_together_are_not_in_step() {
+        let far = |i: u32| r2(i + (1 << 20));
+        let disc = |i: u32| scrambled_sobol(i, 9);
+        let pixel_of_eight = |i: u32| r2(i / 8);
+        let direction = |i: u32| scrambled_sobol(i, 4);
+        assert!(dependence(&r2, &far) > 100.0);
+        for (name, d) in [
+            ("pixel and disc", dependence(&r2, &disc)),
+            (
+                "pixel and direction",
+                dependence(&pixel_of_eight, &direction),
+            ),
+            ("pixel and texel", dependence(&r2, &richtmyer)),
+            ("disc and texel", dependence(&disc, &richtmyer)),
+        ] {
+            assert!(d < 3.0, "{name}: {d}");
+        }
     }
 
     #[test]

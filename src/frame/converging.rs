@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::{FrameSettings, Visibility};
-use crate::gpu::{Context, Result};
+use crate::gpu::{Context, Image, Result};
 use crate::passes::dome::Dome;
+use crate::passes::fade::Fade;
 use crate::passes::geometry::Geometry;
 use crate::passes::lighting::Lighting;
 use crate::passes::shadow::Shadow;
@@ -17,6 +18,8 @@ pub(super) struct Converging {
     pub lighting: Lighting,
     /// That, and the means.
     pub dome: Dome,
+    /// From the preview to that.
+    pub fade: Option<Fade>,
 }
 
 impl Converging {
@@ -31,25 +34,33 @@ impl Converging {
             return Ok(None);
         }
         let size = settings.size.to_array();
-        let downscale = settings.lighting.occlusion_downscale;
-        let prior = (sampling.visibility == Visibility::Progressive).then_some(downscale);
+        let fades = sampling.visibility == Visibility::Progressive;
         Ok(Some(Self {
             shadow: Shadow::unbiased(context, geometry, settings.shadow_resolution)?,
             lighting: Lighting::converging(context, size, settings.lighting)?,
-            dome: Dome::new(
-                context,
-                geometry,
-                size,
-                sampling.dome,
-                settings.lighting,
-                prior,
-            )?,
+            dome: Dome::new(context, geometry, size, sampling.dome, settings.lighting)?,
+            fade: fades
+                .then(|| Fade::new(context, size, settings.samples))
+                .transpose()?,
         }))
+    }
+
+    /// The newest picture, kcd/m².
+    pub fn image(&self) -> &Image {
+        self.fade.as_ref().map_or(self.dome.image(), Fade::image)
     }
 
     /// Whether new settings need other passes.
     pub fn is_changed(old: &FrameSettings, new: &FrameSettings) -> bool {
-        let of = |s: &FrameSettings| (s.size, s.sampling, s.lighting, s.shadow_resolution);
+        let of = |s: &FrameSettings| {
+            (
+                s.size,
+                s.samples,
+                s.sampling,
+                s.lighting,
+                s.shadow_resolution,
+            )
+        };
         of(old) != of(new)
     }
 }

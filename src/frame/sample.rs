@@ -17,7 +17,7 @@ pub enum Visibility {
     Ssao,
     /// Shadow maps from directions of the sky: converges to the truth over the samples.
     Dome,
-    /// The same, beginning with ambient occlusion, which fades: for what stops moving (previews are drawn as with `Ssao`).
+    /// The same, beginning with the preview, which fades: for what stops moving (previews are drawn as with `Ssao`).
     #[value(skip)]
     Progressive,
 }
@@ -44,6 +44,9 @@ pub struct Sampling {
     pub filter: Filter,
 }
 
+/// Tells the scrambling of the disc's points from that of the sky's.
+const DISC: u32 = 0x0d15_c000;
+
 /// Where a frame samples the pixel and the sun's disc.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
@@ -51,6 +54,8 @@ pub(super) struct Sample {
     pub jitter: Vec2,
     /// Toward a point of the sun's disc.
     pub sun_direction: Vec3,
+    /// Part of a texel by which the sun's map is moved, 0..1.
+    pub texel: Vec2,
     /// Turn of the noise of ambient occlusion, 0..1.
     pub phase: f32,
 }
@@ -61,20 +66,23 @@ impl Sample {
         Self {
             jitter: Vec2::ZERO,
             sun_direction: sun,
+            texel: Vec2::splat(0.5),
             phase: 0.0,
         }
     }
 
     /// Sample number `index` of a sequence that any number of samples covers evenly.
     pub fn new(sun: Vec3, index: u32, sampling_settings: &Sampling) -> Self {
-        // Two stretches of one sequence, far apart, so that pixel and disc are not sampled in step.
-        let start = sampling_settings.dome.seed.wrapping_mul(1 << 12);
-        let index = start.wrapping_add(index);
+        // Three sequences that are not in step: two stretches of one would be the same points, moved, and the mean over pixel and
+        // disc would not go to that over all pairs of points.
+        let seed = sampling_settings.dome.seed;
+        let disc = sampling::scrambled_sobol(index, seed ^ DISC);
+        let index = seed.wrapping_mul(1 << 12).wrapping_add(index);
         let pixel = sampling::r2(index);
-        let disc = sampling::r2(index.wrapping_add(1 << 20));
         Self {
             jitter: offset(sampling_settings.filter, pixel),
             sun_direction: on_disc(sun, disc),
+            texel: sampling::richtmyer(index).as_vec2(),
             phase: sampling::radical_inverse(index) as f32,
         }
     }

@@ -10,7 +10,7 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, Vec3};
+use glam::Vec3;
 
 use crate::daylight::dome::{DomeLight, SkyDome, ground_light};
 use crate::daylight::sampling;
@@ -39,7 +39,6 @@ gpu_struct! {
     /// This frame among the others.
     pub struct Push {
         ground: Vec3,
-        sky_share: f32,
         share: f32,
     }
 }
@@ -76,14 +75,9 @@ pub struct Gathered<'a> {
     pub frame: &'a Image,
     /// E of sky and ground, klx.
     pub sky_irradiance: &'a Image,
-    /// A, where the means begin with it.
-    pub occlusion: &'a Image,
     /// L of sky and ground, kcd/m².
     pub sky_radiance: &'a Image,
 }
-
-/// Frames for which ambient occlusion counts where the means begin with it.
-const PRIOR_FRAMES: u32 = 16;
 
 /// Bias of the comparison, in texels. Within half a texel of an inner corner the texel's centre may lie on the other face, up to
 /// about a texel over this one. Measured on the truth views: 0.2 takes 0.5 to 0.8 % of the light, 1 less than 0.2 %; 1.5 leaks
@@ -95,8 +89,6 @@ pub struct Dome {
     settings: DomeSettings,
     casters: Casters,
     gather: Pipeline,
-    /// For the first sample where the means begin with ambient occlusion.
-    begin: Option<Pipeline>,
     resolve: Pipeline,
     maps: Image,
     /// Alternating means: sky and rest, see `dome_gather.frag`.
@@ -107,6 +99,9 @@ pub struct Dome {
     sky: Option<(Daylight, SkyDome)>,
     is_shown: bool,
 }
+
+/// Tells the scrambling of the ground's directions from that of the sky's.
+const GROUND: u32 = 0x0640_0000;
 
 const FORMAT: Format = Format::R32G32B32A32_SFLOAT;
 
@@ -124,8 +119,7 @@ fn shows_sky(show: Show) -> bool {
 }
 
 impl Dome {
-    /// For pictures of `size` pixels. With `prior` the means begin with ambient occlusion, of which so many pixels (each way)
-    /// share a texel: its share in the mean falls to 0.4 % over 256 frames.
+    /// For pictures of `size` pixels.
     ///
     /// # Errors
     /// When the device refuses or has no memory left.
@@ -135,10 +129,9 @@ impl Dome {
         size: [u32; 2],
         settings: DomeSettings,
         lighting: LightingSettings,
-        prior: Option<u32>,
     ) -> Result<Self> {
         let show = lighting.show;
-        let mirror = Mirror::new(context, size, settings, lighting, prior.is_some())?;
+        let mirror = Mirror::new(context, size, settings, lighting)?;
         let image = |name| Image::new(context, &ImageDesc::flat(name, FORMAT, size));
         let tiles = columns(settings.directions);
         let rows = settings.directions.div_ceil(tiles);
@@ -147,10 +140,7 @@ impl Dome {
         Ok(Self {
             settings,
             casters: Casters::new(context, geometry, 0.0)?,
-            gather: gather_pipeline(context, geometry, settings, show, None)?,
-            begin: prior
-                .map(|_| gather_pipeline(context, geometry, settings, show, prior))
-                .transpose()?,
+            gather: gather_pipeline(context, geometry, settings, show)?,
             resolve: fullscreen(
                 context,
                 "dome: resolve",
@@ -185,7 +175,9 @@ impl Dome {
         let views: Vec<ShadowView> = (0u32..)
             .zip(&lights)
             .map(|(k, light)| {
-                let shift = sampling::r2(index * self.settings.directions + k).as_vec2();
+                // Not in step with the directions, or every direction would have a shift of its own.
+                let number = index.wrapping_mul(self.settings.directions) + k;
+                let shift = sampling::richtmyer(number).as_vec2();
                 let toward = light.direction.as_vec3();
                 fit(
                     toward,
@@ -200,16 +192,9 @@ impl Dome {
             self.draw_maps(recorder, geometry, &views);
         }
         let block = self.block(&lights, &views, daylight);
-        let share = 1.0 / (index + 1) as f32;
-        let sky_share = match &self.begin {
-            // Newer frames count more, so that what the means began with fades as the square of their number.
-            Some(_) => 2.0 / (PRIOR_FRAMES + index + 2) as f32,
-            None => share,
-        };
         let push = Push {
             ground: kilo(daylight.ground_luminance),
-            sky_share,
-            share,
+            share: 1.0 / (index + 1) as f32,
         };
         self.gather(recorder, gathered, view, &block, &push);
         self.resolve(recorder);
@@ -218,11 +203,6 @@ impl Dome {
             mirror.record(recorder, gathered, view, maps, picture, index);
         }
         self.image()
-    }
-
-    /// Whether ambient occlusion is what the means begin with, in this frame.
-    pub fn begins_with_occlusion(&self, index: u32) -> bool {
-        self.begin.is_some() && index == 0
     }
 
     /// The picture of the newest means, kcd/m².
@@ -240,14 +220,14 @@ impl Dome {
             return Vec::new();
         };
         let (of_sky, of_ground) = self.counts(daylight);
-        let shift = sampling::r2(self.settings.seed);
-        let point = |count: u32, k: u32, from: u32| -> DVec2 {
-            sampling::rotate(sampling::r2(from.wrapping_add(index * count + k)), shift)
+        let seed = self.settings.seed;
+        let point = |count: u32, k: u32, which: u32| {
+            sampling::scrambled_sobol(index.wrapping_mul(count) + k, seed ^ which)
         };
         let above = (0..of_sky).map(|k| (sky.light(daylight, point(of_sky, k, 0)), of_sky));
         let below = (0..of_ground).map(|k| {
             (
-                ground_light(daylight, point(of_ground, k, 1 << 21)),
+                ground_light(daylight, point(of_ground, k, GROUND)),
                 of_ground,
             )
         });
@@ -314,12 +294,8 @@ impl Dome {
         let [[sky, rest], [old_sky, old_rest]] = &self.means;
         let surfaces = gathered.surfaces;
         let albedo = surfaces.albedo.as_ref().unwrap_or(gathered.materials);
-        let pipeline = match &self.begin {
-            Some(begin) if push.share >= 1.0 => begin,
-            _ => &self.gather,
-        };
         recorder
-            .pass("dome: gather", pipeline)
+            .pass("dome: gather", &self.gather)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
             .sample("normal", &surfaces.normal, Sampler::Nearest)
             .sample("albedo", albedo, Sampler::Nearest)
@@ -330,7 +306,6 @@ impl Dome {
             .sample("previous_rest", old_rest, Sampler::Nearest)
             .sample("maps", &self.maps, Sampler::Nearest)
             .sample("sky_irradiance", gathered.sky_irradiance, Sampler::Linear)
-            .sample("occlusion", gathered.occlusion, Sampler::Nearest)
             .uniform("view", &view.block())
             .uniform("dome", block)
             .push(push)
@@ -355,7 +330,6 @@ fn gather_pipeline(
     geometry: &Geometry,
     settings: DomeSettings,
     show: Show,
-    prior: Option<u32>,
 ) -> Result<Pipeline> {
     Pipeline::new(
         context,
@@ -370,8 +344,6 @@ fn gather_pipeline(
                 ("SHOW_OCCLUSION", (show == Show::Occlusion).into()),
                 ("SKY", shows_sky(show).into()),
                 ("DIRECTIONS", settings.directions),
-                ("PRIOR", prior.is_some().into()),
-                ("OCCLUSION_DOWNSCALE", prior.unwrap_or(1)),
                 ("ALBEDO_IMAGE", geometry.has_albedo().into()),
             ],
         },

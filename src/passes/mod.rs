@@ -14,6 +14,7 @@ pub mod dome_block;
 pub mod dome_fit;
 mod draw_runs;
 pub mod exposure;
+pub mod fade;
 pub mod gbuffer;
 pub mod geometry;
 mod geometry_upload;

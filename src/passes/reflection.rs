@@ -60,16 +60,6 @@ gpu_struct! {
     }
 }
 
-gpu_struct! {
-    /// What is known beforehand.
-    pub struct ResolvePush {
-        open: f32,
-    }
-}
-
-/// Frames until what was known beforehand counts a quarter.
-const PRIOR_FRAMES: f32 = 16.0;
-
 const FORMATS: [Format; 2] = [Format::R32G32B32A32_SFLOAT, Format::R32_SFLOAT];
 
 /// The pass and its means.
@@ -80,17 +70,15 @@ pub(super) struct Mirror {
     /// Alternating means: the open mirror with the light that is not hidden, and all light of the lobe.
     means: [[Image; 2]; 2],
     radiance: Image,
-    has_prior: bool,
 }
 
 impl Mirror {
-    /// Nothing where no mirror with hidden sky is shown. With `has_prior` the means begin with the open sky, which fades.
+    /// Nothing where no mirror with hidden sky is shown.
     pub fn new(
         context: &Arc<Context>,
         size: [u32; 2],
         dome: DomeSettings,
         lighting: LightingSettings,
-        has_prior: bool,
     ) -> Result<Option<Self>> {
         let is_shown = matches!(
             lighting.show,
@@ -112,7 +100,6 @@ impl Mirror {
             resolve: fullscreen(context, name, resolve, FORMATS[0], &[])?,
             means: [pair()?, pair()?],
             radiance: image("radiance with mirrors", FORMATS[0])?,
-            has_prior,
         }))
     }
 
@@ -152,17 +139,11 @@ impl Mirror {
             .color(mirror, Load::Discard)
             .color(lobe, Load::Discard)
             .draw();
-        let open = if self.has_prior {
-            (PRIOR_FRAMES / (PRIOR_FRAMES + index as f32)).powi(2)
-        } else {
-            0.0
-        };
         recorder
             .pass("dome: resolve mirrors", &self.resolve)
             .sample("picture", picture, Sampler::Nearest)
             .sample("mirror", mirror, Sampler::Nearest)
             .sample("lobe", lobe, Sampler::Nearest)
-            .push(&ResolvePush { open })
             .color(&self.radiance, Load::Discard)
             .draw();
     }
@@ -207,8 +188,6 @@ mod tests {
         let stage = &shaders::DOME_MIRROR_FRAG;
         let push = stage.push.expect("push");
         assert_eq!(check_layout(Push::FIELDS, push), Ok(()));
-        let push = shaders::DOME_MIRROR_RESOLVE_FRAG.push.expect("push");
-        assert_eq!(check_layout(ResolvePush::FIELDS, push), Ok(()));
         let binding = stage.bindings.iter().find(|b| b.name == "dome");
         let fields = binding.expect("dome").fields;
         assert_eq!(check_layout(DomeBlock::FIELDS, fields), Ok(()));

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use exr::prelude::{ReadChannels as _, ReadLayers as _};
 use serde_json::Value;
@@ -135,17 +136,59 @@ impl View {
     }
 }
 
-fn load_scene(scenes: &Path, models: &Value) -> Scene {
+/// A scene file of the view's models.
+fn scene_file(scenes: &Path, models: &Value) -> String {
     let scenes = scenes.canonicalize().expect("shared/scenes");
     let mesh = |model: &Value| {
         let file = scenes.join(model["file"].as_str().expect("a file name"));
         format!("[[mesh]]\nfile = '{}'\n", file.display())
     };
-    let text: String = models.as_array().expect("objs").iter().map(mesh).collect();
+    models.as_array().expect("objs").iter().map(mesh).collect()
+}
+
+fn load_scene(scenes: &Path, models: &Value) -> Scene {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("view.toml");
-    std::fs::write(&path, text).expect("written");
+    std::fs::write(&path, scene_file(scenes, models)).expect("written");
     scene::load(&path, &LoadOptions::default())
         .unwrap_or_else(|e| panic!("{e}"))
         .scene
+}
+
+/// Camera, sun and air of a view as options of `render`, in the truth's size, without what the truth leaves out: light from
+/// the ground and mirrors.
+fn options(view: &Value) -> Vec<String> {
+    let (sun, camera) = (&view["sun"], &view["camera"]);
+    let words = |list: &Value| {
+        let numbers = list.as_array().expect("a list").iter();
+        numbers.map(Value::to_string).collect::<Vec<_>>().join(",")
+    };
+    vec![
+        "--size=640x360".to_owned(),
+        "--ground-albedo=0".to_owned(),
+        "--specular=0".to_owned(),
+        format!("--sun={},{}", sun["azimuth_deg"], sun["elevation_deg"]),
+        format!("--turbidity={}", view["turbidity"]),
+        format!("--eye={}", words(&camera["origin"])),
+        format!("--target={}", words(&camera["target"])),
+        format!("--fov={}", camera["vfov"]),
+    ]
+}
+
+/// Renders a view with the real program; `further` options come after those of the view.
+pub fn render(shared: &Path, view: &Value, further: &[&str]) -> Exr {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let (scene, output) = (folder.path().join("s.toml"), folder.path().join("a.exr"));
+    let text = scene_file(&shared.join("scenes"), &view["objs"]);
+    std::fs::write(&scene, text).expect("a scene file");
+    let ended = Command::new(env!("CARGO_BIN_EXE_skylight"))
+        .args([Path::new("render"), &scene, Path::new("-o"), &output])
+        .arg("--quiet")
+        .args(options(view))
+        .args(further)
+        .output()
+        .expect("the program starts");
+    let complaint = String::from_utf8_lossy(&ended.stderr).into_owned();
+    assert!(ended.status.success(), "{complaint}");
+    Exr::read(&output)
 }

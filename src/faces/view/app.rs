@@ -186,7 +186,12 @@ impl App {
                 tell(interface, &error);
             }
         }
-        let drawn = stage.draw(&layout.frame, document)?;
+        let rested = document.as_deref().is_none_or(Document::is_at_rest);
+        let drawn = stage.draw(&layout.frame, document.as_deref_mut())?;
+        if !rested && document.is_some_and(|d| d.is_at_rest()) {
+            // The user interface was laid out before the last frame: it has yet to tell of it.
+            stage.window.request_redraw();
+        }
         self.again_at = match layout.again_after {
             _ if !drawn => Some(Instant::now() + RETRY),
             // At once is the business of the next request.

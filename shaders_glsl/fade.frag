@@ -1,0 +1,18 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+
+// From the picture that was shown while something moved to the one that converges.
+
+layout(location = 0) out vec4 radiance; // kcd/m^2, or the quantity asked for
+
+layout(set = 0, binding = 0) uniform sampler2D preview;
+layout(set = 0, binding = 1) uniform sampler2D converging;
+
+layout(push_constant, scalar) uniform Push {
+    float share; // of the preview, 0..1
+} push;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    radiance = mix(texelFetch(converging, pixel, 0), texelFetch(preview, pixel, 0), push.share);
+}

@@ -39,9 +39,9 @@ pub struct Solid {
 /// Indices in another order, and the clusters that they form.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Clusters {
-    /// Three for each triangle: those of the runs that were given, run after run, each in an order of its own.
+    /// Those of the scene, the ones of each run in the order of its clusters.
     pub indices: Vec<u32>,
-    /// The clusters, in the order of their indices.
+    /// The clusters, run after run, in the order of their indices.
     pub list: Vec<Cluster>,
     /// The clusters of each run.
     pub of_run: Vec<Range<usize>>,
@@ -52,34 +52,61 @@ impl Clusters {
     /// Within a cluster triangles keep their order, which is mostly one that shares vertices.
     pub fn of(scene: &Scene, bodies: &Bodies, runs: &[(u32, u32)]) -> Self {
         let mut made = Self {
-            indices: Vec::with_capacity(scene.indices.len()),
+            indices: scene.indices.clone(),
             ..Self::default()
         };
         let splitter = Splitter { scene, bodies };
-        for (first, count) in runs {
+        for &(first, count) in runs {
             let start = made.list.len();
-            let (mut solid, mut open): (Vec<u32>, Vec<u32>) =
-                (first / 3..(first + count) / 3).partition(|t| splitter.body(*t).is_solid);
-            for (triangles, is_solid) in [(&mut solid, true), (&mut open, false)] {
-                for group in splitter.split(triangles) {
-                    made.push(&splitter, &group, is_solid);
-                }
+            let (mut solid, mut open): (Vec<Item>, Vec<Item>) = (first / 3..(first + count) / 3)
+                .map(|t| splitter.item(t))
+                .partition(|item| splitter.body(item.triangle).is_solid);
+            let middle = first + 3 * solid.len() as u32;
+            for (items, first, is_solid) in [(&mut solid, first, true), (&mut open, middle, false)]
+            {
+                let range = first as usize..first as usize + 3 * items.len();
+                let run = Run {
+                    first,
+                    is_solid,
+                    indices: &mut made.indices[range],
+                };
+                made.list.extend(splitter.split(items, run));
             }
             made.of_run.push(start..made.list.len());
         }
         made
     }
+}
 
-    fn push(&mut self, splitter: &Splitter<'_>, triangles: &[u32], is_solid: bool) {
-        let corners = triangles.iter().flat_map(|t| splitter.positions(*t));
-        self.list.push(Cluster {
-            first: self.indices.len() as u32,
-            count: 3 * triangles.len() as u32,
-            bounds: Bounds::of(corners),
-            solid: is_solid.then(|| splitter.solid(triangles)),
-        });
-        let indices = triangles.iter().flat_map(|t| splitter.corners(*t));
-        self.indices.extend(indices);
+/// A triangle on its way to its cluster.
+#[derive(Clone, Copy)]
+struct Item {
+    /// Three times its centroid.
+    place: Vec3,
+    triangle: u32,
+}
+
+/// Where the indices of some triangles go.
+struct Run<'i> {
+    /// Number of the first one.
+    first: u32,
+    is_solid: bool,
+    indices: &'i mut [u32],
+}
+
+impl Run<'_> {
+    /// The first `triangles` and the rest.
+    fn halves(&mut self, triangles: usize) -> (Run<'_>, Run<'_>) {
+        let (low, high) = self.indices.split_at_mut(3 * triangles);
+        let of = |first, indices| Run {
+            first,
+            is_solid: self.is_solid,
+            indices,
+        };
+        (
+            of(self.first, low),
+            of(self.first + 3 * triangles as u32, high),
+        )
     }
 }
 
@@ -103,56 +130,67 @@ impl Splitter<'_> {
         &self.bodies.list[self.bodies.of_vertex[vertex] as usize]
     }
 
-    /// Groups of at most [`MOST`] triangles.
-    fn split(&self, triangles: &mut [u32]) -> Vec<Vec<u32>> {
-        if triangles.is_empty() {
+    fn item(&self, triangle: u32) -> Item {
+        Item {
+            place: self.positions(triangle).iter().sum(),
+            triangle,
+        }
+    }
+
+    /// Clusters of at most [`MOST`] triangles.
+    fn split(&self, items: &mut [Item], mut run: Run<'_>) -> Vec<Cluster> {
+        if items.is_empty() {
             return Vec::new();
         }
-        if triangles.len() <= MOST {
-            triangles.sort_unstable();
-            return vec![triangles.to_vec()];
+        if items.len() <= MOST {
+            return vec![self.cluster(items, run)];
         }
-        let middle = triangles.len() / 2;
-        let is_large = triangles.len() >= LARGE;
-        self.halve(triangles);
-        let (low, high) = triangles.split_at_mut(middle);
-        let (mut groups, rest) = if is_large {
+        let middle = items.len() / 2;
+        let is_large = items.len() >= LARGE;
+        halve(items, middle);
+        let (low, high) = items.split_at_mut(middle);
+        let (low_run, high_run) = run.halves(middle);
+        let (mut clusters, rest) = if is_large {
             thread::scope(|scope| {
-                let rest = scope.spawn(|| self.split(high));
-                let groups = self.split(low);
+                let rest = scope.spawn(|| self.split(high, high_run));
+                let clusters = self.split(low, low_run);
                 let rest = rest.join();
                 // A fault of this program is one on this thread too.
                 (
-                    groups,
+                    clusters,
                     rest.unwrap_or_else(|fault| std::panic::resume_unwind(fault)),
                 )
             })
         } else {
-            (self.split(low), self.split(high))
+            (self.split(low, low_run), self.split(high, high_run))
         };
-        groups.extend(rest);
-        groups
+        clusters.extend(rest);
+        clusters
     }
 
-    /// Brings the half of the triangles that lies lower on the longest axis to the front.
-    fn halve(&self, triangles: &mut [u32]) {
-        // Three times the centroid.
-        let place = |t: u32| self.positions(t).iter().sum::<Vec3>();
-        let extent = Bounds::of(triangles.iter().map(|t| place(*t))).extent();
-        let axis = extent.max_position();
-        let mut keyed: Vec<(f32, u32)> = triangles.iter().map(|t| (place(*t)[axis], *t)).collect();
-        let order = |a: &(f32, u32), b: &(f32, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        keyed.select_nth_unstable_by(triangles.len() / 2, order);
-        for (triangle, (_, sorted)) in triangles.iter_mut().zip(keyed) {
-            *triangle = sorted;
+    fn cluster(&self, items: &mut [Item], run: Run<'_>) -> Cluster {
+        items.sort_unstable_by_key(|item| item.triangle);
+        let mut bounds = Bounds::EMPTY;
+        for (item, indices) in items.iter().zip(run.indices.chunks_exact_mut(3)) {
+            indices.copy_from_slice(&self.corners(item.triangle));
+            bounds = self
+                .positions(item.triangle)
+                .into_iter()
+                .fold(bounds, Bounds::with);
+        }
+        Cluster {
+            first: run.first,
+            count: run.indices.len() as u32,
+            bounds,
+            solid: run.is_solid.then(|| self.solid(items)),
         }
     }
 
-    fn solid(&self, triangles: &[u32]) -> Solid {
-        let bodies = triangles.iter().map(|t| self.body(*t).bounds);
+    fn solid(&self, items: &[Item]) -> Solid {
+        let bodies = items.iter().map(|item| self.body(item.triangle).bounds);
         let normals = || {
-            triangles.iter().map(|t| {
-                let [a, b, c] = self.positions(*t);
+            items.iter().map(|item| {
+                let [a, b, c] = self.positions(item.triangle);
                 (b - a).cross(c - a).normalize_or_zero()
             })
         };
@@ -172,6 +210,17 @@ impl Splitter<'_> {
             },
         }
     }
+}
+
+/// Brings the triangles that lie lower on the longest axis before the middle.
+fn halve(items: &mut [Item], middle: usize) {
+    let extent = Bounds::of(items.iter().map(|item| item.place)).extent();
+    let axis = extent.max_position();
+    let order = |a: &Item, b: &Item| {
+        let by_place = a.place[axis].total_cmp(&b.place[axis]);
+        by_place.then(a.triangle.cmp(&b.triangle))
+    };
+    items.select_nth_unstable_by(middle, order);
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use super::draw_runs::Runs;
 use super::geometry_upload::{
     normals_and_thickness, surface, upload, upload_details, upload_materials, white,
 };
+use super::view::View;
 
 /// What is drawn with one material.
 #[derive(Debug, Clone)]
@@ -170,6 +171,12 @@ impl Geometry {
     /// The box around everything that may cast a shadow.
     pub fn casters(&self) -> &Bounds {
         &self.casters
+    }
+
+    /// Clusters of the whole picture of which this view is a part.
+    pub fn seen(&self, view: &View) -> impl Iterator<Item = &Cluster> {
+        let cull = Cull::camera(&view.whole());
+        self.clusters.iter().filter(move |c| cull.sees(c))
     }
 
     /// ρ_d, ρ_s and p of every material, see `include/materials.glsl`.

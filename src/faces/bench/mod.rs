@@ -5,6 +5,7 @@
 
 mod baseline;
 mod chart;
+mod hills;
 mod measure;
 mod report;
 mod routes;

@@ -58,6 +58,7 @@ pub(super) struct Surface {
     pub specular_map: Option<usize>,
     pub normal_map: Option<usize>,
     pub normal_scale: f32,
+    pub mirrors: bool,
     pub cutoff: Option<f32>,
 }
 
@@ -78,6 +79,8 @@ pub struct Bound<'g> {
     pub normal_map: Option<&'g Image>,
     /// Factor on its slopes.
     pub normal_scale: f32,
+    /// Whether it has a ρ_s.
+    pub mirrors: bool,
     /// Alpha of the map of ρ_d below which there is a hole; 0 without holes.
     pub cutoff: f32,
     /// Stands for a map that is not there.
@@ -293,6 +296,7 @@ impl Geometry {
             specular_map: map(s.specular_map),
             normal_map: map(s.normal_map),
             normal_scale: s.normal_scale,
+            mirrors: s.mirrors,
             cutoff: s.cutoff.unwrap_or(0.0),
             white: &self.white,
         }

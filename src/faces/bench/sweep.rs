@@ -42,7 +42,12 @@ const HILLS: [usize; 6] = [10_000, 30_000, 100_000, 300_000, 1_000_000, 2_000_00
 /// Share of the triangles that a second view sees.
 const NARROW: f64 = 0.05;
 /// The passes that draw triangles.
-const GEOMETRY: [&str; 3] = ["G-buffer", "shadow map", "shadow map, cut-outs"];
+const GEOMETRY: [&str; 4] = [
+    "G-buffer",
+    "G-buffer, details",
+    "shadow map",
+    "shadow map, cut-outs",
+];
 
 impl Sweep {
     /// What the sizes count.

@@ -6,11 +6,11 @@ use glam::Vec3;
 use crate::scene::{Bounds, Cluster};
 
 /// Directions across the light in which the extent is known: evenly over half a turn.
-const ACROSS: usize = 4;
+const ACROSS: usize = 8;
 /// Those, and the one toward the light.
 const DIRECTIONS: usize = ACROSS + 1;
 /// Room for what comes into view while the map stays, as a share of the extent.
-const ROOM: f32 = 1.0 / 16.0;
+const ROOM: f32 = 1.0 / 24.0;
 
 /// A convex region by its extent in some directions (a k-DOP; Klosowski et al. 1998), metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -124,8 +124,8 @@ mod tests {
             shade
         };
         let drawn = of(0.0).with_room();
-        // A sixteenth of the diagonal.
-        assert!(drawn.holds(&of(0.08)));
+        // A twenty-fourth of the diagonal.
+        assert!(drawn.holds(&of(0.055)));
         assert!(!drawn.holds(&of(0.1)));
         assert!(drawn.holds(&Shade::none(axes)), "nothing needs nothing");
     }

@@ -129,15 +129,12 @@ impl SunViews {
             let Bounds { min, max } = cluster.bounds;
             let farthest = (max - eye).abs().max((eye - min).abs()).max_element();
             let nearest = (min - eye).max(eye - max).max_element();
-            for k in 0..self.count {
-                let finer = if k == 0 {
-                    0.0
-                } else {
-                    BLEND * self.reach[k - 1]
-                };
-                if farthest >= finer && nearest <= self.reach[k] {
-                    shades[k].add(&cluster.bounds);
+            let mut finer = 0.0;
+            for (shade, reach) in shades.iter_mut().zip(self.reach).take(self.count) {
+                if farthest >= finer && nearest <= reach {
+                    shade.add(&cluster.bounds);
                 }
+                finer = BLEND * reach;
             }
         }
         for (view, shade) in self.views.iter_mut().zip(shades) {

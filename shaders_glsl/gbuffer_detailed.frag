@@ -35,12 +35,24 @@ vec3 mapped_normal(vec3 n) {
     return slope.x * surface_tangent.xyz + slope.y * bitangent + slope.z * n;
 }
 
+/// Where a normal of the map mirrors the view into the surface, what is mirrored there is more of the surface, which mirrors
+/// once more: the ray is turned back up. Without that, waves far away would mirror the ground below the horizon.
+vec3 mirroring_up(vec3 mapped, vec3 n) {
+    vec3 toward = normalize(from_eye);
+    vec3 r = reflect(toward, normalize(mapped));
+    float below = dot(r, normalize(n));
+    return below < 0.0 ? r - 2.0 * below * normalize(n) - toward : mapped;
+}
+
 void main() {
     // Cards of leaves and grass lean their normals out of the crown or up: across the face is no reason to turn them.
     vec3 n = facing_normal(shading_normal, from_eye, CUT_OUT ? 0.5 : 0.0);
     vec4 surface = vec4(push.diffuse, 1.0) * surface_colour;
     if (DIFFUSE_MAP) surface *= texture(diffuse_map, surface_uv, -push.sharpen);
-    if (NORMAL_MAP) n = mapped_normal(n);
+    if (NORMAL_MAP) {
+        vec3 mapped = mapped_normal(n);
+        n = push.mirrors != 0u ? mirroring_up(mapped, n) : mapped;
+    }
     float gloss = 1.0;
     if (SPECULAR_MAP) gloss = dot(texture(specular_map, surface_uv, -push.sharpen).rgb, vec3(1.0 / 3.0));
     if (CUT_OUT && surface.a < push.cutoff) discard;

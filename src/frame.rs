@@ -221,7 +221,10 @@ impl Frame {
             }
             None => {
                 let sun = sample.sun_direction;
-                SunViews::fit(sun, bounds, casters, &view, resolution, count)
+                let mut views = SunViews::fit(sun, bounds, casters, &view, resolution, count);
+                let (seen, eye) = (self.geometry.seen(&view), view.camera.eye);
+                views.shade(seen, eye, &self.settings.lighting.shadows);
+                views
             }
         };
 

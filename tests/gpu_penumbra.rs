@@ -221,3 +221,89 @@ fn cascades_shade_near_and_far() {
         assert!(bad_alone >= if needs_them { 10 } else { bad });
     }
 }
+
+/// A long wall along z: the edge of its shadow runs away from the viewer through all cascades.
+fn long_wall() -> Scene {
+    let grey = matt(0.5);
+    let wall = ([-2.0, 0.0, 5.0], [0.0, 0.0, -900.0], [0.0, 3.0, 0.0]);
+    Model::default()
+        .ground(1000.0, &grey)
+        .quad(wall.0, wall.1, wall.2, &grey)
+        .build()
+}
+
+/// Width of the edge of the wall's shadow at distances down the view, metres: from 5 % to 95 % of the light, by the integral
+/// of what is between. Only where a pixel is narrower than the edge.
+fn edge_widths(picture: &Picture, camera: &Camera, edge: f64) -> Vec<(f64, f64)> {
+    let [width, height] = picture.size;
+    let row_at = |y: usize| -> Option<(f64, f64)> {
+        let points: Vec<(DVec3, f64)> = (0..width)
+            .filter_map(|x| Some((on_ground(camera, picture.size, [x, y])?, picture.at(x, y).x)))
+            .filter(|(p, _)| (p.x - edge).abs() < 12.0)
+            .collect();
+        let pixel = points.get(1)?.0.x - points.first()?.0.x;
+        let away = (points[0].0.z - f64::from(camera.eye.z)).abs();
+        // A ramp from dark to light has the integral of 4 V (1 - V) of two thirds of its width.
+        let sum: f64 = points
+            .iter()
+            .map(|(_, v)| 4.0 * v * (1.0 - v) * pixel)
+            .sum();
+        let width = 1.5 * sum;
+        (width > 2.0 * pixel).then_some((away, width))
+    };
+    (0..height).rev().filter_map(row_at).collect()
+}
+
+#[test]
+fn cascades_are_far_sharper_near_the_viewer_and_widen_without_a_seam() {
+    let mut device = Device::new();
+    let scene = long_wall();
+    // From the west: the shadow of 3 m lies to the east of the wall.
+    let day = clear_day(270.0, 40.0);
+    let edge = -2.0 + 3.0 / 40f64.to_radians().tan();
+    let camera = Camera {
+        fov_deg: 50.0,
+        ..gpu::camera([edge as f32, 1.7, 0.0], [edge as f32, 0.0, -7.0])
+    };
+    let mut widths = |cascades: u32| {
+        let shadows = Shadows {
+            cascades,
+            penumbrae: false,
+        };
+        let picture = device.picture(&scene, visibility([1280, 960], shadows), &day, &camera);
+        edge_widths(&picture, &camera, edge)
+    };
+    let (many, one) = (widths(0), widths(1));
+    let near = |list: &[(f64, f64)]| {
+        let near: Vec<f64> = list
+            .iter()
+            .filter(|(z, _)| *z < 8.0)
+            .map(|(_, w)| *w)
+            .collect();
+        assert!(near.len() > 20, "{} rows near the viewer", near.len());
+        near.iter().sum::<f64>() / near.len() as f64
+    };
+    let (sharp, soft) = (near(&many), near(&one));
+    println!("the edge is {sharp:.3} m wide within 8 m of the viewer, with one map {soft:.2} m");
+    assert!(sharp < 0.12 && soft > 10.0 * sharp, "{sharp} {soft}");
+
+    // The nearest map ends at 20 m: its blend from 17 m on. The width goes there step by step.
+    let at = |from: f64, to: f64| {
+        let rows: Vec<f64> = many
+            .iter()
+            .filter(|(z, _)| (from..to).contains(z))
+            .map(|(_, w)| *w)
+            .collect();
+        rows.iter().sum::<f64>() / rows.len() as f64
+    };
+    let steps: Vec<f64> = (0..14)
+        .map(|i| at(15.0 + 0.5 * f64::from(i), 15.5 + 0.5 * f64::from(i)))
+        .collect();
+    println!("widths from 15 m to 22 m: {steps:.3?}");
+    let whole = steps[13] - steps[0];
+    assert!(whole > 2.0 * steps[0], "the next map is coarser: {steps:?}");
+    for pair in steps.windows(2) {
+        let step = (pair[1] - pair[0]).abs();
+        assert!(step < 0.45 * whole, "a seam: {steps:?}");
+    }
+}

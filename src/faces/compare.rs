@@ -9,7 +9,7 @@ use crate::compare::{
     Picture, Referred, Statistics, check_comparable, eroded, exposure_of, flip, read,
 };
 use crate::error::{Error, Result};
-use crate::output::{Encoding, check_writable, print, write_png};
+use crate::output::{Effort, Encoding, check_writable, print, write_png};
 
 /// What to compare, and how.
 #[derive(Debug, Clone, PartialEq, Args)]
@@ -122,5 +122,6 @@ fn write_map(path: &Path, size: [usize; 2], map: &[f32]) -> Result<()> {
     let bytes: Vec<u8> = map.iter().flat_map(grey).collect();
     let size = size.map(|edge| edge as u32);
     let metadata = vec![("Title".to_owned(), "FLIP, 0 to 1".to_owned())];
-    write_png(path, size, &bytes, Encoding::Gamma(1.0), &metadata)
+    let how = (Encoding::Gamma(1.0), Effort::Small);
+    write_png(path, size, &bytes, how, &metadata)
 }

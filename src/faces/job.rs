@@ -1,7 +1,9 @@
 //! What render, view and bench have in common: from options to a scene, a daylight and the settings of a frame.
 
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::thread;
 
 use glam::UVec2;
 
@@ -155,18 +157,26 @@ impl Job {
         Ok(())
     }
 
-    /// Opens the device that the user wants.
+    /// [`Job::new`], and the device that the user wants, which is opened meanwhile.
     ///
     /// # Errors
-    /// When there is none.
-    pub fn context(&self) -> Result<Arc<Context>> {
-        let s = &self.settings;
-        let options = context_options(s.device.clone(), s.validate, s.without);
-        let context = Context::new(&options)?;
-        if !s.quiet {
+    /// As [`Job::new`], and when there is no such device.
+    pub fn on_device(path: Option<&Path>, options: Options) -> Result<(Self, Arc<Context>)> {
+        let wanted = context_options(options.device.clone(), options.validate, options.without);
+        let (job, context) = thread::scope(|scope| {
+            let context = scope.spawn(|| Context::new(&wanted));
+            let job = Self::new(path, options);
+            // A fault of this program is one on this thread too.
+            (
+                job,
+                context.join().unwrap_or_else(|fault| resume_unwind(fault)),
+            )
+        });
+        let (job, context) = (job?, context?);
+        if !job.settings.quiet {
             notice(&context);
         }
-        Ok(context)
+        Ok((job, context))
     }
 
     /// The settings of the frame.

@@ -13,11 +13,15 @@ use crate::error::Result;
 use crate::frame::Frame;
 use crate::gpu::{Recorder, Timing, read_back};
 use crate::output::{
-    Channels, Encoding, Layer, LayerKind, check_writable, draw_legend, print, write_exr, write_png,
+    Channels, Effort, Encoding, Layer, LayerKind, check_writable, draw_legend, print, write_exr,
+    write_png,
 };
 use crate::passes::lighting::{Precision, Show};
 use crate::passes::tone_map::ToneSettings;
 use crate::settings::{Exposure, Options, SettingsError};
+
+/// Samples from which drawing a picture takes much longer than compressing it well.
+const AVERAGED: u32 = 4;
 
 /// Renders `scene` to `output`.
 ///
@@ -32,8 +36,7 @@ pub fn run(scene: Option<&Path>, output: &Path, options: Options) -> Result<()> 
         return Err(SettingsError(what.to_owned()).into());
     }
     check_writable(output)?;
-    let job = Job::new(scene, options)?;
-    let context = job.context()?;
+    let (job, context) = Job::on_device(scene, options)?;
     let precision = if exr {
         Precision::Float
     } else {
@@ -128,7 +131,13 @@ impl<'j> Renderer<'j> {
             metadata.push(("false-colour-range used".into(), used));
             summary = format!(", {range} {}", quantity.unit());
         }
-        write_png(path, pixels.size, &pixels.bytes, encoding, &metadata)?;
+        let effort = if drawn.samples < AVERAGED {
+            Effort::Quick
+        } else {
+            Effort::Small
+        };
+        let how = (encoding, effort);
+        write_png(path, pixels.size, &pixels.bytes, how, &metadata)?;
         self.progress.clear();
         let samples = drawn.summary(&self.rule);
         let [width, height] = pixels.size;

@@ -25,11 +25,8 @@ pub fn run(device: Option<String>, without: Option<Optional>) -> Result<()> {
         without,
         ..Options::default()
     };
-    let job = Job::new(None, options)?;
-    clock.done("read the bundled scene, decide about its light");
-    let context = job.context()?;
-    clock.last = Instant::now();
-    clock.steps.extend(context.opening().iter().cloned());
+    let (job, context) = Job::on_device(None, options)?;
+    clock.done("read the bundled scene, decide about its light; open the device");
     let mut recorder = Recorder::new(&context, Timing::Off)?;
     let settings = job.frame_settings(job.settings.show, Precision::Half);
     clock.done("recorder, settings of the frame");
@@ -83,6 +80,10 @@ fn report(steps: &[Step], context: &Context) -> String {
         line(&step.name, step.ms);
     }
     line("together", steps.iter().map(|s| s.ms).sum());
+    let _ = writeln!(text, "\nopening the device, while the scene was read:");
+    for step in context.opening() {
+        let _ = writeln!(text, "    {:48} {:8.2}", step.name, step.ms);
+    }
     let mut pipelines = context.pipelines();
     pipelines.sort_by(|a, b| b.ms.total_cmp(&a.ms));
     let one_by_one: f64 = pipelines.iter().map(|p| p.ms).sum();

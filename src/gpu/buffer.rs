@@ -130,6 +130,14 @@ impl Buffer {
         &mut slice[..size]
     }
 
+    /// The bytes, where device and CPU share the memory and see each other's writes without further ado.
+    pub(super) fn coherent_bytes_mut(&mut self) -> Option<&mut [u8]> {
+        let wanted = vk::MemoryPropertyFlags::HOST_COHERENT;
+        let properties = self.allocation.as_ref()?.memory_properties();
+        let bytes = properties.contains(wanted).then(|| self.bytes_mut())?;
+        (!bytes.is_empty()).then_some(bytes)
+    }
+
     pub(super) fn raw(&self) -> vk::Buffer {
         self.raw
     }

@@ -15,7 +15,7 @@ fn staging(recorder: &Recorder, bytes: &[u8]) -> Result<Buffer> {
     Ok(buffer)
 }
 
-/// Makes a device buffer with content. The copy runs when the recorder is finished.
+/// Makes a device buffer with content. Where it has to be copied, that runs when the recorder is finished.
 ///
 /// # Errors
 /// When memory is out.
@@ -25,8 +25,14 @@ pub fn upload_buffer(
     kind: BufferKind,
     bytes: &[u8],
 ) -> Result<Buffer> {
+    let mut target = Buffer::new(&recorder.context, name, kind, bytes.len() as u64)?;
+    if let Some(mapped) = target.coherent_bytes_mut() {
+        // The device shares its memory with the CPU. Nothing has used the buffer, and what the CPU wrote before a
+        // submission the device sees in it.
+        mapped[..bytes.len()].copy_from_slice(bytes);
+        return Ok(target);
+    }
     let source = staging(recorder, bytes)?;
-    let target = Buffer::new(&recorder.context, name, kind, bytes.len() as u64)?;
     if !bytes.is_empty() {
         let region = [vk::BufferCopy::default().size(bytes.len() as u64)];
         // SAFETY: both buffers hold at least the bytes copied and live until `finish`. The device waits for the

@@ -14,7 +14,7 @@ pub use self::exr::{Channels, Layer, encode_exr, write_exr};
 pub use self::exr_rows::{LayerKind, write_exr_rows};
 pub use self::hdr::encode_hdr;
 pub use self::legend::draw_legend;
-pub use self::png::{Encoding, write_png};
+pub use self::png::{Effort, Encoding, write_png};
 pub use self::rows::PngRows;
 
 use crate::error::{Error, Result};

@@ -5,7 +5,7 @@ use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::png::head;
-use super::{Encoding, Metadata, reason, temporary, write_error};
+use super::{Effort, Encoding, Metadata, reason, temporary, write_error};
 use crate::error::Result;
 
 /// A PNG that grows row by row in a temporary file beside its target.
@@ -30,9 +30,14 @@ impl PngRows {
         let file = temporary(path)?;
         let handle = file.as_file().try_clone();
         let handle = handle.map_err(|e| write_error(path, reason(&e)))?;
-        let rows = head(BufWriter::new(handle), size, encoding, metadata)
-            .and_then(png::Writer::into_stream_writer)
-            .map_err(|e| write_error(path, e))?;
+        let rows = head(
+            BufWriter::new(handle),
+            size,
+            (encoding, Effort::Small),
+            metadata,
+        )
+        .and_then(png::Writer::into_stream_writer)
+        .map_err(|e| write_error(path, e))?;
         Ok(Self {
             path: path.to_owned(),
             file,
@@ -89,7 +94,14 @@ mod tests {
         let (a, b) = (dir.path().join("a.png"), dir.path().join("b.png"));
         let metadata = vec![("turbidity".to_owned(), "3".to_owned())];
         let rgba: Vec<u8> = (0..4 * 7 * 5u32).map(|i| (i * 37) as u8).collect();
-        write_png(&a, [7, 5], &rgba, Encoding::Srgb, &metadata).expect("written");
+        write_png(
+            &a,
+            [7, 5],
+            &rgba,
+            (Encoding::Srgb, Effort::Small),
+            &metadata,
+        )
+        .expect("written");
         let mut rows = PngRows::new(&b, [7, 5], Encoding::Srgb, &metadata).expect("begun");
         rows.push(&rgba[..4 * 7 * 2]).expect("two rows");
         rows.push(&rgba[4 * 7 * 2..]).expect("three rows");

@@ -7,8 +7,9 @@ use glam::Vec3;
 
 use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
 use crate::gpu_struct;
-use crate::scene::Bounds;
+use crate::scene::{Bounds, Cluster};
 
+use super::shade::Shade;
 use super::shadow_fit::{self, ShadowView};
 use super::view::View;
 
@@ -21,6 +22,14 @@ pub struct Shadows {
     pub penumbrae: bool,
 }
 
+impl Shadows {
+    /// How far lookups reach from what they shade, texels: a tent after the offset along the normal, or `WIDEST` of
+    /// `include/sun_shadow.glsl` and what is compared around it.
+    fn reach(&self) -> f32 {
+        if self.penumbrae { 52.0 } else { 6.0 }
+    }
+}
+
 /// Most maps of a scene.
 pub const MOST: usize = 4;
 /// Texels of a single map that are larger than this call for cascades, metres.
@@ -29,6 +38,8 @@ const COARSE: f32 = 0.08;
 const VAST: f32 = 1000.0;
 /// From the eye to the side of the nearest cascade's cube, metres.
 const NEAREST: f32 = 20.0;
+/// Share of a cube from which on its map is blended into the next: that of `include/sun_shadow.glsl`.
+const BLEND: f32 = 0.85;
 
 gpu_struct! {
     /// The maps, for `include/sun_shadow.glsl`.
@@ -102,6 +113,50 @@ impl SunViews {
             }
         }
         fitted
+    }
+
+    /// Narrows the maps to the casters that can shade what `seen` holds, from `eye`.
+    pub fn shade<'c>(
+        &mut self,
+        seen: impl IntoIterator<Item = &'c Cluster>,
+        eye: Vec3,
+        shadows: &Shadows,
+    ) {
+        let mut shades = self
+            .views
+            .map(|view| Shade::none(shadow_fit::axes(view.toward)));
+        for cluster in seen {
+            let Bounds { min, max } = cluster.bounds;
+            let farthest = (max - eye).abs().max((eye - min).abs()).max_element();
+            let nearest = (min - eye).max(eye - max).max_element();
+            let mut finer = 0.0;
+            for (shade, reach) in shades.iter_mut().zip(self.reach).take(self.count) {
+                if farthest >= finer && nearest <= reach {
+                    shade.add(&cluster.bounds);
+                }
+                finer = BLEND * reach;
+            }
+        }
+        for (view, shade) in self.views.iter_mut().zip(shades) {
+            view.shade = shade.grown(shadows.reach() * view.texel);
+        }
+    }
+
+    /// What is drawn, so that it serves for a while.
+    pub fn with_room(mut self) -> Self {
+        for view in &mut self.views {
+            view.shade = view.shade.with_room();
+        }
+        self
+    }
+
+    /// Whether maps drawn for these views serve the others.
+    pub fn serve(&self, others: &Self) -> bool {
+        let serves = |(mine, other): (&ShadowView, &ShadowView)| {
+            let shade = mine.shade;
+            *mine == ShadowView { shade, ..*other } && shade.holds(&other.shade)
+        };
+        self.count == others.count && self.iter().zip(others.iter()).all(serves)
     }
 
     /// The maps, the finest first.

@@ -1,10 +1,13 @@
-//! What a view cannot see: clusters outside of its pyramid, and those of solids that turn their backs.
+//! What a view cannot see: clusters outside of its pyramid, and those of solids that turn their backs. To a light, also what
+//! shades nothing that is in the picture.
 
 use glam::{DVec2, Mat4, Vec3, Vec4};
 
 use crate::gpu::{Faces, Winding};
 use crate::scene::{Bounds, Cluster};
 
+use super::shade::Shade;
+use super::shadow_fit::ShadowView;
 use super::view::View;
 
 /// From where a view looks.
@@ -23,6 +26,7 @@ pub struct Cull {
     planes: [Vec4; 4],
     viewer: Viewer,
     front: Winding,
+    shade: Shade,
 }
 
 impl Cull {
@@ -44,9 +48,13 @@ impl Cull {
         Self::new(clip_from_world, viewer, ahead, 0.1 * away)
     }
 
-    /// For a directional light: `at` is a point in its map, whose texels are `texel` metres wide.
-    pub fn light(clip_from_world: Mat4, toward: Vec3, at: Vec3, texel: f32) -> Self {
-        Self::new(clip_from_world, Viewer::Toward(toward), at, texel)
+    /// For a directional light.
+    pub fn light(map: &ShadowView) -> Self {
+        let viewer = Viewer::Toward(map.toward);
+        Self {
+            shade: map.shade,
+            ..Self::new(map.shadow_from_world, viewer, map.inside, map.texel)
+        }
     }
 
     fn new(clip_from_world: Mat4, viewer: Viewer, at: Vec3, size: f32) -> Self {
@@ -66,6 +74,7 @@ impl Cull {
             planes,
             viewer,
             front: front(clip_from_world, toward, at, size),
+            shade: Shade::ALL,
         }
     }
 
@@ -75,6 +84,7 @@ impl Cull {
             .iter()
             .all(|plane| reaches(*plane, &cluster.bounds))
             && !self.is_behind(cluster)
+            && self.shade.may_be_shaded_by(cluster)
     }
 
     /// The faces of a cluster that may be seen.

@@ -7,6 +7,7 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use crate::scene::Bounds;
 
+use super::shade::Shade;
 use super::shadow_fit::{Hull, ShadowView, depth_range, visible_points};
 use super::view::View;
 
@@ -112,6 +113,7 @@ pub fn fit(
         texel_depth: texel / depth,
         toward,
         inside: receivers.centre(),
+        shade: Shade::ALL,
     }
 }
 

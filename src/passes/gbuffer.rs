@@ -24,6 +24,7 @@ gpu_struct! {
         material: u32,
         cutoff: f32,
         normal_scale: f32,
+        mirrors: u32,
         sharpen: f32,
     }
 }
@@ -43,6 +44,7 @@ impl Push {
             material: bound.material,
             cutoff: bound.cutoff,
             normal_scale: bound.normal_scale,
+            mirrors: bound.mirrors.into(),
             sharpen,
         }
     }

@@ -1,17 +1,19 @@
 //! The scene on the device: one arena of vertices and indices, textures, a table of materials.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use glam::Vec3;
 
 use crate::gpu::{Buffer, BufferKind, Draws, Image, Recorder, Result, upload_buffer};
-use crate::scene::{self, Bodies, Bounds, Cluster, Clusters, Scene};
+use crate::scene::{self, Bounds, Cluster, Layout, Scene};
 
 use super::cull::Cull;
 use super::draw_runs::Runs;
 use super::geometry_upload::{
     normals_and_thickness, surface, upload, upload_details, upload_materials, white,
 };
+use super::view::View;
 
 /// What is drawn with one material.
 #[derive(Debug, Clone)]
@@ -61,6 +63,7 @@ pub(super) struct Surface {
     pub specular_map: Option<usize>,
     pub normal_map: Option<usize>,
     pub normal_scale: f32,
+    pub mirrors: bool,
     pub cutoff: Option<f32>,
 }
 
@@ -81,6 +84,8 @@ pub struct Bound<'g> {
     pub normal_map: Option<&'g Image>,
     /// Factor on its slopes.
     pub normal_scale: f32,
+    /// Whether it has a ρ_s.
+    pub mirrors: bool,
     /// Alpha of the map of ρ_d below which there is a hole; 0 without holes.
     pub cutoff: f32,
     /// Stands for a map that is not there.
@@ -100,6 +105,8 @@ pub struct Geometry {
     details: Option<[Buffer; 2]>,
     /// Sorted by kind.
     parts: Vec<Part>,
+    /// Clusters of what casts a shadow and has no holes, in the order of their indices.
+    casting: Vec<Range<usize>>,
     surfaces: Vec<Surface>,
     textures: Vec<Image>,
     white: Image,
@@ -115,18 +122,18 @@ impl Geometry {
     /// # Errors
     /// When the device has no memory left.
     pub fn new(recorder: &mut Recorder, scene: &Scene) -> Result<Self> {
+        let (indices, layout) = arranged(scene);
         let vertex = |recorder: &mut Recorder, name, bytes| {
             upload_buffer(recorder, name, BufferKind::Vertex, bytes)
         };
-        let bodies = Bodies::of(scene);
-        let normals = normals_and_thickness(scene, &bodies);
+        let normals = normals_and_thickness(scene, &layout);
         let surfaces: Vec<Surface> = scene.materials.iter().map(surface).collect();
         let textures: Result<Vec<Image>> = scene
             .textures
             .iter()
             .map(|texture| upload(recorder, texture))
             .collect();
-        let (parts, clusters) = parts(scene, &bodies, &surfaces);
+        let parts = parts(scene, &layout, &surfaces);
         let details = if parts.iter().any(|p| p.kind.is_detailed()) {
             Some(upload_details(recorder, scene)?)
         } else {
@@ -148,10 +155,11 @@ impl Geometry {
                 recorder,
                 "indices",
                 BufferKind::Index,
-                bytemuck::cast_slice(&clusters.indices),
+                bytemuck::cast_slice(&indices),
             )?,
-            clusters: clusters.list,
+            clusters: layout.into_owned().clusters,
             details,
+            casting: casting(&parts),
             parts,
             is_specular: scene.materials.iter().any(|m| m.specular != [0.0; 3]),
             surfaces,
@@ -171,6 +179,12 @@ impl Geometry {
     /// The box around everything that may cast a shadow.
     pub fn casters(&self) -> &Bounds {
         &self.casters
+    }
+
+    /// Clusters of the whole picture of which this view is a part.
+    pub fn seen(&self, view: &View) -> impl Iterator<Item = &Cluster> {
+        let cull = Cull::camera(&view.whole());
+        self.clusters.iter().filter(move |c| cull.sees(c))
     }
 
     /// ρ_d, ρ_s and p of every material, see `include/materials.glsl`.
@@ -208,8 +222,8 @@ impl Geometry {
             return;
         }
         draws.geometry(&[&self.positions], &self.indices);
-        let solid = self.parts.iter().filter(|p| p.casts && !p.kind.cut_out);
-        let clusters = solid.flat_map(|p| &self.clusters[p.clusters.clone()]);
+        let casting = self.casting.iter();
+        let clusters = casting.flat_map(|range| &self.clusters[range.clone()]);
         for run in Runs::new(clusters, cull) {
             run.draw(draws);
         }
@@ -312,6 +326,7 @@ impl Geometry {
             specular_map: map(s.specular_map),
             normal_map: map(s.normal_map),
             normal_scale: s.normal_scale,
+            mirrors: s.mirrors,
             cutoff: s.cutoff.unwrap_or(0.0),
             white: &self.white,
         }
@@ -323,25 +338,39 @@ fn is_lean(part: &Part, cluster: &Cluster) -> bool {
     part.kind.is_bare() && cluster.is_wound
 }
 
-/// The parts of a scene in the order in which they are drawn, and their clusters.
-fn parts(scene: &Scene, bodies: &Bodies, surfaces: &[Surface]) -> (Vec<Part>, Clusters) {
+/// A scene's indices and layout: loading has found them, a scene that was made has none yet.
+fn arranged(scene: &Scene) -> (Cow<'_, [u32]>, Cow<'_, Layout>) {
+    match &scene.layout {
+        Some(layout) => (Cow::Borrowed(&scene.indices), Cow::Borrowed(layout)),
+        None => {
+            let (indices, layout) = Layout::of(scene);
+            (Cow::Owned(indices), Cow::Owned(layout))
+        }
+    }
+}
+
+/// The parts of a scene in the order in which they are drawn.
+fn parts(scene: &Scene, layout: &Layout, surfaces: &[Surface]) -> Vec<Part> {
     let casting = scene.casting();
-    let kind = |p: &scene::Part| surfaces[p.material as usize].kind(p.has_colours);
-    let mut order: Vec<usize> = (0..scene.parts.len()).collect();
-    // Parts of one kind share a pipeline: as few changes as possible.
-    order.sort_by_key(|i| (kind(&scene.parts[*i]), scene.parts[*i].material));
-    let sorted = || order.iter().map(|i| (&scene.parts[*i], casting[*i]));
-    let runs: Vec<(u32, u32)> = sorted()
-        .map(|(p, _)| (p.first_index, p.index_count))
-        .collect();
-    let clusters = Clusters::of(scene, bodies, &runs);
-    let part = |((part, casts), clusters): ((&scene::Part, bool), &Range<usize>)| Part {
+    let all = scene.parts.iter().zip(&layout.of_part).zip(casting);
+    let part = |((part, clusters), casts): ((&scene::Part, &Range<usize>), bool)| Part {
         clusters: clusters.clone(),
         material: part.material,
-        kind: kind(part),
+        kind: surfaces[part.material as usize].kind(part.has_colours),
         casts,
     };
-    (sorted().zip(&clusters.of_run).map(part).collect(), clusters)
+    let mut parts: Vec<Part> = all.map(part).collect();
+    // Parts of one kind share a pipeline: as few changes as possible.
+    parts.sort_by_key(|part| (part.kind, part.material));
+    parts
+}
+
+/// Clusters of what casts a shadow and has no holes, in the order of their indices: runs go on from part to part.
+fn casting(parts: &[Part]) -> Vec<Range<usize>> {
+    let solid = parts.iter().filter(|p| p.casts && !p.kind.cut_out);
+    let mut ranges: Vec<Range<usize>> = solid.map(|p| p.clusters.clone()).collect();
+    ranges.sort_by_key(|range| range.start);
+    ranges
 }
 
 impl Surface {

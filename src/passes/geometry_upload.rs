@@ -4,7 +4,7 @@ use crate::gpu::{
     Buffer, BufferKind, Format, Image, ImageDesc, ImageKind, Recorder, Result, upload_buffer,
     upload_texture,
 };
-use crate::scene::{Bodies, Body, Encoding, Material, Scene, Texture};
+use crate::scene::{Encoding, Layout, Material, Scene, Texture};
 
 use super::geometry::Surface;
 
@@ -31,12 +31,10 @@ pub(super) fn upload_details(recorder: &mut Recorder, scene: &Scene) -> Result<[
     ])
 }
 
-pub(super) fn normals_and_thickness(scene: &Scene, bodies: &Bodies) -> Vec<[f32; 4]> {
-    let thickness: Vec<f32> = bodies.list.iter().map(Body::thickness).collect();
-    let body = bodies.of_vertex.iter();
-    let vertices = scene.normals.iter().zip(body);
+pub(super) fn normals_and_thickness(scene: &Scene, layout: &Layout) -> Vec<[f32; 4]> {
+    let vertices = scene.normals.iter().zip(&layout.thickness);
     vertices
-        .map(|([x, y, z], body)| [*x, *y, *z, thickness[*body as usize]])
+        .map(|([x, y, z], thickness)| [*x, *y, *z, *thickness])
         .collect()
 }
 
@@ -65,6 +63,7 @@ pub(super) fn surface(material: &Material) -> Surface {
         specular_map: material.specular_texture,
         normal_map: material.normal_texture,
         normal_scale: material.normal_scale,
+        mirrors: material.specular != [0.0; 3],
         // The opacity of the material multiplies that of the map: the same test with one factor less.
         cutoff: material
             .alpha_cutoff

@@ -24,6 +24,7 @@ pub mod precision;
 pub mod present;
 pub mod probe;
 pub mod reflection;
+pub mod shade;
 pub mod shadow;
 pub mod shadow_fit;
 pub mod sky_cube;

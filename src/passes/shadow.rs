@@ -192,7 +192,7 @@ impl Shadow {
 
     /// Whether the maps of these views must be drawn anew.
     pub fn is_stale(&self, views: &SunViews) -> bool {
-        self.drawn.as_ref() != Some(views)
+        !self.drawn.is_some_and(|drawn| drawn.serve(views))
     }
 
     /// Draws the map if the sun or the fit changed.
@@ -203,6 +203,7 @@ impl Shadow {
         views: &SunViews,
     ) -> &Image {
         if self.is_stale(views) {
+            let views = views.with_room();
             let edge = self.resolution();
             let origins = (0..).map(|k| [k * edge, 0]);
             let tile = |(view, origin): (&ShadowView, _)| Tile {
@@ -214,7 +215,7 @@ impl Shadow {
                 views.iter().zip(origins).map(tile).collect();
             self.casters
                 .record(recorder, "shadow map", geometry, &tiles, &self.depth);
-            self.drawn = Some(*views);
+            self.drawn = Some(views);
         }
         &self.depth
     }

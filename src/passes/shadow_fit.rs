@@ -6,6 +6,7 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 use crate::scene::Bounds;
 
 use super::cull::Cull;
+use super::shade::Shade;
 use super::view::View;
 
 /// Share of the extent by which the fit may grow before the map changes its scale: the extent is rounded up to a power of this.
@@ -27,6 +28,8 @@ pub struct ShadowView {
     pub toward: Vec3,
     /// A point that it shows.
     pub inside: Vec3,
+    /// What it is to shade, beyond which it needs no casters.
+    pub shade: Shade,
 }
 
 impl ShadowView {
@@ -37,12 +40,12 @@ impl ShadowView {
 
     /// What it does not see.
     pub fn cull(&self) -> Cull {
-        Cull::light(self.shadow_from_world, self.toward, self.inside, self.texel)
+        Cull::light(self)
     }
 }
 
 /// Right, up and toward-the-sun axes of the map.
-fn axes(sun_direction: Vec3) -> [Vec3; 3] {
+pub(super) fn axes(sun_direction: Vec3) -> [Vec3; 3] {
     let hint = if sun_direction.y.abs() > 0.99 {
         Vec3::NEG_Z
     } else {
@@ -145,6 +148,7 @@ fn square(
         texel_depth: texel / depth_range(casters).1,
         toward,
         inside: right * centre.x + up * centre.y + toward * casters.centre().z,
+        shade: Shade::ALL,
     }
 }
 

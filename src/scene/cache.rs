@@ -5,24 +5,27 @@
 //! written anew.
 
 use std::fs;
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use super::bounds::Bounds;
+use super::cached_layout::{FlatLayout, clusters, ranges};
 use super::files::{Digest, ReadFile, digest};
 use super::material::Material;
 use super::scene_file::NamedOptions;
 use super::texture::{Encoding, Texture};
-use super::{LoadOptions, Loaded, Part, Scene};
+use super::{Layout, LoadOptions, Loaded, Part, Scene};
 
 /// Changes with the form of entries and with what reading a model makes of it.
-const VERSION: u32 = 1;
+const VERSION: u32 = 3;
 /// Models below this size are read as fast as an entry, bytes.
 pub(super) const SMALLEST: u64 = 4 << 20;
 /// Most that all entries together may take, bytes; the oldest go first.
 const MOST: u64 = 4 << 30;
+
+const ARRAYS: usize = 9;
 
 /// What an entry says before its arrays.
 #[derive(Serialize, Deserialize)]
@@ -37,8 +40,9 @@ struct Head {
     options: Vec<(String, String)>,
     cameras: Vec<NamedOptions>,
     moments: Vec<NamedOptions>,
-    /// Bytes of positions, normals, texture coordinates, colours, tangents and indices.
-    lengths: [usize; 6],
+    /// Numbers of positions, normals, texture coordinates, colours, tangents, indices, and of the layout's clusters, parts
+    /// and thicknesses.
+    lengths: [usize; ARRAYS],
 }
 
 #[derive(Serialize, Deserialize)]
@@ -66,17 +70,67 @@ pub(super) fn place(folder: &Path, path: &Path, model: Digest, options: &LoadOpt
 
 /// The scene of an entry; none if there is no entry, if it is damaged or if a file that it depends on has changed.
 pub(super) fn read(entry: &Path, path: &Path) -> Option<Loaded> {
-    let bytes = fs::read(entry).ok()?;
-    let (body, checksum) = bytes.split_last_chunk::<32>()?;
-    if digest(body) != *checksum {
+    let mut entry = Entry::open(entry)?;
+    let [length] = entry.numbers::<u64>(1)?[..] else {
+        return None;
+    };
+    let head = entry.numbers::<u8>(usize::try_from(length).ok()?)?;
+    let head: Head = serde_json::from_slice(&head).ok()?;
+    if head.version != VERSION {
         return None;
     }
-    let (length, rest) = body.split_first_chunk::<8>()?;
-    let (head, arrays) =
-        rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
-    let head: Head = serde_json::from_slice(head).ok()?;
-    let fresh = head.version == VERSION && head.files.iter().all(ReadFile::is_unchanged);
-    fresh.then(|| head.loaded(arrays, path)).flatten()
+    let scene = head.scene(&mut entry)?;
+    let agrees = entry.ends_well() && head.files.iter().all(ReadFile::is_unchanged);
+    (agrees && is_sound(&scene)).then(|| Loaded {
+        path: path.to_owned(),
+        scene,
+        options: head.options,
+        cameras: head.cameras,
+        moments: head.moments,
+    })
+}
+
+/// An entry that is being read: what is taken from it is not to be trusted before it has ended well.
+struct Entry {
+    file: fs::File,
+    /// Bytes before the checksum that were not taken yet.
+    left: u64,
+    hasher: blake3::Hasher,
+}
+
+impl Entry {
+    /// Bytes that are read and hashed at a time: they fit into a core's cache.
+    const STEP: usize = 1 << 18;
+
+    fn open(path: &Path) -> Option<Self> {
+        let file = fs::File::open(path).ok()?;
+        let length = file.metadata().ok()?.len();
+        Some(Self {
+            file,
+            left: length.checked_sub(blake3::OUT_LEN as u64)?,
+            hasher: blake3::Hasher::new(),
+        })
+    }
+
+    /// The next numbers, read to where they stay.
+    fn numbers<T: bytemuck::Pod>(&mut self, count: usize) -> Option<Vec<T>> {
+        let bytes = count.checked_mul(size_of::<T>())?;
+        // Before memory is taken: a damaged entry may claim anything.
+        self.left = self.left.checked_sub(bytes as u64)?;
+        let mut values = vec![T::zeroed(); count];
+        for step in bytemuck::cast_slice_mut(&mut values).chunks_mut(Self::STEP) {
+            self.file.read_exact(step).ok()?;
+            self.hasher.update(step);
+        }
+        Some(values)
+    }
+
+    /// Whether nothing is left but the checksum, and it agrees.
+    fn ends_well(&mut self) -> bool {
+        let mut checksum = Digest::default();
+        let read = self.file.read_exact(&mut checksum);
+        self.left == 0 && read.is_ok() && self.hasher.finalize() == checksum
+    }
 }
 
 /// Writes an entry, whole or not at all. A cache that cannot be written is no reason to stop.
@@ -86,13 +140,14 @@ pub(super) fn write(entry: &Path, loaded: &Loaded, mut files: Vec<ReadFile>) -> 
     let folder = entry.parent()?;
     fs::create_dir_all(folder).ok()?;
     make_room(folder);
-    let head = serde_json::to_vec(&Head::of(loaded, files)).ok()?;
     let scene = &loaded.scene;
+    let layout = FlatLayout::of(scene.layout.as_ref()?);
+    let head = serde_json::to_vec(&Head::of(loaded, files, &layout)).ok()?;
     let mut file = tempfile::NamedTempFile::new_in(folder).ok()?;
     let mut hasher = blake3::Hasher::new();
     let length = (head.len() as u64).to_le_bytes();
     let start = [&length[..], &head];
-    let arrays = arrays(scene);
+    let arrays = arrays(scene, &layout).map(|(bytes, _)| bytes);
     let textures = scene.textures.iter().map(|t| t.rgba8.as_slice());
     for bytes in start.into_iter().chain(arrays).chain(textures) {
         hasher.update(bytes);
@@ -103,14 +158,21 @@ pub(super) fn write(entry: &Path, loaded: &Loaded, mut files: Vec<ReadFile>) -> 
     Some(())
 }
 
-fn arrays(scene: &Scene) -> [&[u8]; 6] {
+/// The bytes of each array, and how many numbers they are.
+fn arrays<'s>(scene: &'s Scene, layout: &'s FlatLayout<'s>) -> [(&'s [u8], usize); ARRAYS] {
+    fn array<T: bytemuck::Pod>(values: &[T]) -> (&[u8], usize) {
+        (bytemuck::cast_slice(values), values.len())
+    }
     [
-        bytemuck::cast_slice(&scene.positions),
-        bytemuck::cast_slice(&scene.normals),
-        bytemuck::cast_slice(&scene.texcoords),
-        bytemuck::cast_slice(&scene.colours),
-        bytemuck::cast_slice(&scene.tangents),
-        bytemuck::cast_slice(&scene.indices),
+        array(&scene.positions),
+        array(&scene.normals),
+        array(&scene.texcoords),
+        array(&scene.colours),
+        array(&scene.tangents),
+        array(&scene.indices),
+        array(&layout.clusters),
+        array(&layout.of_part),
+        array(layout.thickness),
     ]
 }
 
@@ -140,7 +202,7 @@ fn make_room(folder: &Path) {
 }
 
 impl Head {
-    fn of(loaded: &Loaded, files: Vec<ReadFile>) -> Self {
+    fn of(loaded: &Loaded, files: Vec<ReadFile>, layout: &FlatLayout<'_>) -> Self {
         let scene = &loaded.scene;
         let picture = |t: &Texture| Picture {
             name: t.name.clone(),
@@ -159,62 +221,49 @@ impl Head {
             options: loaded.options.clone(),
             cameras: loaded.cameras.clone(),
             moments: loaded.moments.clone(),
-            lengths: arrays(scene).map(<[u8]>::len),
+            lengths: arrays(scene, layout).map(|(_, count)| count),
         }
     }
 
-    fn loaded(self, mut bytes: &[u8], path: &Path) -> Option<Loaded> {
+    /// Reads the arrays.
+    fn scene(&self, entry: &mut Entry) -> Option<Scene> {
         let lengths = self.lengths;
-        let mut take = |length: usize| {
-            let (taken, rest) = bytes.split_at_checked(length)?;
-            bytes = rest;
-            Some(taken)
-        };
-        let scene = Scene {
-            positions: numbers(take(lengths[0])?)?,
-            normals: numbers(take(lengths[1])?)?,
-            texcoords: numbers(take(lengths[2])?)?,
-            colours: numbers(take(lengths[3])?)?,
-            tangents: numbers(take(lengths[4])?)?,
-            indices: numbers(take(lengths[5])?)?,
+        Some(Scene {
+            positions: entry.numbers(lengths[0])?,
+            normals: entry.numbers(lengths[1])?,
+            texcoords: entry.numbers(lengths[2])?,
+            colours: entry.numbers(lengths[3])?,
+            tangents: entry.numbers(lengths[4])?,
+            indices: entry.numbers(lengths[5])?,
+            layout: Some(Layout {
+                clusters: clusters(&entry.numbers(lengths[6])?),
+                of_part: ranges(&entry.numbers(lengths[7])?),
+                thickness: entry.numbers(lengths[8])?,
+            }),
             textures: self
                 .textures
-                .into_iter()
-                .map(|picture| {
-                    let size = 4 * u64::from(picture.width) * u64::from(picture.height);
-                    Some(Texture {
-                        rgba8: take(usize::try_from(size).ok()?)?.to_vec(),
-                        name: picture.name,
-                        width: picture.width,
-                        height: picture.height,
-                        encoding: picture.encoding,
-                    })
-                })
+                .iter()
+                .map(|picture| picture.read(entry))
                 .collect::<Option<_>>()?,
-            parts: self.parts,
-            materials: self.materials,
+            parts: self.parts.clone(),
+            materials: self.materials.clone(),
             bounds: self.bounds,
-            warnings: self.warnings,
-        };
-        is_sound(&scene).then(|| Loaded {
-            path: path.to_owned(),
-            scene,
-            options: self.options,
-            cameras: self.cameras,
-            moments: self.moments,
+            warnings: self.warnings.clone(),
         })
     }
 }
 
-/// Entries need not be aligned in the file.
-fn numbers<T: bytemuck::Pod>(bytes: &[u8]) -> Option<Vec<T>> {
-    let count = bytes.len() / size_of::<T>();
-    if count * size_of::<T>() != bytes.len() {
-        return None;
+impl Picture {
+    fn read(&self, entry: &mut Entry) -> Option<Texture> {
+        let size = 4 * u64::from(self.width) * u64::from(self.height);
+        Some(Texture {
+            rgba8: entry.numbers(usize::try_from(size).ok()?)?,
+            name: self.name.clone(),
+            width: self.width,
+            height: self.height,
+            encoding: self.encoding,
+        })
     }
-    let mut values = vec![T::zeroed(); count];
-    bytemuck::cast_slice_mut(&mut values).copy_from_slice(bytes);
-    Some(values)
 }
 
 /// What the renderer relies on: numbers in range, streams of one length.
@@ -237,4 +286,5 @@ fn is_sound(scene: &Scene) -> bool {
         && scene.indices.iter().all(in_range)
         && scene.parts.iter().all(part)
         && scene.materials.iter().all(material)
+        && scene.layout.as_ref().is_some_and(|l| l.fits(scene))
 }

@@ -41,9 +41,9 @@ pub struct Solid {
 /// Indices in another order, and the clusters that they form.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Clusters {
-    /// Three for each triangle: those of the runs that were given, run after run, each in an order of its own.
+    /// Those of the scene, the ones of each run in the order of its clusters.
     pub indices: Vec<u32>,
-    /// The clusters, in the order of their indices.
+    /// The clusters, run after run, in the order of their indices.
     pub list: Vec<Cluster>,
     /// The clusters of each run.
     pub of_run: Vec<Range<usize>>,
@@ -54,40 +54,83 @@ impl Clusters {
     /// Within a cluster triangles keep their order, which is mostly one that shares vertices.
     pub fn of(scene: &Scene, bodies: &Bodies, runs: &[(u32, u32)]) -> Self {
         let mut made = Self {
-            indices: Vec::with_capacity(scene.indices.len()),
+            indices: scene.indices.clone(),
             ..Self::default()
         };
         let splitter = Splitter { scene, bodies };
-        for (first, count) in runs {
+        for &(first, count) in runs {
             let start = made.list.len();
-            let mut kinds: [Vec<u32>; 4] = Default::default();
+            let mut kinds: [Vec<Item>; 4] = Default::default();
             for triangle in first / 3..(first + count) / 3 {
-                let (is_solid, is_wound) = splitter.kind(triangle);
-                kinds[2 * usize::from(!is_solid) + usize::from(!is_wound)].push(triangle);
+                let item = splitter.item(triangle);
+                kinds[item.kind.rank()].push(item);
             }
-            for mut triangles in kinds {
-                for group in splitter.split(&mut triangles) {
-                    made.push(&splitter, &group);
-                }
+            let mut first = first;
+            for mut items in kinds {
+                let Some(kind) = items.first().map(|item| item.kind) else {
+                    continue;
+                };
+                let end = first + 3 * items.len() as u32;
+                let run = Run {
+                    first,
+                    kind,
+                    indices: &mut made.indices[first as usize..end as usize],
+                };
+                made.list.extend(splitter.split(&mut items, run));
+                first = end;
             }
             made.of_run.push(start..made.list.len());
         }
         made
     }
+}
 
-    /// Takes triangles of one kind as a cluster.
-    fn push(&mut self, splitter: &Splitter<'_>, triangles: &[u32]) {
-        let (is_solid, is_wound) = splitter.kind(triangles[0]);
-        let corners = triangles.iter().flat_map(|t| splitter.positions(*t));
-        self.list.push(Cluster {
-            first: self.indices.len() as u32,
-            count: 3 * triangles.len() as u32,
-            bounds: Bounds::of(corners),
-            solid: is_solid.then(|| splitter.solid(triangles)),
-            is_wound,
-        });
-        let indices = triangles.iter().flat_map(|t| splitter.corners(*t));
-        self.indices.extend(indices);
+/// What the triangles of a cluster have in common.
+#[derive(Clone, Copy)]
+struct Kind {
+    /// Whether they are part of solids.
+    is_solid: bool,
+    /// [`Cluster::is_wound`].
+    is_wound: bool,
+}
+
+impl Kind {
+    /// Its place in the order of the clusters.
+    fn rank(self) -> usize {
+        2 * usize::from(!self.is_solid) + usize::from(!self.is_wound)
+    }
+}
+
+/// A triangle on its way to its cluster.
+#[derive(Clone, Copy)]
+struct Item {
+    /// Three times its centroid.
+    place: Vec3,
+    triangle: u32,
+    kind: Kind,
+}
+
+/// Where the indices of some triangles go.
+struct Run<'i> {
+    /// Number of the first one.
+    first: u32,
+    kind: Kind,
+    indices: &'i mut [u32],
+}
+
+impl Run<'_> {
+    /// The first `triangles` and the rest.
+    fn halves(&mut self, triangles: usize) -> (Run<'_>, Run<'_>) {
+        let (low, high) = self.indices.split_at_mut(3 * triangles);
+        let of = |first, indices| Run {
+            first,
+            kind: self.kind,
+            indices,
+        };
+        (
+            of(self.first, low),
+            of(self.first + 3 * triangles as u32, high),
+        )
     }
 }
 
@@ -111,9 +154,7 @@ impl Splitter<'_> {
         &self.bodies.list[self.bodies.of_vertex[vertex] as usize]
     }
 
-    /// Whether it is part of a solid, and whether it is [`Cluster::is_wound`].
-    fn kind(&self, triangle: u32) -> (bool, bool) {
-        let [a, b, c] = self.positions(triangle);
+    fn kind(&self, triangle: u32, [a, b, c]: [Vec3; 3]) -> Kind {
         let face = (b - a).cross(c - a);
         let normals = &self.scene.normals;
         let agrees = |v: u32| {
@@ -121,59 +162,76 @@ impl Splitter<'_> {
             normal.is_some_and(|n| face.dot((*n).into()) > 0.0)
         };
         let is_wound = self.corners(triangle).into_iter().all(agrees);
-        (self.body(triangle).is_solid, is_wound)
+        Kind {
+            is_solid: self.body(triangle).is_solid,
+            is_wound,
+        }
     }
 
-    /// Groups of at most [`MOST`] triangles.
-    fn split(&self, triangles: &mut [u32]) -> Vec<Vec<u32>> {
-        if triangles.is_empty() {
+    fn item(&self, triangle: u32) -> Item {
+        let corners = self.positions(triangle);
+        Item {
+            place: corners.iter().sum(),
+            triangle,
+            kind: self.kind(triangle, corners),
+        }
+    }
+
+    /// Clusters of at most [`MOST`] triangles.
+    fn split(&self, items: &mut [Item], mut run: Run<'_>) -> Vec<Cluster> {
+        if items.is_empty() {
             return Vec::new();
         }
-        if triangles.len() <= MOST {
-            triangles.sort_unstable();
-            return vec![triangles.to_vec()];
+        if items.len() <= MOST {
+            return vec![self.cluster(items, run)];
         }
-        let middle = triangles.len() / 2;
-        let is_large = triangles.len() >= LARGE;
-        self.halve(triangles);
-        let (low, high) = triangles.split_at_mut(middle);
-        let (mut groups, rest) = if is_large {
+        let middle = items.len() / 2;
+        let is_large = items.len() >= LARGE;
+        halve(items, middle);
+        let (low, high) = items.split_at_mut(middle);
+        let (low_run, high_run) = run.halves(middle);
+        let (mut clusters, rest) = if is_large {
             thread::scope(|scope| {
-                let rest = scope.spawn(|| self.split(high));
-                let groups = self.split(low);
+                let rest = scope.spawn(|| self.split(high, high_run));
+                let clusters = self.split(low, low_run);
                 let rest = rest.join();
                 // A fault of this program is one on this thread too.
                 (
-                    groups,
+                    clusters,
                     rest.unwrap_or_else(|fault| std::panic::resume_unwind(fault)),
                 )
             })
         } else {
-            (self.split(low), self.split(high))
+            (self.split(low, low_run), self.split(high, high_run))
         };
-        groups.extend(rest);
-        groups
+        clusters.extend(rest);
+        clusters
     }
 
-    /// Brings the half of the triangles that lies lower on the longest axis to the front.
-    fn halve(&self, triangles: &mut [u32]) {
-        // Three times the centroid.
-        let place = |t: u32| self.positions(t).iter().sum::<Vec3>();
-        let extent = Bounds::of(triangles.iter().map(|t| place(*t))).extent();
-        let axis = extent.max_position();
-        let mut keyed: Vec<(f32, u32)> = triangles.iter().map(|t| (place(*t)[axis], *t)).collect();
-        let order = |a: &(f32, u32), b: &(f32, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        keyed.select_nth_unstable_by(triangles.len() / 2, order);
-        for (triangle, (_, sorted)) in triangles.iter_mut().zip(keyed) {
-            *triangle = sorted;
+    fn cluster(&self, items: &mut [Item], run: Run<'_>) -> Cluster {
+        items.sort_unstable_by_key(|item| item.triangle);
+        let mut bounds = Bounds::EMPTY;
+        for (item, indices) in items.iter().zip(run.indices.chunks_exact_mut(3)) {
+            indices.copy_from_slice(&self.corners(item.triangle));
+            bounds = self
+                .positions(item.triangle)
+                .into_iter()
+                .fold(bounds, Bounds::with);
+        }
+        Cluster {
+            first: run.first,
+            count: run.indices.len() as u32,
+            bounds,
+            solid: run.kind.is_solid.then(|| self.solid(items)),
+            is_wound: run.kind.is_wound,
         }
     }
 
-    fn solid(&self, triangles: &[u32]) -> Solid {
-        let bodies = triangles.iter().map(|t| self.body(*t).bounds);
+    fn solid(&self, items: &[Item]) -> Solid {
+        let bodies = items.iter().map(|item| self.body(item.triangle).bounds);
         let normals = || {
-            triangles.iter().map(|t| {
-                let [a, b, c] = self.positions(*t);
+            items.iter().map(|item| {
+                let [a, b, c] = self.positions(item.triangle);
                 (b - a).cross(c - a).normalize_or_zero()
             })
         };
@@ -193,6 +251,17 @@ impl Splitter<'_> {
             },
         }
     }
+}
+
+/// Brings the triangles that lie lower on the longest axis before the middle.
+fn halve(items: &mut [Item], middle: usize) {
+    let extent = Bounds::of(items.iter().map(|item| item.place)).extent();
+    let axis = extent.max_position();
+    let order = |a: &Item, b: &Item| {
+        let by_place = a.place[axis].total_cmp(&b.place[axis]);
+        by_place.then(a.triangle.cmp(&b.triangle))
+    };
+    items.select_nth_unstable_by(middle, order);
 }
 
 #[cfg(test)]

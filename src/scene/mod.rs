@@ -9,6 +9,7 @@ mod bounds;
 mod builder;
 mod bundled;
 mod cache;
+mod cached_layout;
 mod camera;
 mod clusters;
 mod error;
@@ -18,6 +19,7 @@ mod gltf_buffers;
 mod gltf_material;
 mod gltf_mesh;
 mod instance;
+mod layout;
 mod material;
 mod mtl;
 mod mtl_map;
@@ -46,6 +48,7 @@ pub use camera::{Camera, DEFAULT_FOV_DEG};
 pub use clusters::{Cluster, Clusters, Solid};
 pub use error::SceneError;
 pub(crate) use error::shown;
+pub use layout::Layout;
 pub use material::Material;
 pub use progress::Progress;
 pub use scene_file::{NamedCamera, NamedMoment, NamedOptions};
@@ -83,6 +86,8 @@ pub struct Scene {
     pub bounds: Bounds,
     /// What was odd but no reason to stop, one line each.
     pub warnings: Vec<String>,
+    /// How it is drawn, if that is known already. It holds for the indices as they are.
+    pub layout: Option<Layout>,
 }
 
 /// A run of triangles of one mesh with one material.
@@ -114,6 +119,7 @@ impl Default for Scene {
             textures: Vec::new(),
             bounds: Bounds::EMPTY,
             warnings: Vec::new(),
+            layout: None,
         }
     }
 }
@@ -128,6 +134,13 @@ impl Scene {
         if !self.tangents.is_empty() {
             self.tangents.resize(vertices, [0; 4]);
         }
+    }
+
+    /// Finds out how it is drawn, and brings its indices into that order.
+    pub fn arrange(&mut self) {
+        let (indices, layout) = Layout::of(self);
+        self.indices = indices;
+        self.layout = Some(layout);
     }
 
     /// Which parts may cast a shadow: all but a flat ground (or sea) below the middle of all else and more than four times
@@ -264,13 +277,17 @@ fn load_by_cache(
     Ok(loaded)
 }
 
+/// Share of loading that comes before the layout.
+const READING: f32 = 0.9;
+
 fn load_from(
     files: &mut Files,
     path: &Path,
     options: &LoadOptions,
     progress: Progress<'_>,
 ) -> Result<Loaded, SceneError> {
-    let mut builder = Builder::new(files.clone(), options, Reporter::new(progress));
+    let reading = Reporter::new(progress).up_to(READING);
+    let mut builder = Builder::new(files.clone(), options, reading);
     let extension = path
         .extension()
         .map(|e| e.to_string_lossy().to_ascii_lowercase());
@@ -292,6 +309,8 @@ fn load_from(
     };
     builder.scene.fill_streams();
     *files = builder.files;
+    progress(READING, "sorting");
+    builder.scene.arrange();
     progress(1.0, "loaded");
     Ok(Loaded {
         path: path.to_owned(),

@@ -28,6 +28,12 @@ impl<'p> Reporter<'p> {
         }
     }
 
+    /// Its first share, 0..=1.
+    pub fn up_to(self, share: f32) -> Self {
+        let to = self.from + (self.to - self.from) * share;
+        Self { to, ..self }
+    }
+
     /// Part `index` of `count` equal parts.
     pub fn part(self, index: usize, count: usize) -> Self {
         let at = |i: usize| self.from + (self.to - self.from) * i as f32 / count.max(1) as f32;

@@ -10,7 +10,7 @@ use super::{
 use crate::error::Error;
 use crate::gpu::Optional;
 use crate::passes::dome::DomeSettings;
-use crate::scene::{Bounds, Camera, Loaded, NamedOptions, SceneError};
+use crate::scene::{Bounds, Camera, DEFAULT_FOV_DEG, Loaded, NamedOptions, SceneError};
 
 /// Samples from which on shadow maps from the sky are better than ambient occlusion in every view.
 const DOME_SAMPLES: u32 = 16;
@@ -278,15 +278,23 @@ impl Settings {
     pub fn camera(&self, bounds: &Bounds) -> Camera {
         let point = |p: [f64; 3]| Vec3::from(p.map(|v| v as f32));
         let parts = &self.camera;
-        let aspect = self.size.width as f32 / self.size.height as f32;
         let fov = parts.fov_deg.map(|fov| fov as f32);
         Camera::from_parts(
             parts.eye.map(point),
             parts.target.map(point),
             fov,
             bounds,
-            aspect,
+            self.aspect(),
         )
+    }
+
+    /// A camera that sees all within `bounds`, whatever was given.
+    pub fn framing(&self, bounds: &Bounds) -> Camera {
+        Camera::framing(bounds, DEFAULT_FOV_DEG, self.aspect())
+    }
+
+    fn aspect(&self) -> f32 {
+        self.size.width as f32 / self.size.height as f32
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::hills::Ground;
 use super::statistics::Samples;
 use crate::error::Result;
 use crate::faces::job::Job;
@@ -9,7 +10,7 @@ use crate::faces::motion::Motion;
 use crate::frame::{Frame, FrameSettings};
 use crate::gpu::{Context, DeviceSummary, PassTime, PassWork, Recorder, Stopwatch, Timing};
 use crate::passes::lighting::Precision;
-use crate::scene::Scene;
+use crate::scene::{Camera, Scene};
 
 /// Frames that are drawn and forgotten: shaders are compiled at their first use.
 pub const WARM_UP: u32 = 3;
@@ -55,8 +56,10 @@ pub struct Subject<'j> {
     pub job: &'j Job,
     /// How.
     pub settings: FrameSettings,
-    /// Edges of triangles are cut into so many pieces.
-    pub finer: u32,
+    /// What of.
+    pub ground: Ground,
+    /// From where.
+    pub camera: Camera,
 }
 
 impl<'j> Subject<'j> {
@@ -65,7 +68,8 @@ impl<'j> Subject<'j> {
         Self {
             job,
             settings: job.frame_settings(job.settings.show, Precision::Half),
-            finer: 1,
+            ground: Ground::Given,
+            camera: job.camera,
         }
     }
 }
@@ -73,6 +77,7 @@ impl<'j> Subject<'j> {
 /// A frame and the recorders that draw it: one that times passes, one that leaves the frame whole.
 pub struct Bench<'j> {
     job: &'j Job,
+    camera: Camera,
     motion: Motion,
     frame: Frame,
     parts: Recorder,
@@ -96,6 +101,7 @@ impl<'j> Bench<'j> {
         whole.finish()?;
         Ok(Self {
             job: subject.job,
+            camera: subject.camera,
             motion,
             frame,
             parts: Recorder::new(context, trustworthy(context.summary()))?,
@@ -137,7 +143,7 @@ impl<'j> Bench<'j> {
     /// Every pass by itself, with everything drawn anew.
     fn passes(&mut self, index: u32, into: &mut Measured) -> Result<()> {
         self.frame.invalidate();
-        let camera = self.motion.camera(&self.job.camera, index);
+        let camera = self.motion.camera(&self.camera, index);
         let daylight = self.motion.daylight(self.job, index);
         let recorder = &mut self.parts;
         recorder.begin()?;
@@ -149,7 +155,7 @@ impl<'j> Bench<'j> {
 
     /// The frame as one submission. What the CPU does for a new sun is part of recording.
     fn whole(&mut self, index: u32, into: &mut Whole) -> Result<()> {
-        let camera = self.motion.camera(&self.job.camera, index);
+        let camera = self.motion.camera(&self.camera, index);
         let recorder = &mut self.whole;
         let recording = Stopwatch::start();
         let daylight = self.motion.daylight(self.job, index);
@@ -172,7 +178,7 @@ impl<'j> Bench<'j> {
         recorder.begin()?;
         let job = self.job;
         self.frame
-            .record(&mut recorder, &job.daylight, &job.camera, 0);
+            .record(&mut recorder, &job.daylight, &self.camera, 0);
         recorder.finish()?;
         Ok(recorder.work().to_vec())
     }

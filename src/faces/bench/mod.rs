@@ -5,6 +5,7 @@
 
 mod baseline;
 mod chart;
+mod hills;
 mod measure;
 mod report;
 mod routes;
@@ -81,8 +82,7 @@ pub fn run(wishes: &BenchWishes, mut options: Options) -> Result<()> {
     wishes.files().try_for_each(check_writable)?;
     let baseline = wishes.compare.as_deref().map(Baseline::read).transpose()?;
     options.samples = Some(1);
-    let job = Job::new(wishes.scene.as_deref(), options)?;
-    let context = job.context()?;
+    let (job, context) = Job::on_device(wishes.scene.as_deref(), options)?;
     let head = Head::new(&job, &context, wishes);
     if let Some(sweep) = wishes.sweep {
         let report = sweep::run(sweep, &job, &context, wishes.motion, head)?;

@@ -31,6 +31,15 @@ impl Samples {
         }
     }
 
+    /// Times of two pieces of work one after the other, sample by sample.
+    pub fn with(&self, other: &Self) -> Self {
+        let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + b).collect();
+        Self {
+            wall: sum(&self.wall, &other.wall),
+            cpu: sum(&self.cpu, &other.cpu),
+        }
+    }
+
     /// Median and percentiles. NaN without samples.
     pub fn summary(&self) -> Summary {
         let [p5_ms, median_ms, p95_ms] = [0.05, 0.5, 0.95].map(|q| quantile(&self.wall, q));

@@ -1,6 +1,5 @@
 //! Cost against size: the same frame with more and more of one thing.
 
-use std::borrow::Cow;
 use std::fmt::{self, Display, Formatter};
 use std::sync::Arc;
 
@@ -8,6 +7,7 @@ use clap::ValueEnum;
 use glam::UVec2;
 use serde::Serialize;
 
+use super::hills::{Ground, narrowed};
 use super::measure::{Bench, Measured, Subject};
 use super::report::Head;
 use super::sheet::written;
@@ -24,7 +24,8 @@ use crate::settings::name;
 pub enum Sweep {
     /// Pixels of the picture, 640x360 to 3840x2160.
     Resolution,
-    /// Triangles: those of the scene, cut into 4, 9, 16 ..
+    /// Triangles: those of the scene, cut into 4, 9, 16 .., or without one hills of 10 000 to 2 million; of a view of all and of
+    /// one that sees 5 %.
     Triangles,
     /// Irradiance samples of one pass, 64 to 4096.
     Samples,
@@ -34,8 +35,19 @@ pub enum Sweep {
     Ssao,
 }
 
-/// Most triangles that a sweep makes.
+/// Most triangles that a sweep makes of a scene.
 const MOST_TRIANGLES: usize = 2_000_000;
+/// Triangles of the hills.
+const HILLS: [usize; 6] = [10_000, 30_000, 100_000, 300_000, 1_000_000, 2_000_000];
+/// Share of the triangles that a second view sees.
+const NARROW: f64 = 0.05;
+/// The passes that draw triangles.
+const GEOMETRY: [&str; 4] = [
+    "G-buffer",
+    "G-buffer, details",
+    "shadow map",
+    "shadow map, cut-outs",
+];
 
 impl Sweep {
     /// What the sizes count.
@@ -68,19 +80,15 @@ impl Sweep {
                     step(pixels, label, &|s| s.settings.size = size)
                 })
                 .collect(),
-            Self::Triangles => {
-                let most =
-                    |k: &u32| *k == 1 || job.scene.triangles() * (k * k) as usize <= MOST_TRIANGLES;
-                let finer = [1, 2, 3, 4, 6, 8, 12, 16].into_iter().filter(most);
-                finer
-                    .map(|k| {
-                        let triangles = job.scene.triangles() * (k * k) as usize;
-                        let size = triangles as f64;
-                        // Made when its turn comes: all of them together would not fit into memory.
-                        step(size, triangles.to_string(), &|s| s.finer = k)
+            Self::Triangles => grounds(job)
+                .into_iter()
+                .map(|(triangles, ground)| {
+                    // Made when its turn comes: all of them together would not fit into memory.
+                    step(triangles as f64, triangles.to_string(), &|s| {
+                        s.ground = ground
                     })
-                    .collect()
-            }
+                })
+                .collect(),
             Self::Samples => [64, 128, 256, 512, 1024, 2048, 4096]
                 .into_iter()
                 .map(|n| {
@@ -109,6 +117,18 @@ impl Sweep {
                 .collect(),
         }
     }
+}
+
+/// Grounds of more and more triangles: of the scene, or of hills in place of the bundled scene.
+fn grounds(job: &Job) -> Vec<(usize, Ground)> {
+    if job.path.is_none() {
+        return HILLS.map(|n| (n, Ground::Hills(n))).to_vec();
+    }
+    let pieces = [1, 2, 3, 4, 6, 8, 12, 16].into_iter();
+    let finer = pieces.map(|k| (job.scene.triangles() * (k * k) as usize, Ground::Finer(k)));
+    let is_sound =
+        |(n, ground): &(usize, Ground)| *ground == Ground::Finer(1) || *n <= MOST_TRIANGLES;
+    finer.filter(is_sound).collect()
 }
 
 /// What a sweep came to.
@@ -167,18 +187,28 @@ pub fn run(
     job: &Job,
     context: &Arc<Context>,
     motion: Motion,
-    head: Head,
+    mut head: Head,
 ) -> Result<SweepReport> {
+    if let (Sweep::Triangles, None) = (sweep, &job.path) {
+        (head.scene, head.triangles) = ("hills".to_owned(), HILLS[0]);
+    }
     let (mut sizes, mut labels) = (Vec::new(), Vec::new());
     let mut table: Vec<(String, Vec<Summary>)> = Vec::new();
     let limit = context.summary().max_image_edge;
-    for (size, label, subject) in sweep.steps(job, limit) {
-        let scene = match subject.finer {
-            1 => Cow::Borrowed(&job.scene),
-            k => Cow::Owned(job.scene.subdivided(k)),
-        };
+    for (size, label, mut subject) in sweep.steps(job, limit) {
+        let scene = subject.ground.scene(job);
+        if let Ground::Hills(_) = subject.ground {
+            subject.camera = job.settings.framing(&scene.bounds);
+        }
         let measured = Bench::new(&subject, &scene, context, motion)?.run(head.frames)?;
-        for (name, time) in times(&measured, &head.frame_name) {
+        let mut rows = times(&measured, &head.frame_name);
+        if sweep == Sweep::Triangles {
+            subject.camera = narrowed(&subject.camera, &scene, subject.settings.size, NARROW);
+            let narrow = Bench::new(&subject, &scene, context, motion)?.run(head.frames)?;
+            rows.extend(geometry(&measured).map(|t| ("G-buffer and shadow map".to_owned(), t)));
+            rows.extend(geometry(&narrow).map(|t| ("the same, 5 % in view".to_owned(), t)));
+        }
+        for (name, time) in rows {
             match table.iter_mut().find(|(known, _)| *known == name) {
                 Some((_, times)) => times.push(time),
                 None => table.push((name, vec![time])),
@@ -198,6 +228,14 @@ pub fn run(
         sizes,
         labels,
     })
+}
+
+/// Time of the passes that draw triangles, together.
+fn geometry(measured: &Measured) -> Option<Summary> {
+    let passes = measured.passes.iter();
+    let drawing = passes.filter(|(name, _)| GEOMETRY.contains(name));
+    let times = drawing.map(|(_, samples)| samples.clone());
+    Some(times.reduce(|a, b| a.with(&b))?.summary())
 }
 
 fn times(measured: &Measured, frame_name: &str) -> Vec<(String, Summary)> {

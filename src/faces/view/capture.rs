@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::daylight::exposure::automatic;
 use crate::error::Result;
 use crate::gpu::read_back;
-use crate::output::{Channels, Encoding, Layer, Metadata, write_exr, write_png};
+use crate::output::{Channels, Effort, Encoding, Layer, Metadata, write_exr, write_png};
 use crate::settings::Exposure;
 
 use super::document::Document;
@@ -60,7 +60,13 @@ fn save_png(
     let pixels = read_back(stage.idle()?, document.display())?;
     let gamma = document.job.settings.gamma;
     let encoding = gamma.map_or(Encoding::Srgb, Encoding::Gamma);
-    write_png(path, pixels.size, &pixels.bytes, encoding, metadata)
+    write_png(
+        path,
+        pixels.size,
+        &pixels.bytes,
+        (encoding, Effort::Small),
+        metadata,
+    )
 }
 
 fn save_exr(

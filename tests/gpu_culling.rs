@@ -24,6 +24,8 @@ fn unculled(scene: &Scene) -> Scene {
             max: Vec3::splat(far),
         },
         solid: None,
+        // Drawn by the pipeline that finds the front from derivatives: the lean one is compared with it too.
+        is_wound: false,
     };
     let arranged = scene.layout.as_ref().expect("an arranged scene");
     let layout = Layout {

@@ -182,7 +182,7 @@ float sectors_up_to(vec2 direction, Side side) {
 /// The sectors of both sides that lie behind a cover which the picture need not show: rays fan out from points under one.
 uvec2 covered_sectors(Side plus, Side minus, float jitter, float dither) {
     vec3 from = (zenith.from_view * vec4(p + n * (1.5 * zenith.texel), 1.0)).xyz;
-    // Where no pixel of a group is under cover nothing of this is computed.
+    // Where no pixel of a group is under cover no more than one of the rays is computed.
     int rays = highest(from) > from.z + zenith.slack ? zenith.rays : 0;
     // Between the tangents even in the sine of the angle to the normal: even in their cosine's weight.
     vec2 tangent = vec2(plus.n.y, -plus.n.x);

@@ -22,7 +22,7 @@ float perez(Perez p, float cos_theta, float gamma, float cos_gamma) {
 vec3 preetham(vec3 direction) {
     float cos_theta = max(direction.y, MIN_COS_THETA);
     float gamma = angle_between(direction, push.sun_direction);
-    float cos_gamma = cos(gamma);
+    float cos_gamma = dot(direction, push.sun_direction);
     float Y = model.zenith_over_f.x * perez(model.luminance, cos_theta, gamma, cos_gamma);
     float x = model.zenith_over_f.y * perez(model.chromaticity_x, cos_theta, gamma, cos_gamma);
     float y = model.zenith_over_f.z * perez(model.chromaticity_y, cos_theta, gamma, cos_gamma);

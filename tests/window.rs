@@ -157,8 +157,9 @@ fn nth_size(n: u32) -> (u32, u32) {
 fn three_hundred_resizes_leave_nothing_behind() {
     let running = Running::bare(&["--size", "320x180", "--samples", "1"]);
     running.picture();
-    let mut after_50 = 0;
-    for n in 1..=300 {
+    // The allocator takes some 3 % more in the first hundreds and gives a part of it back: what is lost for good goes on growing.
+    let mut settled = 0;
+    for n in 1..=500 {
         let (width, height) = nth_size(n);
         running.display.resize(running.window, width, height);
         if n % 60 == 0 {
@@ -167,23 +168,23 @@ fn three_hundred_resizes_leave_nothing_behind() {
             running.display.show(running.window);
         }
         sleep(Duration::from_millis(30));
-        if n == 50 || n == 300 {
+        if n % 50 == 0 {
             // Measured at one size, at rest.
             running.display.resize(running.window, 320, 180);
             running.display.focus(running.window);
             running.picture();
         }
-        if n == 50 {
-            after_50 = resident(running.pid());
+        if n % 50 == 0 && n <= 200 {
+            settled = settled.max(resident(running.pid()));
         }
     }
-    let after_300 = resident(running.pid());
-    let growth = after_300 as f64 / after_50 as f64 - 1.0;
+    let last = resident(running.pid());
+    let growth = last as f64 / settled as f64 - 1.0;
     println!(
-        "memory after 50 resizes {after_50}, after 300 {after_300}: {:+.2} %",
+        "memory in the first 200 resizes at most {settled}, 300 later {last}: {:+.2} %",
         growth * 100.0
     );
-    assert!(growth <= 0.02, "{after_50} -> {after_300}");
+    assert!(growth <= 0.02, "{settled} -> {last}");
     running.close_well();
 }
 

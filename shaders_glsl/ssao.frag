@@ -230,10 +230,7 @@ void main() {
     ivec2 own = ivec2(gl_FragCoord.xy);
     ivec2 texel = own * OCCLUSION_SPACING;
     float distance = packed_distance(texelFetch(occluders, texel, 0).r);
-    if (distance >= 0.5 * NOWHERE) {
-        occlusion = occlusion_pack(1.0, 0.0);
-        return;
-    }
+    // The depth test leaves only points with a surface.
     vec2 full_size = vec2(textureSize(normal, 0));
     ray_step = 2.0 * float(DOWNSCALE) / full_size * view.ray_scale;
     ray_base = view_ray(0.5 / full_size, view.ray_scale, view.ray_offset).xy;

@@ -19,10 +19,6 @@ void main() {
     ivec2 own = ivec2(gl_FragCoord.xy);
     ivec2 texel = own * OCCLUSION_SPACING;
     float centre = distance_at(texel);
-    if (centre >= 0.5 * NOWHERE) {
-        occlusion = occlusion_pack(1.0, 0.0);
-        return;
-    }
     // The slope of a plane seen at a grazing angle is no edge: the tolerance follows the smaller neighbouring step.
     float slope = min(abs(distance_at(texel - ivec2(1, 0)) - centre), abs(distance_at(texel + ivec2(1, 0)) - centre))
                 + min(abs(distance_at(texel - ivec2(0, 1)) - centre), abs(distance_at(texel + ivec2(0, 1)) - centre));

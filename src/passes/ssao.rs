@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use crate::gpu::{
-    Context, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
+    Sampler, Shader, shaders,
 };
 use crate::gpu_struct;
 
@@ -62,15 +63,59 @@ impl Default for SsaoSettings {
 pub struct Ssao {
     settings: SsaoSettings,
     pack: Pipeline,
+    select: Pipeline,
     trace: Pipeline,
     blur: Pipeline,
     occluders: Image,
+    /// Depth at the points at which A is computed; 0 is background.
+    points: Image,
     noisy: Image,
     smooth: Image,
 }
 
 /// Two numbers to a word, see `include/occluder.glsl`.
 const FORMAT: Format = Format::R32_UINT;
+const DEPTH: Format = Format::D32_SFLOAT;
+/// A word of 0 is A = 1 at no distance.
+const OPEN: [f32; 4] = [0.0; 4];
+
+/// Writes the depth of the points.
+fn points_pipeline(context: &Arc<Context>, downscale: u32) -> Result<Pipeline> {
+    Pipeline::new(
+        context,
+        &PipelineDesc {
+            name: "SSAO points",
+            stages: &[&shaders::FULLSCREEN_VERT, &shaders::SSAO_POINTS_FRAG],
+            vertex: &[],
+            colors: &[],
+            depth: Depth::Write {
+                format: DEPTH,
+                slope_bias: 0.0,
+            },
+            constants: &[("DOWNSCALE", downscale)],
+        },
+    )
+}
+
+/// Runs a fragment shader on the points of surfaces.
+fn on_points(
+    context: &Arc<Context>,
+    name: &str,
+    fragment: &'static Shader,
+    constants: &[(&str, u32)],
+) -> Result<Pipeline> {
+    Pipeline::new(
+        context,
+        &PipelineDesc {
+            name,
+            stages: &[&shaders::FULLSCREEN_VERT, fragment],
+            vertex: &[],
+            colors: &[FORMAT],
+            depth: Depth::Surface(DEPTH),
+            constants,
+        },
+    )
+}
 
 impl Ssao {
     /// For pictures of `size` pixels.
@@ -84,8 +129,9 @@ impl Ssao {
         let points = [width, height].map(|edge| edge.div_ceil(SPACING));
         Ok(Self {
             settings,
-            trace: fullscreen(context, "SSAO", &shaders::SSAO_FRAG, FORMAT, &constants)?,
-            blur: fullscreen(context, "SSAO blur", &shaders::SSAO_BLUR_FRAG, FORMAT, &[])?,
+            select: points_pipeline(context, settings.downscale)?,
+            trace: on_points(context, "SSAO", &shaders::SSAO_FRAG, &constants)?,
+            blur: on_points(context, "SSAO blur", &shaders::SSAO_BLUR_FRAG, &[])?,
             pack: fullscreen(
                 context,
                 "SSAO occluders",
@@ -94,6 +140,7 @@ impl Ssao {
                 &[("DOWNSCALE", settings.downscale)],
             )?,
             occluders: image("occluders", [width, height])?,
+            points: Image::new(context, &ImageDesc::flat("points", DEPTH, points))?,
             noisy: image("occlusion, noisy", points)?,
             smooth: image("occlusion", points)?,
         })
@@ -119,13 +166,8 @@ impl Ssao {
         phase: f32,
     ) -> &Image {
         if self.settings.radius <= 0.0 {
-            // Nothing occludes: a word of 0 is A = 1 (the distance only steers filters, which find no edges).
-            recorder
-                .pass("SSAO off", &self.blur)
-                .sample("noisy_occlusion", &self.noisy, Sampler::Nearest)
-                .sample("occluders", &self.occluders, Sampler::Nearest)
-                .color(&self.smooth, Load::Clear([0.0; 4]))
-                .draws(|_| ());
+            // Nothing occludes (the distance only steers filters, which find no edges).
+            recorder.clear(&self.smooth, OPEN);
             return &self.smooth;
         }
         recorder
@@ -138,6 +180,11 @@ impl Ssao {
             .color(&self.occluders, Load::Discard)
             .draw();
         recorder
+            .pass("SSAO points", &self.select)
+            .sample("depth", &surfaces.depth, Sampler::Nearest)
+            .depth(&self.points, Load::Clear([0.0; 4]))
+            .draw();
+        recorder
             .pass("SSAO", &self.trace)
             .sample("occluders", &self.occluders, Sampler::Nearest)
             .sample("normal", &surfaces.normal, Sampler::Nearest)
@@ -148,13 +195,15 @@ impl Ssao {
                 radius: self.settings.radius,
                 phase,
             })
-            .color(&self.noisy, Load::Discard)
+            .color(&self.noisy, Load::Clear(OPEN))
+            .depth_test(&self.points)
             .draw();
         recorder
             .pass("SSAO blur", &self.blur)
             .sample("noisy_occlusion", &self.noisy, Sampler::Nearest)
             .sample("occluders", &self.occluders, Sampler::Nearest)
-            .color(&self.smooth, Load::Discard)
+            .color(&self.smooth, Load::Clear(OPEN))
+            .depth_test(&self.points)
             .draw();
         &self.smooth
     }

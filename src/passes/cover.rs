@@ -94,8 +94,8 @@ mod tests {
 
     #[test]
     fn host_and_shader_agree() {
-        let bindings = shaders::SSAO_FRAG.bindings.iter();
-        let block = bindings.filter(|b| b.name == "zenith").next_back();
+        let mut bindings = shaders::SSAO_FRAG.bindings.iter();
+        let block = bindings.find(|b| b.name == "zenith");
         assert_eq!(
             check_layout(CoverBlock::FIELDS, block.expect("zenith").fields),
             Ok(())

@@ -33,7 +33,7 @@ gpu_struct! {
 pub struct SsaoSettings {
     /// Metres; 0 turns it off (A = 1).
     pub radius: f32,
-    /// Pixels of the picture to an occluder, each way; A is computed at every [`SPACING`]th.
+    /// Pixels of the picture to an occluder, each way; A is computed at every second one.
     pub downscale: u32,
     /// Samples on each side of the slice.
     pub steps: u32,

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "octahedral.glsl"
-#include "gbuffer_lean_push.glsl"
+#include "gbuffer_push.glsl"
 
 layout(location = 0) in vec4 surface; // world normal; thickness of the body, metres
 

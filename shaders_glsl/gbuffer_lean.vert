@@ -10,7 +10,7 @@ layout(location = 1) in vec4 normal;   // world; w: thickness behind the surface
 
 layout(location = 0) out vec4 surface; // the same
 
-#include "gbuffer_lean_push.glsl"
+#include "gbuffer_push.glsl"
 
 void main() {
     gl_Position = push.clip_from_world * vec4(position, 1.0);

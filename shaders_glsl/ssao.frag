@@ -50,8 +50,8 @@ vec2 ray_step; // of a texel, of rays with z = -1
 vec2 ray_base; // of texel 0
 vec2 texel_size; // of the picture's
 
-vec3 point(ivec2 texel, float distance) {
-    return vec3(vec2(texel) * ray_step + ray_base, -1.0) * distance;
+vec3 point(vec2 texel, float distance) {
+    return vec3(texel * ray_step + ray_base, -1.0) * distance;
 }
 
 vec3 normal_at(ivec2 texel) {
@@ -103,7 +103,7 @@ uint blocked_by(vec2 texel, Side side, float half_width, float dither) {
     // A nearest lookup costs a software device less than a fetch, which it checks against the edges.
     uint word = textureLod(occluders, (texel + 0.5) * texel_size, 0.0).r;
     float distance = packed_distance(word);
-    vec3 delta = vec3(texel * ray_step + ray_base, -1.0) * distance - p;
+    vec3 delta = point(texel, distance) - p;
     float r2 = dot(delta, delta);
     float over_plane = dot(delta, n);
     vec2 q = vec2(abs(dot(delta, side.axis)), dot(delta, v));
@@ -120,7 +120,7 @@ uint blocked_by(vec2 texel, Side side, float half_width, float dither) {
 /// The sectors blocked past the picture's edge, where the surface at the edge goes on as a plane up to the radius.
 uint blocked_past(ivec2 texel, Side side, float dither) {
     vec3 m = normal_at(texel);
-    vec3 delta = point(texel, packed_distance(texelFetch(occluders, texel, 0).r)) - p;
+    vec3 delta = point(vec2(texel), packed_distance(texelFetch(occluders, texel, 0).r)) - p;
     vec2 q = vec2(dot(delta, side.axis), dot(delta, v));
     vec2 away = vec2(dot(m, v), -dot(m, side.axis));
     float room = push.radius * push.radius - dot(q, q);
@@ -179,21 +179,24 @@ float sectors_up_to(vec2 direction, Side side) {
     return direction.x > 0.0 ? weight(direction.y, side.n) * side.per_weight : 0.0;
 }
 
+/// The direction of a slice at a sine to its normal (along the axis, along the view direction, unit).
+vec2 slice_direction(vec2 slice_n, float sine) {
+    return slice_n * sqrt(max(1.0 - sine * sine, 0.0)) + vec2(slice_n.y, -slice_n.x) * sine;
+}
+
 /// The sectors of both sides that lie behind a cover which the picture need not show: rays fan out from points under one.
 uvec2 covered_sectors(Side plus, Side minus, float jitter, float dither) {
     vec3 from = (zenith.from_view * vec4(p + n * (1.5 * zenith.texel), 1.0)).xyz;
     // Where no pixel of a group is under cover no more than one of the rays is computed.
     int rays = highest(from) > from.z + zenith.slack ? zenith.rays : 0;
     // Between the tangents even in the sine of the angle to the normal: even in their cosine's weight.
-    vec2 tangent = vec2(plus.n.y, -plus.n.x);
-    vec2 low = -tangent;
+    vec2 low = slice_direction(plus.n, -1.0);
     uvec2 sectors = uvec2(0u);
     for (int i = 0; i < rays; ++i) {
         float width = 2.0 / float(rays);
         float sine = width * float(i + 1) - 1.0;
-        vec2 high = plus.n * sqrt(max(1.0 - sine * sine, 0.0)) + tangent * sine;
-        sine -= width * dither;
-        vec2 middle = plus.n * sqrt(max(1.0 - sine * sine, 0.0)) + tangent * sine;
+        vec2 high = slice_direction(plus.n, sine);
+        vec2 middle = slice_direction(plus.n, sine - width * dither);
         vec3 step = (plus.axis * middle.x + v * middle.y) * (push.radius / float(RAY_STEPS));
         if (passes_cover(from, mat3(zenith.from_view) * step, jitter)) {
             sectors.x |= between(sectors_up_to(low, plus), sectors_up_to(high, plus), dither);
@@ -235,7 +238,7 @@ void main() {
     ray_step = 2.0 * float(DOWNSCALE) / full_size * view.ray_scale;
     ray_base = view_ray(0.5 / full_size, view.ray_scale, view.ray_offset).xy;
     texel_size = 1.0 / vec2(textureSize(occluders, 0));
-    p = point(texel, distance);
+    p = point(vec2(texel), distance);
     v = normalize(-p);
     n = normal_at(texel);
     origin = vec2(texel) + 0.5;

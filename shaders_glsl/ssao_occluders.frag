@@ -19,7 +19,6 @@ layout(push_constant, scalar) uniform Push {
     float near; // metres
 } push;
 
-
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy) * DOWNSCALE;
     float d = texelFetch(depth, pixel, 0).r;

@@ -240,7 +240,9 @@ impl Frame {
             None => match self.parts.occlusion(index) {
                 Some(of_whole) => of_whole,
                 None => {
-                    let cover = self.cover.record(rec, &self.geometry);
+                    let cover = self
+                        .cover
+                        .record(rec, &self.geometry, self.settings.ssao.radius);
                     self.ssao.record(rec, surfaces, &view, cover, sample.phase)
                 }
             },

@@ -6,13 +6,13 @@ use glam::{Vec2, Vec3};
 
 use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
 use crate::gpu::{
-    Context, Depth, Format, Image, Load, Pipeline, PipelineDesc, Recorder, Result, Sampler, shaders,
+    Context, Depth, Format, Image, Load, Pipeline, Recorder, Result, Sampler, shaders,
 };
 use crate::gpu_struct;
 
-use super::kilo;
 use super::lighting::{Light, LightingSettings, Show};
 use super::view::View;
+use super::{fullscreen_at, kilo};
 
 gpu_struct! {
     /// The sun's disc.
@@ -50,20 +50,17 @@ impl Background {
     pub fn new(context: &Arc<Context>, settings: LightingSettings) -> Result<Self> {
         let (sky, empty) = content(settings.show);
         let pipeline = |disc: bool| {
-            Pipeline::new(
+            fullscreen_at(
                 context,
-                &PipelineDesc {
-                    name: "background",
-                    stages: &[&shaders::FULLSCREEN_VERT, &shaders::BACKGROUND_FRAG],
-                    vertex: &[],
-                    colors: &[settings.precision.format()],
-                    depth: Depth::Background(Format::D32_SFLOAT),
-                    constants: &[
-                        ("SKY", sky.into()),
-                        ("EMPTY", empty.to_bits()),
-                        ("DISC", disc.into()),
-                    ],
-                },
+                "background",
+                &shaders::BACKGROUND_FRAG,
+                &[settings.precision.format()],
+                Depth::Background(Format::D32_SFLOAT),
+                &[
+                    ("SKY", sky.into()),
+                    ("EMPTY", empty.to_bits()),
+                    ("DISC", disc.into()),
+                ],
             )
         };
         Ok(Self {

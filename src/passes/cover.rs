@@ -55,9 +55,14 @@ impl Cover {
         })
     }
 
-    /// Draws the map, once. Whatever the view, it shows the whole scene.
-    pub fn record(&mut self, recorder: &mut Recorder, geometry: &Geometry) -> &Self {
-        if !std::mem::replace(&mut self.is_drawn, true) {
+    /// Whether occlusion within `radius` metres can be told from it.
+    fn serves(&self, radius: f32) -> bool {
+        radius > 0.0 && self.view.texel * TEXELS_OF_RADIUS <= radius
+    }
+
+    /// Draws the map, once, when occlusion within `radius` metres first wants it. Whatever the view, it shows the whole scene.
+    pub fn record(&mut self, recorder: &mut Recorder, geometry: &Geometry, radius: f32) -> &Self {
+        if self.serves(radius) && !std::mem::replace(&mut self.is_drawn, true) {
             let tile = Tile {
                 view: self.view,
                 origin: [0; 2],
@@ -77,12 +82,11 @@ impl Cover {
     /// What the shader needs to know, for occlusion within `radius` metres.
     pub fn block(&self, view: &View, radius: f32) -> CoverBlock {
         let from_view = self.view.shadow_from_world * view.camera.world_from_view();
-        let is_fine = self.view.texel * TEXELS_OF_RADIUS <= radius;
         CoverBlock {
             from_view: from_view.to_cols_array_2d(),
             texel: self.view.texel,
             slack: SLACK_TEXELS * self.view.texel_depth,
-            rays: if is_fine { RAYS } else { 0 },
+            rays: if self.serves(radius) { RAYS } else { 0 },
         }
     }
 }

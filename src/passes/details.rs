@@ -3,12 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::gpu::{
-    Context, Depth, Draws, Format, Load, Pipeline, PipelineDesc, Recorder, Result, Sampler, shaders,
-};
+use crate::gpu::{Context, Draws, Format, Load, Pipeline, Recorder, Result, Sampler, shaders};
 
 use super::cull::Cull;
-use super::gbuffer::{Push, Surfaces};
+use super::gbuffer::{Push, Surfaces, VERTEX, surface_pipeline};
 use super::geometry::{Bound, Geometry, Kind};
 use super::view::View;
 
@@ -18,33 +16,28 @@ pub struct Details {
 }
 
 fn pipeline(context: &Arc<Context>, formats: &[Format], kind: Kind) -> Result<Pipeline> {
-    Pipeline::new(
+    let [position, normal, texcoord] = VERTEX;
+    surface_pipeline(
         context,
-        &PipelineDesc {
-            name: "G-buffer, details",
-            stages: &[
-                &shaders::GBUFFER_DETAILED_VERT,
-                &shaders::GBUFFER_DETAILED_FRAG,
-            ],
-            vertex: &[
-                Format::R32G32B32_SFLOAT,
-                Format::R32G32B32A32_SFLOAT,
-                Format::R32G32_SFLOAT,
-                Format::R16G16B16A16_UNORM,
-                Format::R16G16B16A16_SNORM,
-            ],
-            colors: formats,
-            depth: Depth::Write {
-                format: Format::D32_SFLOAT,
-                slope_bias: 0.0,
-            },
-            constants: &[
-                ("DIFFUSE_MAP", kind.diffuse_map.into()),
-                ("SPECULAR_MAP", kind.specular_map.into()),
-                ("NORMAL_MAP", kind.normal_map.into()),
-                ("CUT_OUT", kind.cut_out.into()),
-            ],
-        },
+        "G-buffer, details",
+        [
+            &shaders::GBUFFER_DETAILED_VERT,
+            &shaders::GBUFFER_DETAILED_FRAG,
+        ],
+        &[
+            position,
+            normal,
+            texcoord,
+            Format::R16G16B16A16_UNORM,
+            Format::R16G16B16A16_SNORM,
+        ],
+        formats,
+        &[
+            ("DIFFUSE_MAP", kind.diffuse_map.into()),
+            ("SPECULAR_MAP", kind.specular_map.into()),
+            ("NORMAL_MAP", kind.normal_map.into()),
+            ("CUT_OUT", kind.cut_out.into()),
+        ],
     )
 }
 

@@ -16,8 +16,7 @@ use crate::daylight::dome::{DomeLight, SkyDome, ground_light};
 use crate::daylight::sampling;
 use crate::daylight::sky::Daylight;
 use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
-    Sampler, shaders,
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
 };
 use crate::gpu_struct;
 
@@ -30,7 +29,7 @@ use super::reflection::Mirror;
 use super::shadow::{Casters, Tile};
 use super::shadow_fit::ShadowView;
 use super::view::View;
-use super::{fullscreen, kilo};
+use super::{fullscreen, fullscreen_at, kilo};
 
 /// Most directions of a frame: what the shader's block holds.
 pub const MOST_DIRECTIONS: u32 = 16;
@@ -331,22 +330,19 @@ fn gather_pipeline(
     settings: DomeSettings,
     show: Show,
 ) -> Result<Pipeline> {
-    Pipeline::new(
+    fullscreen_at(
         context,
-        &PipelineDesc {
-            name: "dome: gather",
-            stages: &[&shaders::FULLSCREEN_VERT, &shaders::DOME_GATHER_FRAG],
-            vertex: &[],
-            colors: &[FORMAT, FORMAT],
-            depth: Depth::Off,
-            constants: &[
-                ("SHOW_IRRADIANCE", (show == Show::Irradiance).into()),
-                ("SHOW_OCCLUSION", (show == Show::Occlusion).into()),
-                ("SKY", shows_sky(show).into()),
-                ("DIRECTIONS", settings.directions),
-                ("ALBEDO_IMAGE", geometry.has_albedo().into()),
-            ],
-        },
+        "dome: gather",
+        &shaders::DOME_GATHER_FRAG,
+        &[FORMAT, FORMAT],
+        Depth::Off,
+        &[
+            ("SHOW_IRRADIANCE", (show == Show::Irradiance).into()),
+            ("SHOW_OCCLUSION", (show == Show::Occlusion).into()),
+            ("SKY", shows_sky(show).into()),
+            ("DIRECTIONS", settings.directions),
+            ("ALBEDO_IMAGE", geometry.has_albedo().into()),
+        ],
     )
 }
 

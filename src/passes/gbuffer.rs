@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::gpu::{
     Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, PipelineDesc, Recorder, Result,
-    Sampler, shaders,
+    Sampler, Shader, shaders,
 };
 use crate::gpu_struct;
 
@@ -47,15 +47,6 @@ impl Push {
             mirrors: bound.mirrors.into(),
             sharpen,
         }
-    }
-}
-
-gpu_struct! {
-    /// Camera and material of a lean draw.
-    pub struct LeanPush {
-        clip_from_world: [[f32; 4]; 4],
-        diffuse: Vec3,
-        material: u32,
     }
 }
 
@@ -117,48 +108,34 @@ pub struct Gbuffer {
     surfaces: Surfaces,
 }
 
-fn pipeline(
+/// Position, normal with thickness, texture coordinates.
+pub(super) const VERTEX: [Format; 3] = [
+    Format::R32G32B32_SFLOAT,
+    Format::R32G32B32A32_SFLOAT,
+    Format::R32G32_SFLOAT,
+];
+
+/// A pipeline that draws surfaces to colour targets of these formats.
+pub(super) fn surface_pipeline(
     context: &Arc<Context>,
+    name: &str,
+    stages: [&'static Shader; 2],
+    vertex: &[Format],
     formats: &[Format],
-    diffuse_map: bool,
-    specular_map: bool,
+    constants: &[(&str, u32)],
 ) -> Result<Pipeline> {
     Pipeline::new(
         context,
         &PipelineDesc {
-            name: "G-buffer",
-            stages: &[&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG],
-            vertex: &[
-                Format::R32G32B32_SFLOAT,
-                Format::R32G32B32A32_SFLOAT,
-                Format::R32G32_SFLOAT,
-            ],
+            name,
+            stages: &stages,
+            vertex,
             colors: formats,
             depth: Depth::Write {
                 format: Format::D32_SFLOAT,
                 slope_bias: 0.0,
             },
-            constants: &[
-                ("DIFFUSE_MAP", diffuse_map.into()),
-                ("SPECULAR_MAP", specular_map.into()),
-            ],
-        },
-    )
-}
-
-fn lean_pipeline(context: &Arc<Context>, formats: &[Format]) -> Result<Pipeline> {
-    Pipeline::new(
-        context,
-        &PipelineDesc {
-            name: "G-buffer, lean",
-            stages: &[&shaders::GBUFFER_LEAN_VERT, &shaders::GBUFFER_LEAN_FRAG],
-            vertex: &[Format::R32G32B32_SFLOAT, Format::R32G32B32A32_SFLOAT],
-            colors: formats,
-            depth: Depth::Write {
-                format: Format::D32_SFLOAT,
-                slope_bias: 0.0,
-            },
-            constants: &[],
+            constants,
         },
     )
 }
@@ -173,8 +150,16 @@ impl Gbuffer {
         if geometry.has_albedo() {
             formats.push(Format::R16G16B16A16_SFLOAT);
         }
-        let pipelines = [(false, false), (false, true), (true, false), (true, true)]
-            .map(|(diffuse, specular)| pipeline(context, &formats, diffuse, specular));
+        let pipelines = [(false, false), (false, true), (true, false), (true, true)].map(
+            |(diffuse, specular)| {
+                let constants = [
+                    ("DIFFUSE_MAP", u32::from(diffuse)),
+                    ("SPECULAR_MAP", u32::from(specular)),
+                ];
+                let stages = [&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG];
+                surface_pipeline(context, "G-buffer", stages, &VERTEX, &formats, &constants)
+            },
+        );
         let [plain, specular, diffuse, both] = pipelines;
         let pipelines = [[plain?, specular?], [diffuse?, both?]];
         let image = |name, format| Image::new(context, &ImageDesc::flat(name, format, size));
@@ -185,7 +170,14 @@ impl Gbuffer {
             depth: image("depth", Format::D32_SFLOAT)?,
         };
         Ok(Self {
-            lean: lean_pipeline(context, &formats)?,
+            lean: surface_pipeline(
+                context,
+                "G-buffer, lean",
+                [&shaders::GBUFFER_LEAN_VERT, &shaders::GBUFFER_LEAN_FRAG],
+                &VERTEX[..2],
+                &formats,
+                &[],
+            )?,
             pipelines,
             details: Details::new(context, geometry, &formats)?,
             surfaces,
@@ -213,11 +205,8 @@ impl Gbuffer {
             .depth(&self.surfaces.depth, clear)
             .draws(|draws| {
                 geometry.draw_lean(draws, &cull, |draws, bound| {
-                    draws.push(&LeanPush {
-                        clip_from_world,
-                        diffuse: bound.diffuse,
-                        material: bound.material,
-                    });
+                    let (eye, sharpen) = (view.camera.eye, view.sharpen);
+                    draws.push(&Push::of(clip_from_world, eye, sharpen, bound));
                 });
             });
         if geometry.has_plain() {
@@ -278,15 +267,16 @@ mod tests {
 
     #[test]
     fn host_and_shader_agree() {
-        for stage in [&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG] {
+        for stage in [
+            &shaders::GBUFFER_VERT,
+            &shaders::GBUFFER_FRAG,
+            &shaders::GBUFFER_LEAN_VERT,
+            &shaders::GBUFFER_LEAN_FRAG,
+        ] {
             assert_eq!(
                 check_layout(Push::FIELDS, stage.push.expect("push")),
                 Ok(())
             );
-        }
-        for stage in [&shaders::GBUFFER_LEAN_VERT, &shaders::GBUFFER_LEAN_FRAG] {
-            let push = stage.push.expect("push");
-            assert_eq!(check_layout(LeanPush::FIELDS, push), Ok(()));
         }
     }
 }

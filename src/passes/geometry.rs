@@ -110,6 +110,7 @@ pub struct Geometry {
     surfaces: Vec<Surface>,
     textures: Vec<Image>,
     white: Image,
+    has_plain: bool,
     is_specular: bool,
     materials: Image,
     bounds: Bounds,
@@ -134,6 +135,11 @@ impl Geometry {
             .map(|texture| upload(recorder, texture))
             .collect();
         let parts = parts(scene, &layout, &surfaces);
+        let clusters = layout.into_owned().clusters;
+        let has_plain = parts.iter().any(|p| {
+            let clusters = &clusters[p.clusters.clone()];
+            clusters.iter().any(|c| is_plain(p, c))
+        });
         let details = if parts.iter().any(|p| p.kind.is_detailed()) {
             Some(upload_details(recorder, scene)?)
         } else {
@@ -157,11 +163,12 @@ impl Geometry {
                 BufferKind::Index,
                 bytemuck::cast_slice(&indices),
             )?,
-            clusters: layout.into_owned().clusters,
+            clusters,
             details,
             casting: casting(&parts),
             parts,
-            is_specular: scene.materials.iter().any(|m| m.specular != [0.0; 3]),
+            has_plain,
+            is_specular: surfaces.iter().any(|s| s.mirrors),
             surfaces,
             textures: textures?,
             white: upload(recorder, &white())?,
@@ -207,13 +214,7 @@ impl Geometry {
 
     /// Whether [`Self::draw_plain`] has anything to draw.
     pub fn has_plain(&self) -> bool {
-        let plain = |p: &Part, c: &Cluster| !p.kind.is_detailed() && !is_lean(p, c);
-        let mut parts = self.parts.iter();
-        parts.any(|p| {
-            self.clusters[p.clusters.clone()]
-                .iter()
-                .any(|c| plain(p, c))
-        })
+        self.has_plain
     }
 
     /// Draws everything that casts a shadow into what `cull` sees and has no holes, positions only.
@@ -263,8 +264,7 @@ impl Geometry {
             &[&self.positions, &self.normals, &self.texcoords],
             &self.indices,
         );
-        let plain = |p: &Part, c: &Cluster| !p.kind.is_detailed() && !is_lean(p, c);
-        self.draw_parts(draws, plain, cull, bind);
+        self.draw_parts(draws, is_plain, cull, bind);
     }
 
     /// Draws the detailed parts; `bind` is called with each new material.
@@ -336,6 +336,11 @@ impl Geometry {
 /// Whether the pipeline with the fewest vertex attributes can draw a cluster.
 fn is_lean(part: &Part, cluster: &Cluster) -> bool {
     part.kind.is_bare() && cluster.is_wound
+}
+
+/// Whether it takes the one with texture coordinates, which finds out which side is the front.
+fn is_plain(part: &Part, cluster: &Cluster) -> bool {
+    !part.kind.is_detailed() && !is_lean(part, cluster)
 }
 
 /// A scene's indices and layout: loading has found them, a scene that was made has none yet.

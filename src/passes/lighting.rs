@@ -11,8 +11,8 @@ use serde::Deserialize;
 use crate::daylight::false_colour::Quantity;
 use crate::daylight::sky::Daylight;
 use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, PipelineDesc, Recorder, Result,
-    Sampler, shaders,
+    Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, Recorder, Result, Sampler,
+    shaders,
 };
 use crate::gpu_struct;
 
@@ -20,10 +20,10 @@ pub use super::cascades::Shadows;
 use super::cascades::SunViews;
 use super::dome::BIAS_TEXELS;
 use super::gbuffer::Surfaces;
-use super::kilo;
 pub use super::precision::Precision;
 use super::reflection::{Mirrors, Phong, Reflections};
 use super::view::View;
+use super::{fullscreen_at, kilo};
 
 gpu_struct! {
     /// The sun and its shadow map.
@@ -249,16 +249,13 @@ impl Lighting {
         constants.push(("PLANE_SHADOW", is_converging.into()));
         constants.push(("CASCADES", settings.shadows.cascades.max(1)));
         constants.push(("PCSS", settings.shadows.penumbrae.into()));
-        let pipeline = Pipeline::new(
+        let pipeline = fullscreen_at(
             context,
-            &PipelineDesc {
-                name: "lighting",
-                stages: &[&shaders::FULLSCREEN_VERT, &shaders::LIGHTING_FRAG],
-                vertex: &[],
-                colors: &[format],
-                depth: Depth::Surface(Format::D32_SFLOAT),
-                constants: &constants,
-            },
+            "lighting",
+            &shaders::LIGHTING_FRAG,
+            &[format],
+            Depth::Surface(Format::D32_SFLOAT),
+            &constants,
         )?;
         let radiance = Image::new(context, &ImageDesc::flat("radiance", format, size))?;
         Ok(Self {

@@ -51,14 +51,26 @@ fn fullscreen(
     target: Format,
     constants: &[(&str, u32)],
 ) -> Result<Pipeline> {
+    fullscreen_at(context, name, fragment, &[target], Depth::Off, constants)
+}
+
+/// A pipeline that runs a fragment shader on the pixels of targets that the depth test leaves.
+fn fullscreen_at(
+    context: &Arc<Context>,
+    name: &str,
+    fragment: &'static Shader,
+    colors: &[Format],
+    depth: Depth,
+    constants: &[(&str, u32)],
+) -> Result<Pipeline> {
     Pipeline::new(
         context,
         &PipelineDesc {
             name,
             stages: &[&shaders::FULLSCREEN_VERT, fragment],
             vertex: &[],
-            colors: &[target],
-            depth: Depth::Off,
+            colors,
+            depth,
             constants,
         },
     )

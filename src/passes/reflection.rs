@@ -11,16 +11,15 @@ use glam::Vec2;
 
 use crate::daylight::sampling;
 use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
-    Sampler, shaders,
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
 };
 use crate::gpu_struct;
 
 use super::dome::{DomeSettings, Gathered};
 use super::dome_block::DomeBlock;
-use super::fullscreen;
 use super::lighting::{LightingSettings, Show};
 use super::view::View;
+use super::{fullscreen, fullscreen_at};
 
 /// The lobe of a mirror.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
@@ -160,21 +159,18 @@ fn gather_pipeline(
     lighting: LightingSettings,
 ) -> Result<Pipeline> {
     let normalized = lighting.mirrors.phong == Phong::Normalized;
-    Pipeline::new(
+    fullscreen_at(
         context,
-        &PipelineDesc {
-            name: "dome: mirrors",
-            stages: &[&shaders::FULLSCREEN_VERT, &shaders::DOME_MIRROR_FRAG],
-            vertex: &[],
-            colors: &FORMATS,
-            depth: Depth::Off,
-            constants: &[
-                ("DIRECTIONS", dome.directions),
-                ("FRESNEL", lighting.fresnel.into()),
-                ("NORMALIZED", normalized.into()),
-                ("ALBEDO_IMAGE", lighting.has_albedo.into()),
-            ],
-        },
+        "dome: mirrors",
+        &shaders::DOME_MIRROR_FRAG,
+        &FORMATS,
+        Depth::Off,
+        &[
+            ("DIRECTIONS", dome.directions),
+            ("FRESNEL", lighting.fresnel.into()),
+            ("NORMALIZED", normalized.into()),
+            ("ALBEDO_IMAGE", lighting.has_albedo.into()),
+        ],
     )
 }
 

@@ -55,6 +55,11 @@ pub(super) fn axes(sun_direction: Vec3) -> [Vec3; 3] {
     [right, sun_direction.cross(right), sun_direction]
 }
 
+/// A point in a map's axes.
+fn along(axes: [Vec3; 3], p: Vec3) -> Vec3 {
+    Vec3::from_array(axes.map(|axis| axis.dot(p)))
+}
+
 /// Fits the map of `resolution` texels a side to the part of `bounds` that `view` sees and that may lie in the shadow of
 /// what is within `casters`.
 ///
@@ -67,8 +72,8 @@ pub fn fit(
     view: &View,
     resolution: u32,
 ) -> ShadowView {
-    let [right, up, toward] = axes(sun_direction);
-    let to_light = |p: Vec3| Vec3::new(right.dot(p), up.dot(p), toward.dot(p));
+    let axes = axes(sun_direction);
+    let to_light = |p| along(axes, p);
     let casters = Bounds::of(casters.corners().map(to_light));
     let seen = visible_points(bounds, view);
     // Sunlight is parallel: nothing beside the casters, seen from the sun, is in their shadow.
@@ -107,21 +112,13 @@ pub fn fit(
         1.0
     };
     let centre = covered.centre().truncate();
-    square(
-        [right, up, toward],
-        &casters,
-        centre,
-        side,
-        step,
-        resolution,
-    )
+    square(axes, &casters, centre, side, step, resolution)
 }
 
 /// The map that shows all of `casters`, whatever the view.
 pub fn fit_all(direction: Vec3, casters: &Bounds, resolution: u32) -> ShadowView {
     let axes = axes(direction);
-    let to_light = |p: Vec3| Vec3::from_array(axes.map(|axis| axis.dot(p)));
-    let casters = Bounds::of(casters.corners().map(to_light));
+    let casters = Bounds::of(casters.corners().map(|p| along(axes, p)));
     let side = casters.extent().truncate().max_element().max(1e-3);
     let centre = casters.centre().truncate();
     square(axes, &casters, centre, side, 1.0, resolution)

@@ -3,15 +3,14 @@
 use std::sync::Arc;
 
 use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
-    Sampler, Shader, shaders,
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
 };
 use crate::gpu_struct;
 
 use super::cover::Cover;
-use super::fullscreen;
 use super::gbuffer::Surfaces;
 use super::view::View;
+use super::{fullscreen, fullscreen_at};
 
 gpu_struct! {
     /// Of the occluders.
@@ -79,44 +78,6 @@ const DEPTH: Format = Format::D32_SFLOAT;
 /// A word of 0 is A = 1 at no distance.
 const OPEN: [f32; 4] = [0.0; 4];
 
-/// Writes the depth of the points.
-fn points_pipeline(context: &Arc<Context>, downscale: u32) -> Result<Pipeline> {
-    Pipeline::new(
-        context,
-        &PipelineDesc {
-            name: "SSAO points",
-            stages: &[&shaders::FULLSCREEN_VERT, &shaders::SSAO_POINTS_FRAG],
-            vertex: &[],
-            colors: &[],
-            depth: Depth::Write {
-                format: DEPTH,
-                slope_bias: 0.0,
-            },
-            constants: &[("DOWNSCALE", downscale)],
-        },
-    )
-}
-
-/// Runs a fragment shader on the points of surfaces.
-fn on_points(
-    context: &Arc<Context>,
-    name: &str,
-    fragment: &'static Shader,
-    constants: &[(&str, u32)],
-) -> Result<Pipeline> {
-    Pipeline::new(
-        context,
-        &PipelineDesc {
-            name,
-            stages: &[&shaders::FULLSCREEN_VERT, fragment],
-            vertex: &[],
-            colors: &[FORMAT],
-            depth: Depth::Surface(DEPTH),
-            constants,
-        },
-    )
-}
-
 impl Ssao {
     /// For pictures of `size` pixels.
     ///
@@ -127,11 +88,26 @@ impl Ssao {
         let [width, height] = size.map(|edge| edge.div_ceil(settings.downscale));
         let image = |name, size| Image::new(context, &ImageDesc::flat(name, FORMAT, size));
         let points = [width, height].map(|edge| edge.div_ceil(SPACING));
+        let writes = Depth::Write {
+            format: DEPTH,
+            slope_bias: 0.0,
+        };
+        let on_points = |name, fragment, constants: &[_]| {
+            let tests = Depth::Surface(DEPTH);
+            fullscreen_at(context, name, fragment, &[FORMAT], tests, constants)
+        };
         Ok(Self {
             settings,
-            select: points_pipeline(context, settings.downscale)?,
-            trace: on_points(context, "SSAO", &shaders::SSAO_FRAG, &constants)?,
-            blur: on_points(context, "SSAO blur", &shaders::SSAO_BLUR_FRAG, &[])?,
+            select: fullscreen_at(
+                context,
+                "SSAO points",
+                &shaders::SSAO_POINTS_FRAG,
+                &[],
+                writes,
+                &[("DOWNSCALE", settings.downscale)],
+            )?,
+            trace: on_points("SSAO", &shaders::SSAO_FRAG, &constants)?,
+            blur: on_points("SSAO blur", &shaders::SSAO_BLUR_FRAG, &[])?,
             pack: fullscreen(
                 context,
                 "SSAO occluders",

@@ -8,11 +8,11 @@ use std::sync::Arc;
 use crate::daylight::false_colour::Range;
 use crate::daylight::tone_curve::ToneCurve;
 use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
-    Sampler, shaders,
+    Context, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
 };
 use crate::gpu_struct;
 
+use super::fullscreen;
 use super::lighting::Show;
 
 gpu_struct! {
@@ -87,30 +87,26 @@ impl ToneMap {
         } else {
             Format::R8G8B8A8_SRGB
         };
-        let pipeline = Pipeline::new(
+        let pipeline = fullscreen(
             context,
-            &PipelineDesc {
-                name: "tone map",
-                stages: &[&shaders::FULLSCREEN_VERT, &shaders::TONE_MAP_FRAG],
-                vertex: &[],
-                colors: &[format],
-                depth: Depth::Off,
-                constants: &[
-                    ("EXPONENTIAL", curve(ToneCurve::Exponential)),
-                    (
-                        "EXPONENTIAL_LUMINANCE",
-                        curve(ToneCurve::ExponentialLuminance),
-                    ),
-                    ("REINHARD", curve(ToneCurve::Reinhard)),
-                    ("AGX", curve(ToneCurve::Agx)),
-                    ("NEUTRAL", curve(ToneCurve::Neutral)),
-                    ("ACES", curve(ToneCurve::Aces)),
-                    ("GAMMA", gamma.into()),
-                    ("AUTO", average.into()),
-                    ("GREY", (settings.show == Show::Luminance).into()),
-                    ("FALSE_COLOUR", false_colour.into()),
-                ],
-            },
+            "tone map",
+            &shaders::TONE_MAP_FRAG,
+            format,
+            &[
+                ("EXPONENTIAL", curve(ToneCurve::Exponential)),
+                (
+                    "EXPONENTIAL_LUMINANCE",
+                    curve(ToneCurve::ExponentialLuminance),
+                ),
+                ("REINHARD", curve(ToneCurve::Reinhard)),
+                ("AGX", curve(ToneCurve::Agx)),
+                ("NEUTRAL", curve(ToneCurve::Neutral)),
+                ("ACES", curve(ToneCurve::Aces)),
+                ("GAMMA", gamma.into()),
+                ("AUTO", average.into()),
+                ("GREY", (settings.show == Show::Luminance).into()),
+                ("FALSE_COLOUR", false_colour.into()),
+            ],
         )?;
         let display = Image::new(context, &ImageDesc::flat("display", format, size))?;
         Ok(Self {

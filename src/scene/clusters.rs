@@ -60,16 +60,12 @@ impl Clusters {
         let splitter = Splitter { scene, bodies };
         for &(first, count) in runs {
             let start = made.list.len();
-            let mut kinds: [Vec<Item>; 4] = Default::default();
+            let mut of_kind: [Vec<Item>; 4] = Default::default();
             for triangle in first / 3..(first + count) / 3 {
-                let item = splitter.item(triangle);
-                kinds[item.kind.rank()].push(item);
+                of_kind[splitter.kind(triangle).rank()].push(splitter.item(triangle));
             }
             let mut first = first;
-            for mut items in kinds {
-                let Some(kind) = items.first().map(|item| item.kind) else {
-                    continue;
-                };
+            for (kind, mut items) in Kind::ALL.into_iter().zip(of_kind) {
                 let end = first + 3 * items.len() as u32;
                 let run = Run {
                     first,
@@ -95,7 +91,19 @@ struct Kind {
 }
 
 impl Kind {
-    /// Its place in the order of the clusters.
+    /// In the order of their clusters.
+    const ALL: [Self; 4] = [
+        Self::new(true, true),
+        Self::new(true, false),
+        Self::new(false, true),
+        Self::new(false, false),
+    ];
+
+    const fn new(is_solid: bool, is_wound: bool) -> Self {
+        Self { is_solid, is_wound }
+    }
+
+    /// Its place among all.
     fn rank(self) -> usize {
         2 * usize::from(!self.is_solid) + usize::from(!self.is_wound)
     }
@@ -107,7 +115,6 @@ struct Item {
     /// Three times its centroid.
     place: Vec3,
     triangle: u32,
-    kind: Kind,
 }
 
 /// Where the indices of some triangles go.
@@ -154,7 +161,8 @@ impl Splitter<'_> {
         &self.bodies.list[self.bodies.of_vertex[vertex] as usize]
     }
 
-    fn kind(&self, triangle: u32, [a, b, c]: [Vec3; 3]) -> Kind {
+    fn kind(&self, triangle: u32) -> Kind {
+        let [a, b, c] = self.positions(triangle);
         let face = (b - a).cross(c - a);
         let normals = &self.scene.normals;
         let agrees = |v: u32| {
@@ -162,18 +170,13 @@ impl Splitter<'_> {
             normal.is_some_and(|n| face.dot((*n).into()) > 0.0)
         };
         let is_wound = self.corners(triangle).into_iter().all(agrees);
-        Kind {
-            is_solid: self.body(triangle).is_solid,
-            is_wound,
-        }
+        Kind::new(self.body(triangle).is_solid, is_wound)
     }
 
     fn item(&self, triangle: u32) -> Item {
-        let corners = self.positions(triangle);
         Item {
-            place: corners.iter().sum(),
+            place: self.positions(triangle).iter().sum(),
             triangle,
-            kind: self.kind(triangle, corners),
         }
     }
 

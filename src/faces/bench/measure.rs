@@ -77,7 +77,8 @@ impl<'j> Subject<'j> {
 /// A frame and the recorders that draw it: one that times passes, one that leaves the frame whole.
 pub struct Bench<'j> {
     job: &'j Job,
-    camera: Camera,
+    /// From where.
+    pub camera: Camera,
     motion: Motion,
     frame: Frame,
     parts: Recorder,

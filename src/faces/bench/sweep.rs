@@ -200,11 +200,12 @@ pub fn run(
         if let Ground::Hills(_) = subject.ground {
             subject.camera = job.settings.framing(&scene.bounds);
         }
-        let measured = Bench::new(&subject, &scene, context, motion)?.run(head.frames)?;
+        let mut bench = Bench::new(&subject, &scene, context, motion)?;
+        let measured = bench.run(head.frames)?;
         let mut rows = times(&measured, &head.frame_name);
         if sweep == Sweep::Triangles {
-            subject.camera = narrowed(&subject.camera, &scene, subject.settings.size, NARROW);
-            let narrow = Bench::new(&subject, &scene, context, motion)?.run(head.frames)?;
+            bench.camera = narrowed(&subject.camera, &scene, subject.settings.size, NARROW);
+            let narrow = bench.run(head.frames)?;
             rows.extend(geometry(&measured).map(|t| ("G-buffer and shadow map".to_owned(), t)));
             rows.extend(geometry(&narrow).map(|t| ("the same, 5 % in view".to_owned(), t)));
         }

@@ -3,6 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "octahedral.glsl"
 #include "facing.glsl"
+#include "materials.glsl"
 #include "gbuffer_push.glsl"
 
 layout(location = 0) in vec3 from_eye;
@@ -25,5 +26,5 @@ void main() {
     albedo = vec4(push.diffuse, 1.0);
     if (DIFFUSE_MAP) albedo.rgb *= texture(diffuse_map, surface_uv, -push.sharpen).rgb;
     if (SPECULAR_MAP) albedo.a = dot(texture(specular_map, surface_uv, -push.sharpen).rgb, vec3(1.0 / 3.0));
-    material = push.material | (floatBitsToUint(thickness) & 0xffff0000u);
+    material = material_word(push.material, thickness);
 }

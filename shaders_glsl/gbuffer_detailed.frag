@@ -3,6 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "octahedral.glsl"
 #include "facing.glsl"
+#include "materials.glsl"
 #include "gbuffer_push.glsl"
 
 // As gbuffer.frag, for surfaces with holes, normal maps or colours at their vertices.
@@ -58,5 +59,5 @@ void main() {
     if (CUT_OUT && surface.a < push.cutoff) discard;
     normal = normal_pack(n);
     albedo = vec4(surface.rgb, gloss);
-    material = push.material | (floatBitsToUint(thickness) & 0xffff0000u);
+    material = material_word(push.material, thickness);
 }

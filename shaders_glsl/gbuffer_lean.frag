@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "materials.glsl"
 #include "octahedral.glsl"
 #include "gbuffer_push.glsl"
 
@@ -14,6 +15,6 @@ void main() {
     // Surfaces are two-sided. That front faces are on the side of all their normals was seen to when the scene was loaded.
     normal = normal_pack(gl_FrontFacing ? surface.xyz : -surface.xyz);
     albedo = vec4(push.diffuse, 1.0);
-    // Rounded: the constant that is interpolated comes back with an error in its last bits.
-    material = push.material | ((floatBitsToUint(surface.w) + 0x8000u) & 0xffff0000u);
+    // The constant comes back from interpolation with an error in its last bits, of which cutting would make a whole step.
+    material = material_word(push.material, surface.w * (1.0 + 1e-6));
 }

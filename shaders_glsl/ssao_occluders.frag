@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "materials.glsl"
 #include "occluder.glsl"
 
 // Every DOWNSCALE-th pixel of the G-buffer as the one word that ssao.frag fetches many times.
@@ -22,6 +23,6 @@ layout(push_constant, scalar) uniform Push {
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy) * DOWNSCALE;
     float d = texelFetch(depth, pixel, 0).r;
-    float thickness = uintBitsToFloat(texelFetch(material, pixel, 0).r & 0xffff0000u) * CHORDS;
+    float thickness = material_thickness(texelFetch(material, pixel, 0).r) * CHORDS;
     occluder = occluder_pack(d > 0.0 ? push.near / d : NOWHERE, thickness);
 }

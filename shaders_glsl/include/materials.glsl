@@ -1,6 +1,16 @@
 // The table of materials: an image of rows of so many columns, two rows to each 1024 materials.
 const int MATERIAL_COLUMNS = 1024;
 
+/// The word of a surface: the number of its material, and the upper half of the bits of how thick its body is (metres).
+uint material_word(uint number, float thickness) {
+    return number | (floatBitsToUint(thickness) & 0xffff0000u);
+}
+
+/// How thick the body is behind the surface of a word, metres.
+float material_thickness(uint word) {
+    return uintBitsToFloat(word & 0xffff0000u);
+}
+
 /// Where the first of the two rows has the material of a word of the G-buffer: rgb: rho_d.
 ivec2 material_diffuse(uint word) {
     int number = int(word & 0xffffu);

@@ -157,11 +157,10 @@ float highest(vec3 at) {
     return textureLod(cover, at.xy * 0.5 + 0.5, 0.0).r;
 }
 
-/// Whether a ray from a point under cover passes up through it: from below it to above it, with cover where it would meet a level
-/// one as high as over the point before.
-bool passes_cover(vec3 from, vec3 step, float jitter) {
+/// Whether a ray from a point under cover, which is at `top` there, passes up through it: from below it to above it, with cover
+/// where it would meet a level one as high as over the point before.
+bool passes_cover(vec3 from, float top, vec3 step, float jitter) {
     vec3 last = from;
-    float top = highest(from);
     bool blocked = false;
     for (int i = 0; i < RAY_STEPS; ++i) {
         vec3 at = from + step * (float(i) + 0.5 + 0.5 * jitter);
@@ -188,7 +187,8 @@ vec2 slice_direction(vec2 slice_n, float sine) {
 uvec2 covered_sectors(Side plus, Side minus, float jitter, float dither) {
     vec3 from = (zenith.from_view * vec4(p + n * (1.5 * zenith.texel), 1.0)).xyz;
     // Where no pixel of a group is under cover no more than one of the rays is computed.
-    int rays = highest(from) > from.z + zenith.slack ? zenith.rays : 0;
+    float top = highest(from);
+    int rays = top > from.z + zenith.slack ? zenith.rays : 0;
     // Between the tangents even in the sine of the angle to the normal: even in their cosine's weight.
     vec2 low = slice_direction(plus.n, -1.0);
     uvec2 sectors = uvec2(0u);
@@ -198,7 +198,7 @@ uvec2 covered_sectors(Side plus, Side minus, float jitter, float dither) {
         vec2 high = slice_direction(plus.n, sine);
         vec2 middle = slice_direction(plus.n, sine - width * dither);
         vec3 step = (plus.axis * middle.x + v * middle.y) * (push.radius / float(RAY_STEPS));
-        if (passes_cover(from, mat3(zenith.from_view) * step, jitter)) {
+        if (passes_cover(from, top, mat3(zenith.from_view) * step, jitter)) {
             sectors.x |= between(sectors_up_to(low, plus), sectors_up_to(high, plus), dither);
             vec2 mirrored = vec2(-1.0, 1.0);
             sectors.y |= between(sectors_up_to(low * mirrored, minus), sectors_up_to(high * mirrored, minus), dither);

@@ -54,7 +54,7 @@ vec4 light_of_directions(vec3 world, vec3 n, vec3 face) {
         if (cosine <= 0.0) continue;
         vec3 light = dome.light[k].rgb * cosine;
         whole += luminance(light) * dome.light[k].a;
-        if (dot(face, dome.toward[k].xyz) <= 0.0) continue;
+        if (is_turned_away(face, n, dome.toward[k].xyz)) continue;
         bool lit = is_lit_in_plane(maps, dome.clip_from_world[k], dome.planes[k], dome.window[k], dome.toward[k].a, world, face);
         if (lit) visible += light;
     }
@@ -63,8 +63,9 @@ vec4 light_of_directions(vec3 world, vec3 n, vec3 face) {
 
 void gather(ivec2 pixel, float d) {
     vec3 n = normal_unpack(texelFetch(normal, pixel, 0).r);
+    uvec2 word = texelFetch(material, pixel, 0).rg;
     vec3 world = view.eye + view.world_from_view * in_view(pixel, d);
-    sky = light_of_directions(world, n, face_normal(pixel, d, n));
+    sky = light_of_directions(world, n, face_normal(pixel, word.y));
     vec3 open = textureLod(sky_irradiance, n, 0.0).rgb;
     if (SHOW_OCCLUSION) {
         sky.rgb = vec3(luminance(sky.rgb));
@@ -72,10 +73,7 @@ void gather(ivec2 pixel, float d) {
         return;
     }
     vec3 reflected = vec3(1.0);
-    if (!SHOW_IRRADIANCE) {
-        uint word = texelFetch(material, pixel, 0).r;
-        reflected = pixel_albedo(ALBEDO_IMAGE, albedo, materials, word, pixel).rgb / PI;
-    }
+    if (!SHOW_IRRADIANCE) reflected = pixel_albedo(ALBEDO_IMAGE, albedo, materials, word.x, pixel).rgb / PI;
     sky *= vec4(reflected, luminance(reflected));
     rest.a = luminance(open) * luminance(reflected);
 }

@@ -49,9 +49,9 @@ layout(push_constant, scalar) uniform Push {
 const float SHARPEST = 256.0;
 
 void gather(ivec2 pixel, float d) {
-    uint word = texelFetch(material, pixel, 0).r;
-    vec4 m = texelFetch(materials, material_specular(word), 0);
-    vec3 rho_s = m.rgb * (pixel_albedo(ALBEDO_IMAGE, albedo, materials, word, pixel).a * push.specular_scale);
+    uvec2 word = texelFetch(material, pixel, 0).rg;
+    vec4 m = texelFetch(materials, material_specular(word.x), 0);
+    vec3 rho_s = m.rgb * (pixel_albedo(ALBEDO_IMAGE, albedo, materials, word.x, pixel).a * push.specular_scale);
     if (all(lessThanEqual(rho_s, vec3(0.0)))) return;
     vec3 n = normal_unpack(texelFetch(normal, pixel, 0).r);
     vec3 toward = view.world_from_view * in_view(pixel, d);
@@ -61,7 +61,7 @@ void gather(ivec2 pixel, float d) {
     vec3 r = reflect(toward, n);
     mirror.rgb = rho_s * (NORMALIZED ? sky_in_lobe(sky_radiance, r, n, m.a, push.shift)
                                      : textureLod(sky_radiance, r, 0.0).rgb);
-    vec3 face = face_normal(pixel, d, n);
+    vec3 face = face_normal(pixel, word.y);
     float p = clamp(m.a, 1.0, SHARPEST);
     for (int k = 0; k < DIRECTIONS; ++k) {
         vec3 w = dome.toward[k].xyz;
@@ -71,7 +71,7 @@ void gather(ivec2 pixel, float d) {
         float light = pow(along_r, p) * luminance(dome.light[k].rgb);
         if (NORMALIZED) light *= cosine;
         lobe += light;
-        if (dot(face, w) <= 0.0) continue;
+        if (is_turned_away(face, n, w)) continue;
         if (is_lit_in_plane(maps, dome.clip_from_world[k], dome.planes[k], dome.window[k], dome.toward[k].a, world, face)) mirror.a += light;
     }
 }

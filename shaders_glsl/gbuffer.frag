@@ -5,6 +5,7 @@
 #include "facing.glsl"
 #include "materials.glsl"
 #include "gbuffer_push.glsl"
+#include "face_slope.glsl"
 
 layout(location = 0) in vec3 from_eye;
 layout(location = 1) in vec3 shading_normal;
@@ -12,7 +13,7 @@ layout(location = 2) in vec2 surface_uv;
 layout(location = 3) flat in float thickness; // behind the surface, metres
 
 layout(location = 0) out uint normal;   // world, octahedral
-layout(location = 1) out uint material; // lower half: column of the table of materials; upper: of the thickness' bits
+layout(location = 1) out uvec2 material; // x: lower half: column of the table of materials; upper: of the thickness' bits; y: the face's slopes
 layout(location = 2) out vec4 albedo;   // rgb: rho_d; a: factor on rho_s. Scenes without maps have it in the table only
 
 layout(constant_id = 0) const bool DIFFUSE_MAP = true;
@@ -26,5 +27,5 @@ void main() {
     albedo = vec4(push.diffuse, 1.0);
     if (DIFFUSE_MAP) albedo.rgb *= texture(diffuse_map, surface_uv, -push.sharpen).rgb;
     if (SPECULAR_MAP) albedo.a = dot(texture(specular_map, surface_uv, -push.sharpen).rgb, vec3(1.0 / 3.0));
-    material = material_word(push.material, thickness);
+    material = uvec2(material_word(push.material, thickness), face_slopes());
 }

@@ -5,6 +5,7 @@
 #include "facing.glsl"
 #include "materials.glsl"
 #include "gbuffer_push.glsl"
+#include "face_slope.glsl"
 
 // As gbuffer.frag, for surfaces with holes, normal maps or colours at their vertices.
 
@@ -16,7 +17,7 @@ layout(location = 4) in vec4 surface_tangent; // w: sign of the bitangent
 layout(location = 5) flat in float thickness; // behind the surface, metres
 
 layout(location = 0) out uint normal;   // world, octahedral
-layout(location = 1) out uint material; // lower half: column of the table of materials; upper: of the thickness' bits
+layout(location = 1) out uvec2 material; // x: lower half: column of the table of materials; upper: of the thickness' bits; y: the face's slopes
 layout(location = 2) out vec4 albedo;   // rgb: rho_d; a: factor on rho_s
 
 layout(constant_id = 0) const bool DIFFUSE_MAP = true;
@@ -59,5 +60,5 @@ void main() {
     if (CUT_OUT && surface.a < push.cutoff) discard;
     normal = normal_pack(n);
     albedo = vec4(surface.rgb, gloss);
-    material = material_word(push.material, thickness);
+    material = uvec2(material_word(push.material, thickness), face_slopes());
 }

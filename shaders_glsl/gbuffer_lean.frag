@@ -4,11 +4,12 @@
 #include "materials.glsl"
 #include "octahedral.glsl"
 #include "gbuffer_push.glsl"
+#include "face_slope.glsl"
 
 layout(location = 0) in vec4 surface; // world normal; thickness of the body, metres
 
 layout(location = 0) out uint normal;   // as of gbuffer.frag
-layout(location = 1) out uint material;
+layout(location = 1) out uvec2 material;
 layout(location = 2) out vec4 albedo;
 
 void main() {
@@ -16,5 +17,5 @@ void main() {
     normal = normal_pack(gl_FrontFacing ? surface.xyz : -surface.xyz);
     albedo = vec4(push.diffuse, 1.0);
     // The constant comes back from interpolation with an error in its last bits, of which cutting would make a whole step.
-    material = material_word(push.material, surface.w * (1.0 + 1e-6));
+    material = uvec2(material_word(push.material, surface.w * (1.0 + 1e-6)), face_slopes());
 }

@@ -68,8 +68,8 @@ layout(set = 0, binding = 10) uniform sampler2D materials; // see materials.glsl
 #include "sun_shadow.glsl"
 
 /// V of one point of the sun's disc: what is left to error is the map's texel, which the mean over many maps makes even.
-float plane_visibility(vec3 world, vec3 face) {
-    if (dot(face, sun.direction) <= 0.0) return 0.0;
+float plane_visibility(vec3 world, vec3 n, vec3 face) {
+    if (is_turned_away(face, n, sun.direction)) return 0.0;
     vec4 window = vec4(vec2(0.0), vec2(textureSize(shadow_map, 0)));
     return float(is_lit_in_plane(shadow_map, sun.shadow_from_world, sun.planes, window, sun.normal_offset, world, face));
 }
@@ -109,13 +109,14 @@ void main() {
     float distance = view.near / d;
     vec3 world = view.eye + world_ray * distance;
     vec3 n = normal_unpack(textureLod(normal, uv, 0.0).r);
-    uint word = textureLod(material, uv, 0.0).r;
+    uvec2 words = textureLod(material, uv, 0.0).rg;
+    uint word = words.x;
     vec4 surface = pixel_albedo(ALBEDO_IMAGE, albedo, materials, word, pixel);
     float n_dot_l = dot(n, sun.direction);
 
     float V = 0.0;
     if (n_dot_l > 0.0) {
-        if (PLANE_SHADOW) V = plane_visibility(world, face_normal(pixel, d, n));
+        if (PLANE_SHADOW) V = plane_visibility(world, n, face_normal(pixel, words.y));
         else if (CASCADES > 1 || PCSS) V = sun_visibility(world, n, n_dot_l);
         else V = visibility(world, n, n_dot_l);
     }

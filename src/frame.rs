@@ -97,7 +97,7 @@ impl Frame {
             Ok(Self {
                 cover: Cover::new(device, &geometry)?,
                 shadow: settings.shadow(device, &geometry)?,
-                gbuffer: Gbuffer::new(device, &geometry, size)?,
+                gbuffer: Gbuffer::new(device, &geometry, size, asked.converges())?,
                 converging: Converging::new(device, &geometry, &settings)?,
                 geometry,
                 irradiance: Irradiance::new(recorder, settings.irradiance)?,
@@ -139,8 +139,8 @@ impl Frame {
         if new.shadow_maps() != old.shadow_maps() {
             self.shadow = new.shadow(&context, &self.geometry)?;
         }
-        if resized {
-            self.gbuffer = Gbuffer::new(&context, &self.geometry, size)?;
+        if resized || new.converges() != old.converges() {
+            self.gbuffer = Gbuffer::new(&context, &self.geometry, size, new.converges())?;
         }
         if resized || new.ssao != old.ssao {
             self.ssao = Ssao::new(&context, size, new.ssao)?;

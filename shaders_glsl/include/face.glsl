@@ -6,23 +6,18 @@ vec3 in_view(ivec2 pixel, float d) {
     return view_ray(uv, view.ray_scale, view.ray_offset) * (view.near / d);
 }
 
-/// From a pixel to the neighbour, on either side, that lies on the same face: the one of less change in depth.
-vec3 along(ivec2 pixel, ivec2 unit, float d, vec3 p) {
-    ivec2 last = textureSize(depth, 0) - 1;
-    ivec2 a = max(pixel - unit, ivec2(0));
-    ivec2 b = min(pixel + unit, last);
-    float da = texelFetch(depth, a, 0).r;
-    float db = texelFetch(depth, b, 0).r;
-    bool first = b == pixel || (a != pixel && abs(da - d) < abs(db - d));
-    return first ? p - in_view(a, max(da, 1e-9)) : in_view(b, max(db, 1e-9)) - p;
+/// World normal of the face under a pixel, on the viewer's side: of the plane whose reversed depth changes with these slopes
+/// (see face_slope.glsl).
+vec3 face_normal(ivec2 pixel, uint slopes) {
+    vec2 uv = (vec2(pixel) + 0.5) / vec2(textureSize(depth, 0));
+    vec2 ray = view_ray(uv, view.ray_scale, view.ray_offset).xy;
+    vec2 slope = unpackHalf2x16(slopes) / 256.0 * (0.5 * vec2(textureSize(depth, 0)) / view.ray_scale);
+    return view.world_from_view * normalize(vec3(-slope, 1.0 - dot(slope, ray)));
 }
 
-/// World normal of the face itself, on the viewer's side. Where no neighbour lies on it, the shading normal n.
-vec3 face_normal(ivec2 pixel, float d, vec3 n) {
-    vec3 p = in_view(pixel, d);
-    vec3 g = cross(along(pixel, ivec2(1, 0), d, p), along(pixel, ivec2(0, 1), d, p));
-    g = view.world_from_view * normalize(dot(g, p) > 0.0 ? -g : g);
-    return dot(g, n) > 0.8 ? g : n;
+/// Whether a face turns its back to a light. Not where the shading normal n leans far from it, as that of leaves: there n decides.
+bool is_turned_away(vec3 face, vec3 n, vec3 toward) {
+    return dot(face, n) > 0.8 && dot(face, toward) <= 0.0;
 }
 
 // Share of the rise that rounding of a caster's corners to the sub-texel grid may make wrong.

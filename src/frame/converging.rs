@@ -30,7 +30,7 @@ impl Converging {
         settings: &FrameSettings,
     ) -> Result<Option<Self>> {
         let sampling = &settings.sampling;
-        if sampling.visibility == Visibility::Ssao {
+        if !settings.converges() {
             return Ok(None);
         }
         let size = settings.size.to_array();

@@ -43,6 +43,11 @@ impl FrameSettings {
         self.samples > 1 && self.sampling.visibility == Visibility::Ssao
     }
 
+    /// Whether the mean of its frames has the sky's true visibility ([`crate::passes::dome::Dome`]).
+    pub(super) fn converges(&self) -> bool {
+        self.sampling.visibility != Visibility::Ssao
+    }
+
     /// What the sun's maps are made for.
     pub(super) fn shadow_maps(&self) -> (u32, u32) {
         (self.shadow_resolution, self.lighting.shadows.cascades)

@@ -174,16 +174,18 @@ impl<'r> Pass<'r> {
     }
 
     /// Draws to this pixel of the target alone; what the others hold is kept.
-    pub fn only(mut self, pixel: [u32; 2]) -> Self {
+    pub fn only(self, pixel: [u32; 2]) -> Self {
+        self.within(pixel, [1, 1])
+    }
+
+    /// Draws to, and clears, so many pixels of the target from a first one on; what the others hold is kept.
+    pub fn within(mut self, [x, y]: [u32; 2], [width, height]: [u32; 2]) -> Self {
         self.area = Some(vk::Rect2D {
             offset: vk::Offset2D {
-                x: pixel[0].cast_signed(),
-                y: pixel[1].cast_signed(),
+                x: x.cast_signed(),
+                y: y.cast_signed(),
             },
-            extent: vk::Extent2D {
-                width: 1,
-                height: 1,
-            },
+            extent: vk::Extent2D { width, height },
         });
         self
     }

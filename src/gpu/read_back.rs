@@ -30,6 +30,7 @@ fn shape(format: vk::Format) -> (usize, usize) {
         vk::Format::R16_SFLOAT | vk::Format::R16_UINT => (1, 2),
         // Packed words: the lower half, then the upper.
         vk::Format::R32_UINT => (2, 2),
+        vk::Format::R32G32_UINT => (4, 2),
         vk::Format::R16G16_SNORM | vk::Format::R16G16_SFLOAT => (2, 2),
         vk::Format::R16G16B16A16_SFLOAT => (4, 2),
         vk::Format::R32_SFLOAT | vk::Format::D32_SFLOAT => (1, 4),
@@ -195,7 +196,9 @@ fn floats(format: vk::Format, bytes: &[u8]) -> Vec<f32> {
         vk::Format::R8_UNORM | vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB => {
             bytes.iter().map(|b| f32::from(*b) / 255.0).collect()
         }
-        vk::Format::R16_UINT | vk::Format::R32_UINT => pairs().map(f32::from).collect(),
+        vk::Format::R16_UINT | vk::Format::R32_UINT | vk::Format::R32G32_UINT => {
+            pairs().map(f32::from).collect()
+        }
         vk::Format::R16G16_SNORM => pairs()
             .map(|b| (f32::from(b.cast_signed()) / 32767.0).max(-1.0))
             .collect(),

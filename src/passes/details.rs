@@ -15,7 +15,12 @@ pub struct Details {
     pipelines: BTreeMap<Kind, Pipeline>,
 }
 
-fn pipeline(context: &Arc<Context>, formats: &[Format], kind: Kind) -> Result<Pipeline> {
+fn pipeline(
+    context: &Arc<Context>,
+    formats: &[Format],
+    faces: bool,
+    kind: Kind,
+) -> Result<Pipeline> {
     let [position, normal, texcoord] = VERTEX;
     surface_pipeline(
         context,
@@ -37,18 +42,24 @@ fn pipeline(context: &Arc<Context>, formats: &[Format], kind: Kind) -> Result<Pi
             ("SPECULAR_MAP", kind.specular_map.into()),
             ("NORMAL_MAP", kind.normal_map.into()),
             ("CUT_OUT", kind.cut_out.into()),
+            ("FACES", faces.into()),
         ],
     )
 }
 
 impl Details {
-    /// Pipelines for the detailed parts of `geometry` and colour targets of these formats.
+    /// Pipelines for the detailed parts of `geometry` and colour targets of these formats; `faces` as of [`super::gbuffer::Gbuffer`].
     ///
     /// # Errors
     /// When the device refuses.
-    pub fn new(context: &Arc<Context>, geometry: &Geometry, formats: &[Format]) -> Result<Self> {
+    pub fn new(
+        context: &Arc<Context>,
+        geometry: &Geometry,
+        formats: &[Format],
+        faces: bool,
+    ) -> Result<Self> {
         let kinds = geometry.kinds().filter(Kind::is_detailed);
-        let pipelines = kinds.map(|kind| Ok((kind, pipeline(context, formats, kind)?)));
+        let pipelines = kinds.map(|kind| Ok((kind, pipeline(context, formats, faces, kind)?)));
         Ok(Self {
             pipelines: pipelines.collect::<Result<_>>()?,
         })

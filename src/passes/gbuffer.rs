@@ -57,7 +57,7 @@ pub struct Surfaces {
     /// ρ_d, and a factor on ρ_s; none of a scene without maps, whose table of materials has them.
     pub albedo: Option<Image>,
     /// Number of the material (lower half), and how thick the body is behind the surface (upper half: that of a float's
-    /// bits, metres).
+    /// bits, metres). Of frames that converge a second word has the slopes of the face, see `include/face_slope.glsl`.
     pub material: Image,
     /// Reversed depth: near / distance; 0 is background.
     pub depth: Image,
@@ -141,12 +141,22 @@ pub(super) fn surface_pipeline(
 }
 
 impl Gbuffer {
-    /// Images of `size` pixels, and what drawing `geometry` takes.
+    /// Images of `size` pixels, and what drawing `geometry` takes; `faces`: with the slopes of the face under each pixel.
     ///
     /// # Errors
     /// When the device refuses.
-    pub fn new(context: &Arc<Context>, geometry: &Geometry, size: [u32; 2]) -> Result<Self> {
-        let mut formats = vec![Format::R32_UINT, Format::R32_UINT];
+    pub fn new(
+        context: &Arc<Context>,
+        geometry: &Geometry,
+        size: [u32; 2],
+        faces: bool,
+    ) -> Result<Self> {
+        let words = if faces {
+            Format::R32G32_UINT
+        } else {
+            Format::R32_UINT
+        };
+        let mut formats = vec![Format::R32_UINT, words];
         if geometry.has_albedo() {
             formats.push(Format::R16G16B16A16_SFLOAT);
         }
@@ -155,6 +165,7 @@ impl Gbuffer {
                 let constants = [
                     ("DIFFUSE_MAP", u32::from(diffuse)),
                     ("SPECULAR_MAP", u32::from(specular)),
+                    ("FACES", u32::from(faces)),
                 ];
                 let stages = [&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG];
                 surface_pipeline(context, "G-buffer", stages, &VERTEX, &formats, &constants)
@@ -176,10 +187,10 @@ impl Gbuffer {
                 [&shaders::GBUFFER_LEAN_VERT, &shaders::GBUFFER_LEAN_FRAG],
                 &VERTEX[..2],
                 &formats,
-                &[],
+                &[("FACES", u32::from(faces))],
             )?,
             pipelines,
-            details: Details::new(context, geometry, &formats)?,
+            details: Details::new(context, geometry, &formats, faces)?,
             surfaces,
         })
     }

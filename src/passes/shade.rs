@@ -38,6 +38,11 @@ impl Shade {
         ends: [[f32::NEG_INFINITY, f32::INFINITY]; DIRECTIONS],
     };
 
+    /// Whether it is nothing.
+    pub fn is_nothing(&self) -> bool {
+        self.ends.iter().any(|[low, high]| low > high)
+    }
+
     /// Takes in a box.
     pub fn add(&mut self, bounds: &Bounds) {
         let (centre, half) = (bounds.centre(), 0.5 * bounds.extent());
@@ -105,7 +110,9 @@ mod tests {
             !shade.may_be_shaded_by(&at(Vec3::ZERO)),
             "nothing is shaded"
         );
+        assert!(shade.is_nothing() && shade.grown(1.0).with_room().is_nothing());
         shade.add(&at(Vec3::ZERO).bounds);
+        assert!(!shade.is_nothing() && !Shade::ALL.is_nothing());
         for distance in [0.0, 5.0, 1e4] {
             assert!(shade.may_be_shaded_by(&at(toward * distance)), "{distance}");
         }

@@ -60,7 +60,7 @@ impl Casters {
         })
     }
 
-    /// Draws all maps of an image.
+    /// Draws maps of an image. What lies beside the rectangle around them is not even cleared.
     pub fn record(
         &self,
         recorder: &mut Recorder,
@@ -69,9 +69,11 @@ impl Casters {
         tiles: &[Tile],
         maps: &Image,
     ) {
+        let (first, size) = around(tiles);
         recorder
             .pass(name, &self.solid)
             .depth(maps, Load::Clear([0.0; 4]))
+            .within(first, size)
             .draws(|draws| {
                 for tile in tiles {
                     draws.window(tile.origin, [tile.edge; 2]);
@@ -85,6 +87,17 @@ impl Casters {
             record_cut_outs(recorder, pipeline, geometry, tiles, maps);
         }
     }
+}
+
+/// First texel and size of the rectangle around tiles.
+fn around(tiles: &[Tile]) -> ([u32; 2], [u32; 2]) {
+    let along = |axis: usize| {
+        let first = tiles.iter().map(|t| t.origin[axis]).min().unwrap_or(0);
+        let end = tiles.iter().map(|t| t.origin[axis] + t.edge).max();
+        (first, end.unwrap_or(first) - first)
+    };
+    let ((x, width), (y, height)) = (along(0), along(1));
+    ([x, y], [width, height])
 }
 
 fn record_cut_outs(
@@ -211,8 +224,12 @@ impl Shadow {
                 origin,
                 edge,
             };
+            // Cascades in which nothing is in view cost no more than their place; the first stands in when that is all of them.
+            let count = views.iter().filter(|v| !v.shade.is_nothing()).count();
+            let is_asked = |(view, _): &(&ShadowView, _)| count == 0 || !view.shade.is_nothing();
+            let asked = views.iter().zip(origins).filter(is_asked);
             let tiles: arrayvec::ArrayVec<Tile, MOST> =
-                views.iter().zip(origins).map(tile).collect();
+                asked.map(tile).take(count.max(1)).collect();
             self.casters
                 .record(recorder, "shadow map", geometry, &tiles, &self.depth);
             self.drawn = Some(views);

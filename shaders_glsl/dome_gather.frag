@@ -61,11 +61,11 @@ vec4 light_of_directions(vec3 world, vec3 n, vec3 face) {
     return vec4(visible, whole);
 }
 
-void gather(ivec2 pixel, float d) {
-    vec3 n = normal_unpack(texelFetch(normal, pixel, 0).r);
-    uvec2 word = texelFetch(material, pixel, 0).rg;
-    vec3 world = view.eye + view.world_from_view * in_view(pixel, d);
-    sky = light_of_directions(world, n, face_normal(pixel, word.y));
+void gather(vec2 uv, float d) {
+    vec3 n = normal_unpack(textureLod(normal, uv, 0.0).r);
+    uvec2 word = textureLod(material, uv, 0.0).rg;
+    vec3 world = view.eye + view.world_from_view * in_view(uv, d);
+    sky = light_of_directions(world, n, face_normal(uv, word.y));
     vec3 open = textureLod(sky_irradiance, n, 0.0).rgb;
     if (SHOW_OCCLUSION) {
         sky.rgb = vec3(luminance(sky.rgb));
@@ -73,18 +73,18 @@ void gather(ivec2 pixel, float d) {
         return;
     }
     vec3 reflected = vec3(1.0);
-    if (!SHOW_IRRADIANCE) reflected = pixel_albedo(ALBEDO_IMAGE, albedo, materials, word.x, pixel).rgb / PI;
+    if (!SHOW_IRRADIANCE) reflected = pixel_albedo(ALBEDO_IMAGE, albedo, materials, word.x, ivec2(gl_FragCoord.xy)).rgb / PI;
     sky *= vec4(reflected, luminance(reflected));
     rest.a = luminance(open) * luminance(reflected);
 }
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    float d = texelFetch(depth, pixel, 0).r;
+    vec2 uv = gl_FragCoord.xy / vec2(textureSize(depth, 0));
+    float d = textureLod(depth, uv, 0.0).r;
     sky = vec4(0.0);
-    rest = vec4(texelFetch(frame, pixel, 0).rgb, 0.0);
-    if (SKY && d > 0.0) gather(pixel, d);
+    rest = vec4(textureLod(frame, uv, 0.0).rgb, 0.0);
+    if (SKY && d > 0.0) gather(uv, d);
     if (push.share >= 1.0) return;
-    sky = mix(texelFetch(previous_sky, pixel, 0), sky, push.share);
-    rest = mix(texelFetch(previous_rest, pixel, 0), rest, push.share);
+    sky = mix(textureLod(previous_sky, uv, 0.0), sky, push.share);
+    rest = mix(textureLod(previous_rest, uv, 0.0), rest, push.share);
 }

@@ -48,20 +48,20 @@ layout(push_constant, scalar) uniform Push {
 // Lobes narrower than the directions lie apart would show which of them is nearest.
 const float SHARPEST = 256.0;
 
-void gather(ivec2 pixel, float d) {
-    uvec2 word = texelFetch(material, pixel, 0).rg;
+void gather(vec2 uv, float d) {
+    uvec2 word = textureLod(material, uv, 0.0).rg;
     vec4 m = texelFetch(materials, material_specular(word.x), 0);
-    vec3 rho_s = m.rgb * (pixel_albedo(ALBEDO_IMAGE, albedo, materials, word.x, pixel).a * push.specular_scale);
+    vec3 rho_s = m.rgb * (pixel_albedo(ALBEDO_IMAGE, albedo, materials, word.x, ivec2(gl_FragCoord.xy)).a * push.specular_scale);
     if (all(lessThanEqual(rho_s, vec3(0.0)))) return;
-    vec3 n = normal_unpack(texelFetch(normal, pixel, 0).r);
-    vec3 toward = view.world_from_view * in_view(pixel, d);
+    vec3 n = normal_unpack(textureLod(normal, uv, 0.0).r);
+    vec3 toward = view.world_from_view * in_view(uv, d);
     vec3 world = view.eye + toward;
     toward = normalize(toward);
     if (FRESNEL) rho_s = grazing(rho_s, m.a, -dot(toward, n));
     vec3 r = reflect(toward, n);
     mirror.rgb = rho_s * (NORMALIZED ? sky_in_lobe(sky_radiance, r, n, m.a, push.shift)
                                      : textureLod(sky_radiance, r, 0.0).rgb);
-    vec3 face = face_normal(pixel, word.y);
+    vec3 face = face_normal(uv, word.y);
     float p = clamp(m.a, 1.0, SHARPEST);
     for (int k = 0; k < DIRECTIONS; ++k) {
         vec3 w = dome.toward[k].xyz;
@@ -77,12 +77,12 @@ void gather(ivec2 pixel, float d) {
 }
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    float d = texelFetch(depth, pixel, 0).r;
+    vec2 uv = gl_FragCoord.xy / vec2(textureSize(depth, 0));
+    float d = textureLod(depth, uv, 0.0).r;
     mirror = vec4(0.0);
     lobe = 0.0;
-    if (d > 0.0) gather(pixel, d);
+    if (d > 0.0) gather(uv, d);
     if (push.share >= 1.0) return;
-    mirror = mix(texelFetch(previous_mirror, pixel, 0), mirror, push.share);
-    lobe = mix(texelFetch(previous_lobe, pixel, 0).r, lobe, push.share);
+    mirror = mix(textureLod(previous_mirror, uv, 0.0), mirror, push.share);
+    lobe = mix(textureLod(previous_lobe, uv, 0.0).r, lobe, push.share);
 }

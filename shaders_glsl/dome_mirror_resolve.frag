@@ -9,10 +9,10 @@ layout(set = 0, binding = 1) uniform sampler2D mirror;
 layout(set = 0, binding = 2) uniform sampler2D lobe;
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec4 reflected = texelFetch(mirror, pixel, 0);
-    float whole = texelFetch(lobe, pixel, 0).r;
+    vec2 uv = gl_FragCoord.xy / vec2(textureSize(picture, 0));
+    vec4 reflected = textureLod(mirror, uv, 0.0);
+    float whole = textureLod(lobe, uv, 0.0).r;
     // No direction in the lobe yet: nothing is known to hide the sky.
     float V = whole > 0.0 ? reflected.a / whole : 1.0;
-    radiance = vec4(texelFetch(picture, pixel, 0).rgb + V * reflected.rgb, 1.0);
+    radiance = vec4(textureLod(picture, uv, 0.0).rgb + V * reflected.rgb, 1.0);
 }

@@ -8,9 +8,9 @@ layout(set = 0, binding = 0) uniform sampler2D sky;
 layout(set = 0, binding = 1) uniform sampler2D rest;
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec4 visible = texelFetch(sky, pixel, 0);
-    vec4 other = texelFetch(rest, pixel, 0);
+    vec2 uv = gl_FragCoord.xy / vec2(textureSize(sky, 0));
+    vec4 visible = textureLod(sky, uv, 0.0);
+    vec4 other = textureLod(rest, uv, 0.0);
     vec3 light = visible.a > 0.0 ? visible.rgb * (other.a / visible.a) : vec3(0.0);
     radiance = vec4(light + other.rgb, 1.0);
 }

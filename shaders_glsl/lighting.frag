@@ -116,7 +116,7 @@ void main() {
 
     float V = 0.0;
     if (n_dot_l > 0.0) {
-        if (PLANE_SHADOW) V = plane_visibility(world, n, face_normal(pixel, words.y));
+        if (PLANE_SHADOW) V = plane_visibility(world, n, face_normal(uv, words.y));
         else if (CASCADES > 1 || PCSS) V = sun_visibility(world, n, n_dot_l);
         else V = visibility(world, n, n_dot_l);
     }

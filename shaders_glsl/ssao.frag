@@ -20,6 +20,8 @@ layout(set = 0, binding = 0) uniform usampler2D occluders;
 layout(set = 0, binding = 1) uniform usampler2D normal;
 layout(set = 0, binding = 2, scalar) uniform View { VIEW_BLOCK } view;
 
+layout(set = 0, binding = 5) uniform sampler2D depth;
+
 layout(set = 0, binding = 3) uniform sampler2D cover; // depth seen from the zenith, reversed: 1 is highest
 layout(set = 0, binding = 4, scalar) uniform Cover {
     mat4 from_view; // view space to the map's clip space
@@ -37,7 +39,7 @@ layout(push_constant, scalar) uniform Push {
 const int RAY_STEPS = 2;
 
 const float SECTORS = 32.0;
-// What rises less than this over the tangent plane (a sine) is that plane, not an occluder: samples lie at pixel centres,
+// What rises less than this over the face that is lit (a sine) is that face, not an occluder: samples lie at pixel centres,
 // beside the slice, where a plane seen at a grazing angle would pass for a horizon.
 const float FLAT = 0.02;
 
@@ -45,6 +47,7 @@ const float FLAT = 0.02;
 vec3 p;        // view space, metres
 vec3 v;        // unit, toward the eye
 vec3 n;        // unit
+vec3 face;     // normal of the face itself, unit: where normals are smooth, its own ends rise over the plane of n
 vec2 origin;   // texels
 vec2 ray_step; // of a texel, of rays with z = -1
 vec2 ray_base; // of texel 0
@@ -56,6 +59,26 @@ vec3 point(vec2 texel, float distance) {
 
 vec3 normal_at(ivec2 texel) {
     return normal_unpack(texelFetch(normal, texel * DOWNSCALE, 0).r) * view.world_from_view;
+}
+
+/// Relative change of depth toward the neighbour, on either side, that lies on the same face: the one of less change.
+float depth_slope(ivec2 pixel, ivec2 unit, float d) {
+    ivec2 last = textureSize(depth, 0) - 1;
+    float before = texelFetch(depth, max(pixel - unit, ivec2(0)), 0).r - d;
+    float after = texelFetch(depth, min(pixel + unit, last), 0).r - d;
+    // At the picture's edge there is one only.
+    bool is_first = any(lessThan(pixel - unit, ivec2(0)));
+    bool is_last = any(greaterThan(pixel + unit, last));
+    return (is_first || (!is_last && abs(after) < abs(before)) ? after : -before) / d;
+}
+
+/// The normal of the face under a pixel, from the plane in which reversed depth is linear over the picture (as of face.glsl). The
+/// shading normal where no neighbour lies on it.
+vec3 face_at(ivec2 pixel) {
+    float d = texelFetch(depth, pixel, 0).r;
+    vec2 slope = vec2(depth_slope(pixel, ivec2(1, 0), d), depth_slope(pixel, ivec2(0, 1), d)) * float(DOWNSCALE) / ray_step;
+    vec3 normal = normalize(vec3(-slope, 1.0 + dot(slope, p.xy / p.z)));
+    return dot(normal, n) > 0.8 ? normal : n;
 }
 
 /// Half of a slice: the side of the view direction toward which its axis points.
@@ -105,7 +128,7 @@ uint blocked_by(vec2 texel, Side side, float half_width, float dither) {
     float distance = packed_distance(word);
     vec3 delta = point(texel, distance) - p;
     float r2 = dot(delta, delta);
-    float over_plane = dot(delta, n);
+    float over_face = dot(delta, face);
     vec2 q = vec2(abs(dot(delta, side.axis)), dot(delta, v));
     // No farther back than the sphere of the radius: sqrt(1 - t) of its circle as a parabola.
     float t = min(q.x * q.x / (push.radius * push.radius), 1.0);
@@ -113,7 +136,7 @@ uint blocked_by(vec2 texel, Side side, float half_width, float dither) {
     float h = half_width * distance;
     float front_at = sectors_to(vec2(max(q.x - sign(q.y) * h, 0.0), q.y), side);
     float back_at = sectors_to(vec2(max(q.x + sign(back) * h, 0.0), back), side);
-    bool occludes = r2 < push.radius * push.radius && over_plane > 0.0 && over_plane * over_plane > FLAT * FLAT * r2;
+    bool occludes = r2 < push.radius * push.radius && over_face > 0.0 && over_face * over_face > FLAT * FLAT * r2;
     return occludes ? between(front_at, back_at, dither) : 0u;
 }
 
@@ -129,8 +152,8 @@ uint blocked_past(ivec2 texel, Side side, float dither) {
     float b = dot(q, away);
     float reach = sqrt(b * b + room) - b;
     // The plane that is lit hides nothing of itself.
-    float over_plane = dot(delta, n) + reach * (away.x * dot(n, side.axis) + away.y * dot(n, v));
-    if (over_plane <= FLAT * push.radius) return 0u;
+    float over_face = dot(delta, face) + reach * (away.x * dot(face, side.axis) + away.y * dot(face, v));
+    if (over_face <= FLAT * push.radius) return 0u;
     return between(sectors_to(q, side), sectors_to(q + away * reach, side), dither);
 }
 
@@ -241,6 +264,7 @@ void main() {
     p = point(vec2(texel), distance);
     v = normalize(-p);
     n = normal_at(texel);
+    face = face_at(texel * DOWNSCALE);
     origin = vec2(texel) + 0.5;
     // A pattern of 4x4 directions and step offsets, after Jimenez et al., taken out again by the blur.
     ivec2 cell = own & 3;

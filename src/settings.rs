@@ -152,7 +152,7 @@ pub struct Options {
     /// Radius of ambient occlusion, metres; 0 turns it off [default: 5].
     #[arg(long, value_name = "METRES", value_parser = values::ao_radius, allow_hyphen_values = true, help_heading = "Light")]
     pub ao_radius: Option<f64>,
-    /// Resolution of ambient occlusion [default: half].
+    /// Resolution of ambient occlusion [default: auto].
     #[arg(long, value_enum, value_name = "WHICH", help_heading = "Light")]
     pub ao_resolution: Option<AoResolution>,
     /// Multiplies every specular reflectance; 0 turns mirrors off [default: 1].

@@ -70,6 +70,32 @@ fn an_open_plane_sees_the_whole_sky() {
     worst.finish();
 }
 
+#[test]
+fn the_facets_of_a_smooth_body_do_not_hide_the_sky_from_it() {
+    let mut device = Device::new();
+    // Normals lean up to 11 degrees from the facets.
+    let scene = Model::default()
+        .sphere([0.0; 3], 1.0, 8, &matt(0.5))
+        .build();
+    // Single pixels at the edge of two facets take a face between them.
+    let mut worst = Worst::new("A of a sphere in the open against 1", 0.06);
+    let mut mean = Worst::new("its mean", 0.003);
+    for eye in [[0.0, 0.5, 3.5], [2.0, 2.4, 1.7]] {
+        let camera = camera(eye, [0.0; 3]);
+        for downscale in [1, 2] {
+            let picture = occlusion(&mut device, &scene, &camera, 5.0, downscale);
+            for (pixel, a) in picture.pixels() {
+                worst.see(a.x - 1.0, format!("{pixel:?} from {eye:?}, 1/{downscale}"));
+            }
+            let errors: Vec<f64> = picture.pixels().map(|(_, a)| a.x - 1.0).collect();
+            let error = errors.iter().sum::<f64>() / errors.len() as f64;
+            mean.see(error, format!("from {eye:?}, 1/{downscale}"));
+        }
+    }
+    mean.finish();
+    worst.finish();
+}
+
 /// A on the ground at a distance from the foot of a wall, both endless, counting what is nearer than `radius`.
 ///
 /// The wall at distance x is met within the radius by directions w with w·wall > c = x / radius. Cosine-weighted directions are

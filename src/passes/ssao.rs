@@ -164,6 +164,7 @@ impl Ssao {
             .pass("SSAO", &self.trace)
             .sample("occluders", &self.occluders, Sampler::Nearest)
             .sample("normal", &surfaces.normal, Sampler::Nearest)
+            .sample("depth", &surfaces.depth, Sampler::Nearest)
             .uniform("view", &view.block())
             .sample("cover", cover.image(), Sampler::Nearest)
             .uniform("zenith", &cover.block(view, self.settings.radius))

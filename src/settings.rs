@@ -177,7 +177,7 @@ pub struct Options {
     /// Edges of the sun's shadow in a single frame: a texel of the map, or the penumbra of the sun's disc [default: map].
     #[arg(long, value_enum, value_name = "HOW", help_heading = "Light")]
     pub penumbra: Option<Penumbra>,
-    /// Directions of the sky in each sample of --visibility dome, 1 to 16 [default: 8].
+    /// Directions of the sky in each sample of --visibility dome, 1 to 16 [default: 12].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_DIRECTIONS)), help_heading = "Light")]
     pub dome_directions: Option<u32>,
     /// Edge of the shadow map of each of them, texels, 64 to 4096 [default: 1024].

@@ -56,7 +56,7 @@ pub struct DomeSettings {
 impl Default for DomeSettings {
     fn default() -> Self {
         Self {
-            directions: 8,
+            directions: 12,
             map_edge: 1024,
             seed: 0,
         }

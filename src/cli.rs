@@ -14,7 +14,7 @@ use crate::settings::{Optional, Options, one_line};
 pub enum Command {
     /// Render one picture to a file, without a window.
     Render {
-        /// Scene file (.toml) or model (.obj, .gltf, .glb) [default: the bundled scene].
+        /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, island) [default: colonnade].
         scene: Option<PathBuf>,
         /// Where to: .png is tone-mapped, .exr is scene-linear cd/m² (lux for irradiance).
         #[arg(short, long, value_name = "FILE", default_value = "skylight.png", value_parser = picture_path)]
@@ -25,7 +25,7 @@ pub enum Command {
     },
     /// Open a window and walk through daylight; press ? in it for the keys.
     View {
-        /// Scene file (.toml) or model (.obj) [default: the bundled scene].
+        /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, island) [default: colonnade].
         scene: Option<PathBuf>,
         /// Go on with the settings and the camera that this scene was left with.
         #[arg(long)]

@@ -238,6 +238,20 @@ fn nothing_given_writes_skylight_png() {
 }
 
 #[test]
+fn bundled_scenes_go_by_their_names_unless_a_file_does() {
+    let place = Place::new();
+    let words = ["render", "island", "--camera", "veranda", "-o", "i.png"];
+    place.run(&[&words[..], &SMALL].concat()).succeeded();
+    let (parameters, size, _) = png(&place.path().join("i.png"));
+    assert_eq!(size, [64, 36]);
+    assert!(parameters["command"].contains(" island "));
+    // A file that is called so is a model without an extension.
+    place.put("island", OBJ);
+    let ended = place.run(&["render", "island", "-o", "j.png"]);
+    ended.failed(1, &["island"]);
+}
+
+#[test]
 fn an_exr_is_32_bit_float_with_its_parameters() {
     let place = Place(tempfile::tempdir().expect("a scratch folder"));
     place.render(&["-o", "a.EXR", "--sun", "215,42"]).silently();

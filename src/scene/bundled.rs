@@ -1,11 +1,11 @@
-//! The scene that is built into the program.
+//! The scenes that are built into the program.
 
 use std::path::Path;
 
 use super::files::Files;
 use super::{LoadOptions, Loaded, Progress, SceneError, load_from};
 
-/// The files of the bundled scene; `examples/make_colonnade.rs` makes the model.
+/// Their files; `examples/make_colonnade.rs` and `examples/make_island` make the models.
 static FILES: &[(&str, &[u8])] = &[
     (
         "colonnade.toml",
@@ -19,26 +19,34 @@ static FILES: &[(&str, &[u8])] = &[
         "colonnade.mtl",
         include_bytes!("../../assets/colonnade.mtl"),
     ),
+    ("island.toml", include_bytes!("../../assets/island.toml")),
+    ("island.glb", include_bytes!("../../assets/island.glb")),
 ];
 
-/// The bundled scene: a small colonnade with steps, a pool and a low sun. It needs no file on the disk.
+/// By which names they are asked for; the first is shown when none is.
+pub const BUNDLED: [&str; 2] = ["colonnade", "island"];
+
+/// The scene that is shown when none is asked for: a small colonnade with steps, a pool and a low sun. It needs no file on the disk.
 ///
 /// # Errors
 /// None with the files of the project; a test loads it.
 pub fn bundled(options: &LoadOptions) -> Result<Loaded, SceneError> {
-    load_bundled(options, &|_, _| ())
+    load_bundled(BUNDLED[0], options, &|_, _| ())
+}
+
+/// The bundled scene that a path asks for: one of [`BUNDLED`], where nothing on the disk is called so.
+pub fn bundled_name(path: &Path) -> Option<&'static str> {
+    let name = BUNDLED.into_iter().find(|name| path == Path::new(name))?;
+    (!path.exists()).then_some(name)
 }
 
 pub(super) fn load_bundled(
+    name: &str,
     options: &LoadOptions,
     progress: Progress<'_>,
 ) -> Result<Loaded, SceneError> {
-    load_from(
-        &mut Files::embedded(FILES),
-        Path::new("colonnade.toml"),
-        options,
-        progress,
-    )
+    let file = Path::new(name).with_extension("toml");
+    load_from(&mut Files::embedded(FILES), &file, options, progress)
 }
 
 #[cfg(test)]
@@ -60,6 +68,20 @@ mod tests {
         );
         assert!(loaded.options.iter().any(|(key, _)| key == "eye"));
         let bytes: usize = FILES.iter().map(|(_, bytes)| bytes.len()).sum();
-        assert!(bytes < 3_000_000, "{bytes} bytes");
+        assert!(bytes < 8_000_000, "{bytes} bytes");
+    }
+
+    #[test]
+    fn every_bundled_scene_loads_by_its_name() {
+        for name in BUNDLED {
+            assert_eq!(bundled_name(Path::new(name)), Some(name));
+            let options = LoadOptions::default();
+            let loaded = load_bundled(name, &options, &|_, _| ()).expect(name);
+            assert_eq!(loaded.scene.warnings, Vec::<String>::new());
+            assert_eq!(loaded.cameras.len(), 3, "{name}");
+        }
+        assert_eq!(bundled_name(Path::new("colonnade.toml")), None);
+        // This folder is there.
+        assert_eq!(bundled_name(Path::new("src")), None);
     }
 }

@@ -43,7 +43,7 @@ use serde::{Deserialize, Serialize};
 
 pub use bodies::{Bodies, Body};
 pub use bounds::Bounds;
-pub use bundled::bundled;
+pub use bundled::{BUNDLED, bundled, bundled_name};
 pub use camera::{Camera, DEFAULT_FOV_DEG};
 pub use clusters::{Cluster, Clusters, Solid};
 pub use error::SceneError;
@@ -236,8 +236,8 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     load_telling(Some(path), options, &|_, _| ())
 }
 
-/// As [`load`], or the bundled scene without a path, telling how far it is. It needs no device and may run on any thread,
-/// so that an event loop can go on meanwhile.
+/// As [`load`], or a bundled scene by its name ([`BUNDLED`]) or, without a path, the first of them, telling how far it is. It needs
+/// no device and may run on any thread, so that an event loop can go on meanwhile.
 ///
 /// # Errors
 /// As [`load`].
@@ -247,10 +247,12 @@ pub fn load_telling(
     progress: Progress<'_>,
 ) -> Result<Loaded, SceneError> {
     let disk = Files::disk(options.max_file_bytes);
-    match path {
-        Some(path) => load_by_cache(disk, path, options, progress),
-        None => bundled::load_bundled(options, progress),
-    }
+    let name = match path.map(|path| (path, bundled_name(path))) {
+        Some((path, None)) => return load_by_cache(disk, path, options, progress),
+        Some((_, Some(name))) => name,
+        None => BUNDLED[0],
+    };
+    bundled::load_bundled(name, options, progress)
 }
 
 /// From the cache if there is one, the model is large and its entry sound; else from the files, and into the cache.

@@ -34,7 +34,7 @@ use sweep::{Sweep, SweepReport};
 /// What to measure, and where to put it.
 #[derive(Debug, Clone, Default, PartialEq, Args)]
 pub struct BenchWishes {
-    /// Scene file (.toml) or model (.obj) [default: the bundled scene].
+    /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, island) [default: colonnade].
     pub scene: Option<PathBuf>,
     /// Write the table as JSON too.
     #[arg(long, value_name = "FILE")]

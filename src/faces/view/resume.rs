@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 use crate::output::write_whole;
+use crate::scene::{BUNDLED, bundled_name};
 use crate::settings::{Options, SettingsError};
 
 use super::document::Document;
@@ -12,9 +13,11 @@ use super::document::Document;
 /// The file of a scene: its name for people, and the whole path as a number so that two of a name do not meet.
 fn file_of(scene: Option<&Path>) -> Option<PathBuf> {
     let folder = dirs::state_dir().or_else(dirs::data_local_dir)?;
-    let name = match scene {
-        None => "bundled".to_owned(),
-        Some(path) => {
+    let bundled = scene.map_or(Some(BUNDLED[0]), bundled_name);
+    let name = match (bundled, scene.unwrap_or(Path::new(""))) {
+        (Some(name), _) if name == BUNDLED[0] => "bundled".to_owned(),
+        (Some(name), _) => format!("bundled-{name}"),
+        (None, path) => {
             let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
             format!(

@@ -3,6 +3,7 @@
 //! Each map covers what is seen within a cube around the eye and follows the view in the steps of [`shadow_fit::fit`], so that
 //! shadows do not swim. A point takes the finest map whose cube it is in, and blends into the next toward the cube's side.
 
+use arrayvec::ArrayVec;
 use glam::Vec3;
 
 use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
@@ -38,6 +39,8 @@ const COARSE: f32 = 0.08;
 const VAST: f32 = 1000.0;
 /// From the eye to the side of the nearest cascade's cube, metres.
 const NEAREST: f32 = 20.0;
+/// Texel of a map over that of the next, up to which it is worth its drawing.
+const FINER: f32 = 0.75;
 /// Share of a cube from which on its map is blended into the next: that of `include/sun_shadow.glsl`.
 const BLEND: f32 = 0.85;
 
@@ -85,7 +88,8 @@ impl SunViews {
         }
     }
 
-    /// Fits `count` maps of `resolution` texels a side; see [`shadow_fit::fit`].
+    /// Fits up to `count` maps of `resolution` texels a side; see [`shadow_fit::fit`]. A map that would hardly be finer than the
+    /// next is left out: where the view is narrow, or from far away, one shows as much as several.
     pub fn fit(
         sun_direction: Vec3,
         bounds: &Bounds,
@@ -94,23 +98,28 @@ impl SunViews {
         resolution: u32,
         count: u32,
     ) -> Self {
-        let whole = shadow_fit::fit(sun_direction, bounds, casters, view, resolution);
+        let of = |part: &Bounds| shadow_fit::fit(sun_direction, part, casters, view, resolution);
+        let whole = of(bounds);
         let mut fitted = Self::one(whole);
         fitted.count = (count as usize).clamp(1, MOST);
         let reaches = reaches(bounds, view.camera.eye, fitted.count);
-        for (k, reach) in reaches.into_iter().enumerate().take(fitted.count - 1) {
+        let (mut coarser, mut maps) = (whole, ArrayVec::<_, MOST>::new());
+        for reach in reaches.into_iter().take(fitted.count - 1).rev() {
             let around = Bounds {
                 min: bounds.min.max(view.camera.eye - reach),
                 max: bounds.max.min(view.camera.eye + reach),
             };
-            if !around.is_empty() {
-                fitted.views[k] =
-                    shadow_fit::fit(sun_direction, &around, casters, view, resolution);
-                fitted.reach[k] = reach;
-            } else {
-                // Nothing is that near.
-                fitted.reach[k] = 0.0;
+            // Or nothing is that near.
+            let map = (!around.is_empty()).then(|| of(&around));
+            if let Some(map) = map.filter(|map| map.texel <= FINER * coarser.texel) {
+                coarser = map;
+                maps.push((map, reach));
             }
+        }
+        // The maps after these are the whole again, where nothing takes it from.
+        for (k, (map, reach)) in maps.into_iter().rev().enumerate() {
+            fitted.views[k] = map;
+            fitted.reach[k] = reach;
         }
         fitted
     }
@@ -243,6 +252,33 @@ mod tests {
         let whole = shadow_fit::fit(sun, &bounds, &bounds, &view, 2048);
         assert_eq!(views.iter().last(), Some(&whole));
         assert!(views.reach.is_sorted());
+    }
+
+    #[test]
+    fn maps_that_are_hardly_finer_than_the_next_are_left_out() {
+        let (sun, bounds) = (Vec3::new(0.5, 0.7, 0.2).normalize(), square(200.0));
+        // From far away all that is seen is about as far.
+        let mut view = view(Vec3::new(300.0, 300.0, 400.0));
+        view.camera.target = Vec3::ZERO;
+        view.camera.fov_deg = 5.0;
+        let mut views = SunViews::fit(sun, &bounds, &bounds, &view, 2048, 3);
+        let mut used = views.reach.iter().take(3).filter(|r| r.is_finite());
+        assert!(used.all(|r| *r > 0.0) && views.reach.is_sorted());
+        let kept: Vec<f32> = views.iter().map(|v| v.texel).collect();
+        assert!(kept.windows(2).all(|t| t[0] < 0.8 * t[1] || t[0] == t[1]));
+        let finer = kept.windows(2).filter(|t| t[0] <= FINER * t[1]).count();
+        assert_eq!(finer, views.reach.iter().filter(|r| r.is_finite()).count());
+        // Those behind the whole are never looked at, and so never drawn.
+        let cluster = Cluster {
+            first: 0,
+            count: 3,
+            bounds,
+            solid: None,
+            is_wound: false,
+        };
+        views.shade([&cluster], view.camera.eye, &Shadows::default());
+        let drawn = views.iter().filter(|v| !v.shade.is_nothing()).count();
+        assert_eq!(drawn, finer + 1, "{kept:?}");
     }
 
     #[test]

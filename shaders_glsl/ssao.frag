@@ -72,12 +72,11 @@ float depth_slope(ivec2 pixel, ivec2 unit, float d) {
     return (is_first || (!is_last && abs(after) < abs(before)) ? after : -before) / d;
 }
 
-/// The normal of the face under a pixel, from the plane in which reversed depth is linear over the picture (as of face.glsl). The
-/// shading normal where no neighbour lies on it.
+/// The normal of the face under a pixel; the shading normal where no neighbour lies on it.
 vec3 face_at(ivec2 pixel) {
     float d = texelFetch(depth, pixel, 0).r;
     vec2 slope = vec2(depth_slope(pixel, ivec2(1, 0), d), depth_slope(pixel, ivec2(0, 1), d)) * float(DOWNSCALE) / ray_step;
-    vec3 normal = normalize(vec3(-slope, 1.0 + dot(slope, p.xy / p.z)));
+    vec3 normal = normal_of_slopes(slope, -p.xy / p.z);
     return dot(normal, n) > 0.8 ? normal : n;
 }
 

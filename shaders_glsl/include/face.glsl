@@ -10,7 +10,7 @@ vec3 in_view(vec2 uv, float d) {
 vec3 face_normal(vec2 uv, uint slopes) {
     vec2 ray = view_ray(uv, view.ray_scale, view.ray_offset).xy;
     vec2 slope = unpackHalf2x16(slopes) / 256.0 * (0.5 * vec2(textureSize(depth, 0)) / view.ray_scale);
-    return view.world_from_view * normalize(vec3(-slope, 1.0 - dot(slope, ray)));
+    return view.world_from_view * normal_of_slopes(slope, ray);
 }
 
 /// Whether a face turns its back to a light. Not where the shading normal n leans far from it, as that of leaves: there n decides.

@@ -13,3 +13,9 @@
 vec3 view_ray(vec2 uv, vec2 ray_scale, vec2 ray_offset) {
     return vec3((uv * 2.0 - 1.0) * ray_scale + ray_offset, -1.0);
 }
+
+/// View-space normal, on the viewer's side, of a plane whose reversed depth changes by these shares of it with the ray's x and y: depth is linear
+/// over the picture, so that two slopes are all there is to know of a plane.
+vec3 normal_of_slopes(vec2 slopes, vec2 ray) {
+    return normalize(vec3(-slopes, 1.0 - dot(slopes, ray)));
+}

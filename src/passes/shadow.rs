@@ -224,12 +224,14 @@ impl Shadow {
                 origin,
                 edge,
             };
+            let mut tiles: arrayvec::ArrayVec<Tile, MOST> =
+                views.iter().zip(origins).map(tile).collect();
             // Cascades in which nothing is in view cost no more than their place; the first stands in when that is all of them.
-            let count = views.iter().filter(|v| !v.shade.is_nothing()).count();
-            let is_asked = |(view, _): &(&ShadowView, _)| count == 0 || !view.shade.is_nothing();
-            let asked = views.iter().zip(origins).filter(is_asked);
-            let tiles: arrayvec::ArrayVec<Tile, MOST> =
-                asked.map(tile).take(count.max(1)).collect();
+            let first = tiles.first().copied();
+            tiles.retain(|tile| !tile.view.shade.is_nothing());
+            if tiles.is_empty() {
+                tiles.extend(first);
+            }
             self.casters
                 .record(recorder, "shadow map", geometry, &tiles, &self.depth);
             self.drawn = Some(views);

@@ -9,6 +9,7 @@ use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, Allocator, Allocat
 
 use super::error::{During, GpuError, Result};
 use super::fault::{Call, Faults};
+use super::heap::keep_freed_memory;
 use super::instance::{InstanceGuard, has_instance_extension, load};
 use super::pipeline_cache::{CacheState, Key, PipelineCache};
 use super::sampler::{self, Sampler};
@@ -118,6 +119,9 @@ impl Context {
             options.device.as_deref(),
         )?;
         let push = chosen.summary.has(Optional::PushDescriptor);
+        if chosen.summary.is_software() {
+            keep_freed_memory();
+        }
         startup.done("choice of the device");
         let device = create_device(&instance.raw, &chosen, surface.is_some())?;
         // SAFETY: `chosen` comes from this instance; the queue family was found on it.

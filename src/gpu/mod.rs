@@ -19,6 +19,7 @@ mod context;
 mod draws;
 mod error;
 mod fault;
+mod heap;
 #[cfg(feature = "hot-reload")]
 mod hot_reload;
 mod image;

@@ -56,7 +56,15 @@ impl DeviceSummary {
     pub fn has(&self, optional: Optional) -> bool {
         self.optional.contains(&(optional, true))
     }
+
+    /// Whether it runs on the CPU.
+    pub fn is_software(&self) -> bool {
+        self.kind == SOFTWARE
+    }
 }
+
+/// What [`DeviceSummary::kind`] says of a device that runs on the CPU.
+const SOFTWARE: &str = "software";
 
 /// A device under consideration.
 pub(super) struct Candidate {
@@ -85,7 +93,7 @@ fn kind_and_rank(kind: vk::PhysicalDeviceType) -> (&'static str, u32) {
         vk::PhysicalDeviceType::DISCRETE_GPU => ("discrete", 0),
         vk::PhysicalDeviceType::INTEGRATED_GPU => ("integrated", 1),
         vk::PhysicalDeviceType::VIRTUAL_GPU => ("virtual", 2),
-        vk::PhysicalDeviceType::CPU => ("software", 3),
+        vk::PhysicalDeviceType::CPU => (SOFTWARE, 3),
         _ => ("other", 4),
     }
 }

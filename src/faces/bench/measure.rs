@@ -43,7 +43,7 @@ pub struct Measured {
 
 /// How a device's passes can be timed: software drivers attribute timestamps to the wrong pass.
 pub fn trustworthy(device: &DeviceSummary) -> Timing {
-    if device.kind == "software" {
+    if device.is_software() {
         Timing::Isolated
     } else {
         Timing::Timestamps

@@ -176,7 +176,7 @@ impl Stage {
     /// Times passes from the next frame on, or stops it. Timestamps of software drivers mean little: there each pass is
     /// submitted alone.
     pub(super) fn set_timed(&mut self, timed: bool) {
-        let software = self.context.summary().kind == "software";
+        let software = self.context.summary().is_software();
         self.presenter.set_timing(match (timed, software) {
             (false, _) => Timing::Off,
             (true, true) => Timing::Isolated,

@@ -25,7 +25,7 @@ layout(constant_id = 3) const int DIRECTIONS = 4;
 layout(constant_id = 4) const bool ALBEDO_IMAGE = true;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform usampler2D normal;
+layout(set = 0, binding = 1) uniform usampler2D words;
 layout(set = 0, binding = 2) uniform sampler2D albedo;         // with ALBEDO_IMAGE; else any
 layout(set = 0, binding = 3) uniform sampler2D frame;          // kcd/m^2, without the sky's light
 layout(set = 0, binding = 4) uniform sampler2D previous_sky;
@@ -34,8 +34,7 @@ layout(set = 0, binding = 6) uniform sampler2D maps;           // reversed: 1 is
 layout(set = 0, binding = 7) uniform samplerCube sky_irradiance; // E of sky and ground, klx
 layout(set = 0, binding = 8, scalar) uniform View { VIEW_BLOCK } view;
 layout(set = 0, binding = 9, scalar) uniform Dome { DOME_BLOCK } dome;
-layout(set = 0, binding = 10) uniform usampler2D material;
-layout(set = 0, binding = 11) uniform sampler2D materials; // see materials.glsl
+layout(set = 0, binding = 10) uniform sampler2D materials; // see materials.glsl
 
 layout(push_constant, scalar) uniform Push {
     vec3 ground; // radiance below the horizon, kcd/m^2
@@ -62,10 +61,10 @@ vec4 light_of_directions(vec3 world, vec3 n, vec3 face) {
 }
 
 void gather(vec2 uv, float d) {
-    vec3 n = normal_unpack(textureLod(normal, uv, 0.0).r);
-    uvec2 word = textureLod(material, uv, 0.0).rg;
+    uvec3 own = textureLod(words, uv, 0.0).xyz;
+    vec3 n = normal_unpack(own.x);
     vec3 world = view.eye + view.world_from_view * in_view(uv, d);
-    sky = light_of_directions(world, n, face_normal(uv, word.y));
+    sky = light_of_directions(world, n, face_normal(uv, own.z));
     vec3 open = textureLod(sky_irradiance, n, 0.0).rgb;
     if (SHOW_OCCLUSION) {
         sky.rgb = vec3(luminance(sky.rgb));
@@ -73,7 +72,7 @@ void gather(vec2 uv, float d) {
         return;
     }
     vec3 reflected = vec3(1.0);
-    if (!SHOW_IRRADIANCE) reflected = pixel_albedo(ALBEDO_IMAGE, albedo, materials, word.x, ivec2(gl_FragCoord.xy)).rgb / PI;
+    if (!SHOW_IRRADIANCE) reflected = pixel_albedo(ALBEDO_IMAGE, albedo, materials, own.y, ivec2(gl_FragCoord.xy)).rgb / PI;
     sky *= vec4(reflected, luminance(reflected));
     rest.a = luminance(open) * luminance(reflected);
 }

@@ -26,16 +26,15 @@ layout(constant_id = 2) const bool NORMALIZED = false;
 layout(constant_id = 3) const bool ALBEDO_IMAGE = true;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform usampler2D normal;
+layout(set = 0, binding = 1) uniform usampler2D words;
 layout(set = 0, binding = 2) uniform sampler2D albedo;         // with ALBEDO_IMAGE; else any
-layout(set = 0, binding = 3) uniform usampler2D material;
-layout(set = 0, binding = 4) uniform sampler2D previous_mirror;
-layout(set = 0, binding = 5) uniform sampler2D previous_lobe;
-layout(set = 0, binding = 6) uniform sampler2D maps;           // reversed: 1 is nearest the light
-layout(set = 0, binding = 7) uniform samplerCube sky_radiance; // L, kcd/m^2, without the disc
-layout(set = 0, binding = 8) uniform sampler2D materials;      // see materials.glsl
-layout(set = 0, binding = 9, scalar) uniform View { VIEW_BLOCK } view;
-layout(set = 0, binding = 10, scalar) uniform Dome { DOME_BLOCK } dome;
+layout(set = 0, binding = 3) uniform sampler2D previous_mirror;
+layout(set = 0, binding = 4) uniform sampler2D previous_lobe;
+layout(set = 0, binding = 5) uniform sampler2D maps;           // reversed: 1 is nearest the light
+layout(set = 0, binding = 6) uniform samplerCube sky_radiance; // L, kcd/m^2, without the disc
+layout(set = 0, binding = 7) uniform sampler2D materials;      // see materials.glsl
+layout(set = 0, binding = 8, scalar) uniform View { VIEW_BLOCK } view;
+layout(set = 0, binding = 9, scalar) uniform Dome { DOME_BLOCK } dome;
 
 layout(push_constant, scalar) uniform Push {
     vec2 shift;           // of the samples of the lobe, 0..1
@@ -49,11 +48,11 @@ layout(push_constant, scalar) uniform Push {
 const float SHARPEST = 256.0;
 
 void gather(vec2 uv, float d) {
-    uvec2 word = textureLod(material, uv, 0.0).rg;
-    vec4 m = texelFetch(materials, material_specular(word.x), 0);
-    vec3 rho_s = m.rgb * (pixel_albedo(ALBEDO_IMAGE, albedo, materials, word.x, ivec2(gl_FragCoord.xy)).a * push.specular_scale);
+    uvec3 own = textureLod(words, uv, 0.0).xyz;
+    vec4 m = texelFetch(materials, material_specular(own.y), 0);
+    vec3 rho_s = m.rgb * (pixel_albedo(ALBEDO_IMAGE, albedo, materials, own.y, ivec2(gl_FragCoord.xy)).a * push.specular_scale);
     if (all(lessThanEqual(rho_s, vec3(0.0)))) return;
-    vec3 n = normal_unpack(textureLod(normal, uv, 0.0).r);
+    vec3 n = normal_unpack(own.x);
     vec3 toward = view.world_from_view * in_view(uv, d);
     vec3 world = view.eye + toward;
     toward = normalize(toward);
@@ -61,7 +60,7 @@ void gather(vec2 uv, float d) {
     vec3 r = reflect(toward, n);
     mirror.rgb = rho_s * (NORMALIZED ? sky_in_lobe(sky_radiance, r, n, m.a, push.shift)
                                      : textureLod(sky_radiance, r, 0.0).rgb);
-    vec3 face = face_normal(uv, word.y);
+    vec3 face = face_normal(uv, own.z);
     float p = clamp(m.a, 1.0, SHARPEST);
     for (int k = 0; k < DIRECTIONS; ++k) {
         vec3 w = dome.toward[k].xyz;

@@ -16,9 +16,9 @@ layout(location = 3) in vec4 surface_colour;  // linear RGBA
 layout(location = 4) in vec4 surface_tangent; // w: sign of the bitangent
 layout(location = 5) flat in float thickness; // behind the surface, metres
 
-layout(location = 0) out uint normal;   // world, octahedral
-layout(location = 1) out uvec2 material; // x: lower half: column of the table of materials; upper: of the thickness' bits; y: the face's slopes
-layout(location = 2) out vec4 albedo;   // rgb: rho_d; a: factor on rho_s
+// x: world normal, octahedral; y: lower half: column of the table of materials; upper: of the thickness' bits; z: the face's slopes
+layout(location = 0) out uvec4 words;
+layout(location = 1) out vec4 albedo;   // rgb: rho_d; a: factor on rho_s
 
 layout(constant_id = 0) const bool DIFFUSE_MAP = true;
 layout(constant_id = 1) const bool SPECULAR_MAP = true;
@@ -58,7 +58,6 @@ void main() {
     float gloss = 1.0;
     if (SPECULAR_MAP) gloss = dot(texture(specular_map, surface_uv, -push.sharpen).rgb, vec3(1.0 / 3.0));
     if (CUT_OUT && surface.a < push.cutoff) discard;
-    normal = normal_pack(n);
     albedo = vec4(surface.rgb, gloss);
-    material = uvec2(material_word(push.material, thickness), face_slopes());
+    words = uvec4(normal_pack(n), material_word(push.material, thickness), face_slopes(), 0u);
 }

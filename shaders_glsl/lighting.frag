@@ -43,15 +43,14 @@ layout(constant_id = 16) const bool PCSS = false;
 layout(constant_id = 17) const bool NORMALIZED = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform usampler2D normal;
+layout(set = 0, binding = 1) uniform usampler2D words;
 layout(set = 0, binding = 2) uniform sampler2D albedo;      // with ALBEDO_IMAGE; else any
-layout(set = 0, binding = 3) uniform usampler2D material;
-layout(set = 0, binding = 4) uniform usampler2D occlusion;
-layout(set = 0, binding = 5) uniform sampler2D shadow_map; // reversed: 1 is nearest the sun
-layout(set = 0, binding = 6) uniform samplerCube sky_irradiance; // E, klx
-layout(set = 0, binding = 7) uniform samplerCube sky_radiance;   // L, kcd/m^2, without the disc
-layout(set = 0, binding = 8, scalar) uniform View { VIEW_BLOCK } view;
-layout(set = 0, binding = 9, scalar) uniform Sun {
+layout(set = 0, binding = 3) uniform usampler2D occlusion;
+layout(set = 0, binding = 4) uniform sampler2D shadow_map; // reversed: 1 is nearest the sun
+layout(set = 0, binding = 5) uniform samplerCube sky_irradiance; // E, klx
+layout(set = 0, binding = 6) uniform samplerCube sky_radiance;   // L, kcd/m^2, without the disc
+layout(set = 0, binding = 7, scalar) uniform View { VIEW_BLOCK } view;
+layout(set = 0, binding = 8, scalar) uniform Sun {
     mat4 shadow_from_world;
     vec3 direction;       // unit, toward the sun
     vec3 illuminance;     // E_sun at normal incidence, klx
@@ -62,7 +61,7 @@ layout(set = 0, binding = 9, scalar) uniform Sun {
     ivec2 occlusion_from; // pixel of the occlusion's picture that is this one's first
 } sun;
 
-layout(set = 0, binding = 10) uniform sampler2D materials; // see materials.glsl
+layout(set = 0, binding = 9) uniform sampler2D materials; // see materials.glsl
 
 #include "face.glsl"
 #include "sun_shadow.glsl"
@@ -108,15 +107,15 @@ void main() {
     // The depth test leaves only pixels with a surface: d > 0.
     float distance = view.near / d;
     vec3 world = view.eye + world_ray * distance;
-    vec3 n = normal_unpack(textureLod(normal, uv, 0.0).r);
-    uvec2 words = textureLod(material, uv, 0.0).rg;
-    uint word = words.x;
+    uvec3 own = textureLod(words, uv, 0.0).xyz;
+    vec3 n = normal_unpack(own.x);
+    uint word = own.y;
     vec4 surface = pixel_albedo(ALBEDO_IMAGE, albedo, materials, word, pixel);
     float n_dot_l = dot(n, sun.direction);
 
     float V = 0.0;
     if (n_dot_l > 0.0) {
-        if (PLANE_SHADOW) V = plane_visibility(world, n, face_normal(uv, words.y));
+        if (PLANE_SHADOW) V = plane_visibility(world, n, face_normal(uv, own.z));
         else if (CASCADES > 1 || PCSS) V = sun_visibility(world, n, n_dot_l);
         else V = visibility(world, n, n_dot_l);
     }

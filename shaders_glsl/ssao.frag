@@ -17,7 +17,7 @@ layout(constant_id = 0) const int STEPS = 12;    // on each side of the slice
 layout(constant_id = 1) const int DOWNSCALE = 2; // pixels of the G-buffer to one of the occluders, each way
 
 layout(set = 0, binding = 0) uniform usampler2D occluders;
-layout(set = 0, binding = 1) uniform usampler2D normal;
+layout(set = 0, binding = 1) uniform usampler2D words;
 layout(set = 0, binding = 2, scalar) uniform View { VIEW_BLOCK } view;
 
 layout(set = 0, binding = 5) uniform sampler2D depth;
@@ -58,7 +58,7 @@ vec3 point(vec2 texel, float distance) {
 }
 
 vec3 normal_at(ivec2 texel) {
-    return normal_unpack(texelFetch(normal, texel * DOWNSCALE, 0).r) * view.world_from_view;
+    return normal_unpack(texelFetch(words, texel * DOWNSCALE, 0).r) * view.world_from_view;
 }
 
 /// Relative change of depth toward the neighbour, on either side, that lies on the same face: the one of less change.
@@ -256,7 +256,7 @@ void main() {
     ivec2 texel = own * OCCLUSION_SPACING;
     float distance = packed_distance(texelFetch(occluders, texel, 0).r);
     // The depth test leaves only points with a surface.
-    vec2 full_size = vec2(textureSize(normal, 0));
+    vec2 full_size = vec2(textureSize(words, 0));
     ray_step = 2.0 * float(DOWNSCALE) / full_size * view.ray_scale;
     ray_base = view_ray(0.5 / full_size, view.ray_scale, view.ray_offset).xy;
     texel_size = 1.0 / vec2(textureSize(occluders, 0));

@@ -14,7 +14,7 @@ const float CHORDS = 1.9;
 layout(constant_id = 0) const int DOWNSCALE = 2;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform usampler2D material;
+layout(set = 0, binding = 1) uniform usampler2D words;
 
 layout(push_constant, scalar) uniform Push {
     float near; // metres
@@ -23,6 +23,6 @@ layout(push_constant, scalar) uniform Push {
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy) * DOWNSCALE;
     float d = texelFetch(depth, pixel, 0).r;
-    float thickness = material_thickness(texelFetch(material, pixel, 0).r) * CHORDS;
+    float thickness = material_thickness(texelFetch(words, pixel, 0).y) * CHORDS;
     occluder = occluder_pack(d > 0.0 ? push.near / d : NOWHERE, thickness);
 }

@@ -110,8 +110,9 @@ impl<'r> Draws<'_, 'r> {
         }
     }
 
-    /// Confines the following draws to a part of the target: its first texel and its size.
-    pub fn window(&mut self, origin: [u32; 2], size: [u32; 2]) {
+    /// Brings the following draws to a part of the target: its first texel and its size. What of it is not within `part`
+    /// (the same, in texels of the target) is kept.
+    pub fn window(&mut self, origin: [u32; 2], size: [u32; 2], part: ([u32; 2], [u32; 2])) {
         let viewport = vk::Viewport {
             x: origin[0] as f32,
             y: origin[1] as f32,
@@ -122,12 +123,12 @@ impl<'r> Draws<'_, 'r> {
         };
         let scissor = vk::Rect2D {
             offset: vk::Offset2D {
-                x: origin[0].cast_signed(),
-                y: origin[1].cast_signed(),
+                x: part.0[0].cast_signed(),
+                y: part.0[1].cast_signed(),
             },
             extent: vk::Extent2D {
-                width: size[0],
-                height: size[1],
+                width: part.1[0],
+                height: part.1[1],
             },
         };
         let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);

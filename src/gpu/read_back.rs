@@ -31,6 +31,7 @@ fn shape(format: vk::Format) -> (usize, usize) {
         // Packed words: the lower half, then the upper.
         vk::Format::R32_UINT => (2, 2),
         vk::Format::R32G32_UINT => (4, 2),
+        vk::Format::R32G32B32A32_UINT => (8, 2),
         vk::Format::R16G16_SNORM | vk::Format::R16G16_SFLOAT => (2, 2),
         vk::Format::R16G16B16A16_SFLOAT => (4, 2),
         vk::Format::R32_SFLOAT | vk::Format::D32_SFLOAT => (1, 4),
@@ -176,13 +177,15 @@ impl Pixels {
         floats(self.format, &self.bytes)
     }
 
-    /// Texels as `[f32; 4]`; missing channels are 0, a missing fourth is 1.
+    /// Texels as `[f32; 4]`; missing channels are 0, a missing fourth is 1, those after the fourth are left out.
     pub fn rgba(&self) -> Vec<[f32; 4]> {
         self.floats()
             .chunks_exact(self.channels)
             .map(|c| {
                 let mut texel = [0.0, 0.0, 0.0, 1.0];
-                texel[..c.len()].copy_from_slice(c);
+                for (to, from) in texel.iter_mut().zip(c) {
+                    *to = *from;
+                }
                 texel
             })
             .collect()
@@ -196,9 +199,10 @@ fn floats(format: vk::Format, bytes: &[u8]) -> Vec<f32> {
         vk::Format::R8_UNORM | vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB => {
             bytes.iter().map(|b| f32::from(*b) / 255.0).collect()
         }
-        vk::Format::R16_UINT | vk::Format::R32_UINT | vk::Format::R32G32_UINT => {
-            pairs().map(f32::from).collect()
-        }
+        vk::Format::R16_UINT
+        | vk::Format::R32_UINT
+        | vk::Format::R32G32_UINT
+        | vk::Format::R32G32B32A32_UINT => pairs().map(f32::from).collect(),
         vk::Format::R16G16_SNORM => pairs()
             .map(|b| (f32::from(b.cast_signed()) / 32767.0).max(-1.0))
             .collect(),

@@ -296,9 +296,8 @@ impl Dome {
         recorder
             .pass("dome: gather", &self.gather)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample("normal", &surfaces.normal, Sampler::Nearest)
+            .sample("words", &surfaces.words, Sampler::Nearest)
             .sample("albedo", albedo, Sampler::Nearest)
-            .sample("material", &surfaces.material, Sampler::Nearest)
             .sample("materials", gathered.materials, Sampler::Nearest)
             .sample("frame", gathered.frame, Sampler::Nearest)
             .sample("previous_sky", old_sky, Sampler::Nearest)

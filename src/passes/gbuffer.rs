@@ -52,13 +52,12 @@ impl Push {
 
 /// The images.
 pub struct Surfaces {
-    /// World normal on the viewer's side, octahedral, 16 bits a component.
-    pub normal: Image,
+    /// Words of each pixel: the world normal on the viewer's side (octahedral, 16 bits a component); number of the material
+    /// (lower half), and how thick the body is behind the surface (upper half: that of a float's bits, metres). Of frames that
+    /// converge a third has the slopes of the face, see `include/face_slope.glsl`, and a fourth fills up the texel.
+    pub words: Image,
     /// ρ_d, and a factor on ρ_s; none of a scene without maps, whose table of materials has them.
     pub albedo: Option<Image>,
-    /// Number of the material (lower half), and how thick the body is behind the surface (upper half: that of a float's
-    /// bits, metres). Of frames that converge a second word has the slopes of the face, see `include/face_slope.glsl`.
-    pub material: Image,
     /// Reversed depth: near / distance; 0 is background.
     pub depth: Image,
 }
@@ -66,19 +65,17 @@ pub struct Surfaces {
 impl Surfaces {
     /// All of them.
     pub fn images(&self) -> impl Iterator<Item = &Image> {
-        let images = [&self.normal, &self.material, &self.depth];
-        images.into_iter().chain(&self.albedo)
+        [&self.words, &self.depth].into_iter().chain(&self.albedo)
     }
 
     /// The colour attachments of a pass that draws them.
     pub(super) fn colors<'r>(&'r self, pass: Pass<'r>, load: Load) -> Pass<'r> {
-        let images = [&self.normal, &self.material];
-        let images = images.into_iter().chain(&self.albedo);
+        let images = std::iter::once(&self.words).chain(&self.albedo);
         images.fold(pass, |pass, image| pass.color(image, load))
     }
 }
 
-/// Twin of `normal_unpack`: the halves of a word of [`Surfaces::normal`] as a unit vector.
+/// Twin of `normal_unpack`: the halves of the first of [`Surfaces::words`] as a unit vector.
 pub fn unpack_normal(halves: [u16; 2]) -> [f32; 3] {
     decode_normal(halves.map(|half| (f32::from(half.cast_signed()) / 32767.0).max(-1.0)))
 }
@@ -152,11 +149,12 @@ impl Gbuffer {
         faces: bool,
     ) -> Result<Self> {
         let words = if faces {
-            Format::R32G32_UINT
+            Format::R32G32B32A32_UINT
         } else {
-            Format::R32_UINT
+            Format::R32G32_UINT
         };
-        let mut formats = vec![Format::R32_UINT, words];
+        // One target of several words: a software device pays for each target more than for what is written.
+        let mut formats = vec![words];
         if geometry.has_albedo() {
             formats.push(Format::R16G16B16A16_SFLOAT);
         }
@@ -175,9 +173,8 @@ impl Gbuffer {
         let pipelines = [[plain?, specular?], [diffuse?, both?]];
         let image = |name, format| Image::new(context, &ImageDesc::flat(name, format, size));
         let surfaces = Surfaces {
-            normal: image("normal", formats[0])?,
-            material: image("material", formats[1])?,
-            albedo: formats.get(2).map(|f| image("albedo", *f)).transpose()?,
+            words: image("words", formats[0])?,
+            albedo: formats.get(1).map(|f| image("albedo", *f)).transpose()?,
             depth: image("depth", Format::D32_SFLOAT)?,
         };
         Ok(Self {

@@ -312,9 +312,8 @@ impl Lighting {
         recorder
             .pass("lighting", &self.pipeline)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample("normal", &surfaces.normal, Sampler::Nearest)
+            .sample("words", &surfaces.words, Sampler::Nearest)
             .sample("albedo", albedo, Sampler::Nearest)
-            .sample("material", &surfaces.material, Sampler::Nearest)
             .sample("occlusion", occlusion, Sampler::Nearest)
             .sample("shadow_map", light.shadow_map, Sampler::Nearest)
             .sample("sky_irradiance", light.sky_irradiance, Sampler::Linear)

@@ -35,8 +35,8 @@ pub struct SurfaceReading {
     pub material: u32,
 }
 
-/// Texels that are copied: radiance, illuminance, normal, material, depth.
-const TEXELS: usize = 5;
+/// Texels that are copied: radiance, illuminance, words, depth.
+const TEXELS: usize = 4;
 
 /// The pass and where its texels arrive.
 pub struct Probe {
@@ -89,8 +89,7 @@ impl Probe {
         let images = [
             radiance,
             self.illuminance.image(),
-            &surfaces.normal,
-            &surfaces.material,
+            &surfaces.words,
             &surfaces.depth,
         ];
         let mut slot = 0;
@@ -113,17 +112,17 @@ impl Probe {
     /// The answer, once the frame that asked is done. `diffuse` is ρ_d of a material.
     pub fn reading(&mut self, diffuse: impl FnOnce(u32) -> Vec3) -> Option<Reading> {
         let asked = self.asked.take()?;
-        let [radiance, illuminance, normal, material, depth] =
-            asked.texels.map(|t| t.read(&self.buffer));
+        let [radiance, illuminance, words, depth] = asked.texels.map(|t| t.read(&self.buffer));
         let rgb = |t: [f32; 4], unit: f32| [t[0] * unit, t[1] * unit, t[2] * unit];
-        let number = material[0] as u32;
+        // Halves of the words.
+        let number = words[2] as u32;
         let albedo = match asked.albedo {
             Some(texel) => rgb(texel.read(&self.buffer), 1.0),
             None => diffuse(number).to_array(),
         };
         let surface = (depth[0] > 0.0).then(|| SurfaceReading {
             illuminance: rgb(illuminance, Show::Irradiance.file_unit()),
-            normal: unpack_normal([normal[0] as u16, normal[1] as u16]),
+            normal: unpack_normal([words[0] as u16, words[1] as u16]),
             albedo,
             distance: asked.near / depth[0],
             material: number,

@@ -120,9 +120,8 @@ impl Mirror {
         recorder
             .pass("dome: mirrors", &self.gather)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample("normal", &surfaces.normal, Sampler::Nearest)
+            .sample("words", &surfaces.words, Sampler::Nearest)
             .sample("albedo", albedo, Sampler::Nearest)
-            .sample("material", &surfaces.material, Sampler::Nearest)
             .sample("previous_mirror", old_mirror, Sampler::Nearest)
             .sample("previous_lobe", old_lobe, Sampler::Nearest)
             .sample("maps", maps, Sampler::Nearest)

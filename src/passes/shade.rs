@@ -1,7 +1,7 @@
 //! Which casters a map of the sun needs: those that can shade what the camera sees in it. Beside all of it, as the sun sees
 //! it, and behind all of it a caster shades nothing that is in the picture.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::scene::{Bounds, Cluster};
 
@@ -50,6 +50,14 @@ impl Shade {
             let (at, reach) = (direction.dot(centre), direction.abs().dot(half));
             *ends = [ends[0].min(at - reach), ends[1].max(at + reach)];
         }
+    }
+
+    /// Its lowest and highest coordinates across the light, along the axes `right` and `up`, metres; none if it is nothing or has
+    /// no end.
+    pub fn across(&self) -> Option<[Vec2; 2]> {
+        let (right, up) = (self.ends[0], self.ends[ACROSS / 2]);
+        let [low, high] = [0, 1].map(|i| Vec2::new(right[i], up[i]));
+        (low.is_finite() && high.is_finite()).then_some([low, high])
     }
 
     /// Whether something of a cluster may stand between the region and the light.
@@ -113,6 +121,9 @@ mod tests {
         assert!(shade.is_nothing() && shade.grown(1.0).with_room().is_nothing());
         shade.add(&at(Vec3::ZERO).bounds);
         assert!(!shade.is_nothing() && !Shade::ALL.is_nothing());
+        let [low, high] = shade.across().expect("ends");
+        assert!(low.x == -high.x && low.y == -high.y && high.cmpgt(Vec2::splat(0.49)).all());
+        assert_eq!(Shade::ALL.across(), None);
         for distance in [0.0, 5.0, 1e4] {
             assert!(shade.may_be_shaded_by(&at(toward * distance)), "{distance}");
         }

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use glam::UVec2;
+
 use crate::gpu::{
     Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
     Sampler, shaders,
@@ -48,6 +50,17 @@ pub(super) struct Tile {
     pub edge: u32,
 }
 
+impl Tile {
+    /// First texel and size of what is ever looked up in it.
+    fn part(&self) -> ([u32; 2], [u32; 2]) {
+        let [low, high] = self.view.shaded().map(|corner| corner * self.edge as f32);
+        let first = low.floor().as_uvec2().min(UVec2::splat(self.edge - 1));
+        let end = high.ceil().as_uvec2().max(first + 1);
+        let origin = UVec2::from(self.origin);
+        ((origin + first).to_array(), (end - first).to_array())
+    }
+}
+
 impl Casters {
     /// With casters pushed away from the light by so many slopes of depth.
     pub fn new(context: &Arc<Context>, geometry: &Geometry, slope_bias: f32) -> Result<Self> {
@@ -60,7 +73,7 @@ impl Casters {
         })
     }
 
-    /// Draws maps of an image. What lies beside the rectangle around them is not even cleared.
+    /// Draws maps of an image. What lies beside the rectangle around what is looked up in them is not even cleared.
     pub fn record(
         &self,
         recorder: &mut Recorder,
@@ -76,7 +89,7 @@ impl Casters {
             .within(first, size)
             .draws(|draws| {
                 for tile in tiles {
-                    draws.window(tile.origin, [tile.edge; 2]);
+                    draws.window(tile.origin, [tile.edge; 2], tile.part());
                     draws.push(&Push {
                         shadow_from_world: tile.view.shadow_from_world.to_cols_array_2d(),
                     });
@@ -89,11 +102,12 @@ impl Casters {
     }
 }
 
-/// First texel and size of the rectangle around tiles.
+/// First texel and size of the rectangle around the parts of tiles.
 fn around(tiles: &[Tile]) -> ([u32; 2], [u32; 2]) {
     let along = |axis: usize| {
-        let first = tiles.iter().map(|t| t.origin[axis]).min().unwrap_or(0);
-        let end = tiles.iter().map(|t| t.origin[axis] + t.edge).max();
+        let parts = || tiles.iter().map(Tile::part);
+        let first = parts().map(|(first, _)| first[axis]).min().unwrap_or(0);
+        let end = parts().map(|(first, size)| first[axis] + size[axis]).max();
         (first, end.unwrap_or(first) - first)
     };
     let ((x, width), (y, height)) = (along(0), along(1));
@@ -112,7 +126,7 @@ fn record_cut_outs(
         .depth(maps, Load::Keep)
         .draws(|draws| {
             for tile in tiles {
-                draws.window(tile.origin, [tile.edge; 2]);
+                draws.window(tile.origin, [tile.edge; 2], tile.part());
                 geometry.draw_cut_outs(draws, &tile.view.cull(), |draws, bound| {
                     let map = bound.diffuse_map.unwrap_or(bound.white);
                     draws.texture("diffuse_map", map, Sampler::Repeat);
@@ -252,8 +266,44 @@ impl Shadow {
 
 #[cfg(test)]
 mod tests {
+    use glam::{Vec2, Vec3};
+
+    use super::super::shade::Shade;
+    use super::super::shadow_fit;
     use super::*;
     use crate::gpu::{GpuStruct, check_layout};
+    use crate::scene::Bounds;
+
+    #[test]
+    fn what_is_looked_up_in_a_tile_lies_in_its_part() {
+        let toward = Vec3::new(0.4, 0.5, 0.3).normalize();
+        let of = |half: f32| Bounds {
+            min: Vec3::new(-half, 0.0, -half),
+            max: Vec3::new(half, 1.0, half),
+        };
+        let mut view = shadow_fit::fit_all(toward, &of(50.0), 256);
+        let tile = |view| Tile {
+            view,
+            origin: [256, 512],
+            edge: 256,
+        };
+        assert_eq!(tile(view).part(), ([256, 512], [256; 2]), "all of it");
+        view.shade = Shade::none(shadow_fit::axes(toward));
+        assert_eq!(tile(view).part().1, [256; 2], "nothing is known");
+        view.shade.add(&of(10.0));
+        let (first, size) = tile(view).part();
+        assert!(size.iter().all(|edge| *edge < 80), "{size:?}");
+        for corner in of(10.0).corners() {
+            let at = view.shadow_from_world.project_point3(corner).truncate();
+            let texel = (at * 0.5 + 0.5) * 256.0 + Vec2::new(256.0, 512.0);
+            let within = texel - UVec2::from(first).as_vec2();
+            let size = UVec2::from(size).as_vec2();
+            assert!(
+                within.cmpge(Vec2::ZERO).all() && within.cmple(size).all(),
+                "{texel}"
+            );
+        }
+    }
 
     #[test]
     fn host_and_shader_agree() {

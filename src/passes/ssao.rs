@@ -149,7 +149,7 @@ impl Ssao {
         recorder
             .pass("SSAO occluders", &self.pack)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample("material", &surfaces.material, Sampler::Nearest)
+            .sample("words", &surfaces.words, Sampler::Nearest)
             .push(&PackPush {
                 near: view.camera.near,
             })
@@ -163,7 +163,7 @@ impl Ssao {
         recorder
             .pass("SSAO", &self.trace)
             .sample("occluders", &self.occluders, Sampler::Nearest)
-            .sample("normal", &surfaces.normal, Sampler::Nearest)
+            .sample("words", &surfaces.words, Sampler::Nearest)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
             .uniform("view", &view.block())
             .sample("cover", cover.image(), Sampler::Nearest)

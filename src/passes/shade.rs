@@ -9,7 +9,7 @@ use crate::scene::{Bounds, Cluster};
 const ACROSS: usize = 8;
 /// Those, and the one toward the light.
 const DIRECTIONS: usize = ACROSS + 1;
-/// Room for what comes into view while the map stays, as a share of the extent.
+/// Room for what comes into view while the map stays, as a share of the extent in each direction.
 const ROOM: f32 = 1.0 / 24.0;
 
 /// A convex region by its extent in some directions (a k-DOP; Klosowski et al. 1998), metres.
@@ -79,10 +79,16 @@ impl Shade {
         }
     }
 
-    /// With room for what may come into view.
+    /// With room for what may come into view, along each direction by its own extent: what is seen of a narrow view is a strip.
     pub fn with_room(&self) -> Self {
         let across = self.ends[..ACROSS].iter().map(|[low, high]| high - low);
-        self.grown(ROOM * across.fold(0.0, f32::max))
+        let most = across.fold(0.0, f32::max);
+        let mut wider = *self;
+        for (i, [low, high]) in wider.ends.iter_mut().enumerate() {
+            let room = ROOM * if i < ACROSS { *high - *low } else { most };
+            (*low, *high) = (*low - room, *high + room);
+        }
+        wider
     }
 
     /// Whether all of another region is within this one.
@@ -143,9 +149,9 @@ mod tests {
             shade
         };
         let drawn = of(0.0).with_room();
-        // A twenty-fourth of the diagonal.
-        assert!(drawn.holds(&of(0.055)));
-        assert!(!drawn.holds(&of(0.1)));
+        // A twenty-fourth of the edge.
+        assert!(drawn.holds(&of(0.04)));
+        assert!(!drawn.holds(&of(0.045)));
         assert!(drawn.holds(&Shade::none(axes)), "nothing needs nothing");
     }
 }

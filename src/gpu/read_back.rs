@@ -56,14 +56,7 @@ impl Texel {
         let (channels, width) = shape(self.format);
         let start = self.slot * Self::MOST_BYTES;
         let bytes = buffer.bytes().get(start..start + channels * width);
-        let mut texel = [0.0, 0.0, 0.0, 1.0];
-        for (to, from) in texel
-            .iter_mut()
-            .zip(floats(self.format, bytes.unwrap_or(&[])))
-        {
-            *to = from;
-        }
-        texel
+        four(&floats(self.format, bytes.unwrap_or(&[])))
     }
 }
 
@@ -181,15 +174,18 @@ impl Pixels {
     pub fn rgba(&self) -> Vec<[f32; 4]> {
         self.floats()
             .chunks_exact(self.channels)
-            .map(|c| {
-                let mut texel = [0.0, 0.0, 0.0, 1.0];
-                for (to, from) in texel.iter_mut().zip(c) {
-                    *to = *from;
-                }
-                texel
-            })
+            .map(four)
             .collect()
     }
+}
+
+/// The first four channels; missing ones are 0, a missing fourth is 1.
+fn four(channels: &[f32]) -> [f32; 4] {
+    let mut texel = [0.0, 0.0, 0.0, 1.0];
+    for (to, from) in texel.iter_mut().zip(channels) {
+        *to = *from;
+    }
+    texel
 }
 
 fn floats(format: vk::Format, bytes: &[u8]) -> Vec<f32> {

@@ -104,14 +104,12 @@ impl Casters {
 
 /// First texel and size of the rectangle around the parts of tiles.
 fn around(tiles: &[Tile]) -> ([u32; 2], [u32; 2]) {
-    let along = |axis: usize| {
-        let parts = || tiles.iter().map(Tile::part);
-        let first = parts().map(|(first, _)| first[axis]).min().unwrap_or(0);
-        let end = parts().map(|(first, size)| first[axis] + size[axis]).max();
-        (first, end.unwrap_or(first) - first)
-    };
-    let ((x, width), (y, height)) = (along(0), along(1));
-    ([x, y], [width, height])
+    let parts = tiles.iter().map(Tile::part);
+    let ends =
+        parts.map(|(first, size)| (UVec2::from(first), UVec2::from(first) + UVec2::from(size)));
+    let both = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let (first, end) = both.unwrap_or_default();
+    (first.to_array(), (end - first).to_array())
 }
 
 fn record_cut_outs(

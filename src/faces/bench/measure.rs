@@ -115,16 +115,32 @@ impl<'j> Bench<'j> {
     /// # Errors
     /// When the device is lost.
     pub fn run(&mut self, frames: u32) -> Result<Measured> {
-        let mut measured = Measured::default();
+        Ok(self.run_beside(frames, None)?.0)
+    }
+
+    /// Measures `frames` frames of each kind, and as many times the passes of a frame from another place.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn run_beside(
+        &mut self,
+        frames: u32,
+        other: Option<&Camera>,
+    ) -> Result<(Measured, Measured)> {
+        let (mut measured, mut beside) = (Measured::default(), Measured::default());
         let mut forgotten = Measured::default();
         for i in 0..WARM_UP + frames {
-            let into = if i < WARM_UP {
-                &mut forgotten
+            let (into, into_beside) = if i < WARM_UP {
+                (&mut forgotten, &mut Measured::default())
             } else {
-                &mut measured
+                (&mut measured, &mut beside)
             };
-            // Alternating: what disturbs the machine disturbs both alike.
-            self.passes(2 * i, into)?;
+            // Alternating: what disturbs the machine disturbs all alike.
+            let camera = self.camera;
+            self.passes(&camera, 2 * i, into)?;
+            if let Some(other) = other {
+                self.passes(other, 2 * i, into_beside)?;
+            }
             self.frame.invalidate();
             self.whole(2 * i + 1, &mut into.anew)?;
         }
@@ -138,13 +154,13 @@ impl<'j> Bench<'j> {
             };
             self.whole(i, &mut into.moving)?;
         }
-        Ok(measured)
+        Ok((measured, beside))
     }
 
     /// Every pass by itself, with everything drawn anew.
-    fn passes(&mut self, index: u32, into: &mut Measured) -> Result<()> {
+    fn passes(&mut self, camera: &Camera, index: u32, into: &mut Measured) -> Result<()> {
         self.frame.invalidate();
-        let camera = self.motion.camera(&self.camera, index);
+        let camera = self.motion.camera(camera, index);
         let daylight = self.motion.daylight(self.job, index);
         let recorder = &mut self.parts;
         recorder.begin()?;

@@ -201,13 +201,13 @@ pub fn run(
             subject.camera = job.settings.framing(&scene.bounds);
         }
         let mut bench = Bench::new(&subject, &scene, context, motion)?;
-        let measured = bench.run(head.frames)?;
+        let narrow = (sweep == Sweep::Triangles)
+            .then(|| narrowed(&subject.camera, &scene, subject.settings.size, NARROW));
+        let (measured, beside) = bench.run_beside(head.frames, narrow.as_ref())?;
         let mut rows = times(&measured, &head.frame_name);
-        if sweep == Sweep::Triangles {
-            bench.camera = narrowed(&subject.camera, &scene, subject.settings.size, NARROW);
-            let narrow = bench.run(head.frames)?;
+        if narrow.is_some() {
             rows.extend(geometry(&measured).map(|t| ("G-buffer and shadow map".to_owned(), t)));
-            rows.extend(geometry(&narrow).map(|t| ("the same, 5 % in view".to_owned(), t)));
+            rows.extend(geometry(&beside).map(|t| ("the same, 5 % in view".to_owned(), t)));
         }
         for (name, time) in rows {
             match table.iter_mut().find(|(known, _)| *known == name) {

@@ -30,6 +30,7 @@ use crate::passes::geometry::Geometry;
 use crate::passes::irradiance::Irradiance;
 use crate::passes::lighting::{Light, Lighting, Show};
 use crate::passes::probe::Probe;
+use crate::passes::shade;
 use crate::passes::shadow::Shadow;
 use crate::passes::sky_cube::SkyCube;
 use crate::passes::ssao::Ssao;
@@ -222,8 +223,13 @@ impl Frame {
             None => {
                 let sun = sample.sun_direction;
                 let mut views = SunViews::fit(sun, bounds, casters, &view, resolution, count);
-                let (seen, eye) = (self.geometry.seen(&view), view.camera.eye);
-                views.shade(seen, eye, &self.settings.lighting.shadows);
+                let (eye, shadows) = (camera.eye, &self.settings.lighting.shadows);
+                views.shade(self.geometry.seen(&view), eye, 0.0, shadows);
+                if shadow.is_stale(&views) {
+                    let room = shade::room(bounds, eye);
+                    let behind = view.from_behind(room);
+                    views.shade(self.geometry.around(&behind), eye, room, shadows);
+                }
                 views
             }
         };

@@ -199,6 +199,37 @@ fn nothing_is_missed_of_the_shared_scenes() {
     }
 }
 
+#[test]
+fn maps_that_stay_miss_nothing_of_what_comes_into_view() {
+    let mut device = Device::new();
+    let scene = hills(100_000);
+    let day = clear_day(100.0, 12.0);
+    let from = |step: f32| {
+        let (walk, (sin, cos)) = (0.2 * step, (0.06 * step).sin_cos());
+        let eye = Vec3::new(12.0 - walk, 10.0, 25.0 + walk);
+        camera(
+            eye.to_array(),
+            (eye - Vec3::new(50.0 * cos, 6.0, 50.0 * sin)).to_array(),
+        )
+    };
+    let settings = showing(Show::Visibility, settings(320, 180));
+    let mut walking = device.frame(&scene, settings, &day, &from(0.0));
+    let mut shaded = 0;
+    // Long strides and short ones: maps are drawn anew after those and stay after these.
+    for step in (0..48).map(|i| (i / 2) as f32 + 0.05 * (i % 2) as f32) {
+        let camera = from(step);
+        device.draw(&mut walking, &day, &camera);
+        let stayed = device.picture_of(&walking);
+        let mut anew = device.frame(&scene, settings, &day, &camera);
+        device.draw(&mut anew, &day, &camera);
+        let anew = device.picture_of(&anew);
+        shaded += anew.pixels().filter(|(_, v)| v.x < 0.5).count();
+        let missed = differing(&stayed, &anew);
+        assert!(missed == 0, "step {step}: {missed} pixels");
+    }
+    assert!(shaded > 48 * 1000, "{shaded} pixels in shadow");
+}
+
 /// Triangles that the passes of this name were given in one frame.
 fn triangles(device: &Device, scene: &Scene, day: &Daylight, camera: &Camera, name: &str) -> f64 {
     let mut recorder = Recorder::new(&device.context, Timing::Work).expect("a recorder");

@@ -124,39 +124,33 @@ impl SunViews {
         fitted
     }
 
-    /// Narrows the maps to the casters that can shade what `seen` holds, from `eye`.
+    /// Narrows the maps to the casters that can shade what `seen` holds, from an eye that may go `room` metres.
     pub fn shade<'c>(
         &mut self,
         seen: impl IntoIterator<Item = &'c Cluster>,
         eye: Vec3,
+        room: f32,
         shadows: &Shadows,
     ) {
+        let reach = shadows.reach();
         let mut shades = self
             .views
-            .map(|view| Shade::none(shadow_fit::axes(view.toward)));
+            .map(|view| Shade::none(view.toward, &view.shadow_from_world, reach * view.texel));
         for cluster in seen {
             let Bounds { min, max } = cluster.bounds;
             let farthest = (max - eye).abs().max((eye - min).abs()).max_element();
             let nearest = (min - eye).max(eye - max).max_element();
             let mut finer = 0.0;
             for (shade, reach) in shades.iter_mut().zip(self.reach).take(self.count) {
-                if farthest >= finer && nearest <= reach {
+                if farthest + room >= finer && nearest - room <= reach {
                     shade.add(&cluster.bounds);
                 }
                 finer = BLEND * reach;
             }
         }
         for (view, shade) in self.views.iter_mut().zip(shades) {
-            view.shade = shade.grown(shadows.reach() * view.texel);
+            view.shade = shade;
         }
-    }
-
-    /// What is drawn, so that it serves for a while.
-    pub fn with_room(mut self) -> Self {
-        for view in &mut self.views {
-            view.shade = view.shade.with_room();
-        }
-        self
     }
 
     /// Whether maps drawn for these views serve the others.
@@ -276,7 +270,7 @@ mod tests {
             solid: None,
             is_wound: false,
         };
-        views.shade([&cluster], view.camera.eye, &Shadows::default());
+        views.shade([&cluster], view.camera.eye, 0.0, &Shadows::default());
         let drawn = views.iter().filter(|v| !v.shade.is_nothing()).count();
         assert_eq!(drawn, finer + 1, "{kept:?}");
     }

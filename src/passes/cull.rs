@@ -80,11 +80,13 @@ impl Cull {
 
     /// Whether some of a cluster may be seen.
     pub fn sees(&self, cluster: &Cluster) -> bool {
-        self.planes
-            .iter()
-            .all(|plane| reaches(*plane, &cluster.bounds))
-            && !self.is_behind(cluster)
-            && self.shade.may_be_shaded_by(cluster)
+        self.holds(cluster) && !self.is_behind(cluster) && self.shade.may_be_shaded_by(cluster)
+    }
+
+    /// Whether some of it is within the view's sides.
+    pub fn holds(&self, cluster: &Cluster) -> bool {
+        let mut planes = self.planes.iter();
+        planes.all(|plane| reaches(*plane, &cluster.bounds))
     }
 
     /// The faces of a cluster that may be seen.

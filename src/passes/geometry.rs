@@ -194,6 +194,12 @@ impl Geometry {
         self.clusters.iter().filter(move |c| cull.sees(c))
     }
 
+    /// Those that lie within the pyramid of a view, whichever way they face.
+    pub fn around(&self, view: &View) -> impl Iterator<Item = &Cluster> {
+        let cull = Cull::camera(&view.whole());
+        self.clusters.iter().filter(move |c| cull.holds(c))
+    }
+
     /// ρ_d, ρ_s and p of every material, see `include/materials.glsl`.
     pub fn materials(&self) -> &Image {
         &self.materials

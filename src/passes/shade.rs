@@ -1,157 +1,270 @@
-//! Which casters a map of the sun needs: those that can shade what the camera sees in it. Beside all of it, as the sun sees
-//! it, and behind all of it a caster shades nothing that is in the picture.
+//! Which casters a map of the sun needs: those that can shade what the camera sees in it. Where nothing is seen, as the sun sees
+//! it, and behind all that is seen there, a caster shades nothing that is in the picture.
 
-use glam::{Vec2, Vec3};
+use std::ops::RangeInclusive;
+
+use glam::{Mat4, Vec2, Vec3};
 
 use crate::scene::{Bounds, Cluster};
 
-/// Directions across the light in which the extent is known: evenly over half a turn.
-const ACROSS: usize = 8;
-/// Those, and the one toward the light.
-const DIRECTIONS: usize = ACROSS + 1;
-/// Room for what comes into view while the map stays, as a share of the extent in each direction.
+use super::shadow_fit::axes;
+
+/// Cells along an edge of a map.
+const CELLS: usize = 128;
+/// Cells along an edge of the squares in which the farthest depth is kept.
+const SQUARE: usize = 4;
+/// Squares along an edge of a map.
+const SQUARES: usize = CELLS / SQUARE;
+/// Share of the distance to the end of the scene that the eye may go while a map stays.
 const ROOM: f32 = 1.0 / 24.0;
 
-/// A convex region by its extent in some directions (a k-DOP; Klosowski et al. 1998), metres.
+/// How far the eye may go before what is seen of a scene within `bounds` needs another map, metres.
+pub fn room(bounds: &Bounds, eye: Vec3) -> f32 {
+    let corners = bounds.corners().map(|corner| corner.distance(eye));
+    ROOM * corners.into_iter().fold(0.0, f32::max)
+}
+
+/// What is shaded: the cells of a map in which something is seen, and how far from the light the farthest of it lies (after the
+/// receivers' mask of Bittner, Mattausch, Silvennoinen & Wimmer 2011, "Shadow caster culling for efficient shadow mapping").
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shade {
-    directions: [Vec3; DIRECTIONS],
-    ends: [[f32; 2]; DIRECTIONS],
+    /// Right, up, toward the light: unit vectors, or zero where all is shaded.
+    axes: [Vec3; 3],
+    /// Cells to a metre across the light.
+    scale: f32,
+    /// Where the axes cross the map, cells from its corner.
+    origin: Vec2,
+    /// How far from what is seen the map is looked up, metres.
+    reach: f32,
+    /// Rows of cells, a bit for each.
+    rows: [u128; CELLS],
+    /// Lowest coordinate toward the light in each square, metres; infinity where nothing is shaded.
+    farthest: [[f32; SQUARES]; SQUARES],
+}
+
+/// What lies under a box.
+struct Under {
+    rows: RangeInclusive<usize>,
+    /// Its columns, a bit for each.
+    columns: u128,
+    /// Columns of squares.
+    squares: RangeInclusive<usize>,
+    /// Lowest and highest coordinate toward the light, metres.
+    toward: [f32; 2],
 }
 
 impl Shade {
-    /// Nothing yet, under a light; `right` and `up` are unit vectors across it.
-    pub fn none([right, up, toward]: [Vec3; 3]) -> Self {
-        let across = |i: usize| {
-            let (sin, cos) = (std::f32::consts::PI * i as f32 / ACROSS as f32).sin_cos();
-            right * cos + up * sin
-        };
+    /// Everything.
+    pub const ALL: Self = Self {
+        axes: [Vec3::ZERO; 3],
+        scale: 0.0,
+        origin: Vec2::ZERO,
+        reach: 0.0,
+        rows: [u128::MAX; CELLS],
+        farthest: [[f32::NEG_INFINITY; SQUARES]; SQUARES],
+    };
+
+    /// Nothing yet, of an upright square map that a light in the direction `toward` draws without perspective; lookups reach so
+    /// many metres farther than what is taken in.
+    pub fn none(toward: Vec3, shadow_from_world: &Mat4, reach: f32) -> Self {
+        let half = 0.5 * CELLS as f32;
+        let origin = shadow_from_world.w_axis.truncate().truncate();
         Self {
-            directions: std::array::from_fn(|i| if i < ACROSS { across(i) } else { toward }),
-            ends: [[f32::INFINITY, f32::NEG_INFINITY]; DIRECTIONS],
+            axes: axes(toward),
+            scale: half * shadow_from_world.row(0).truncate().length(),
+            origin: half * (origin + 1.0),
+            reach,
+            rows: [0; CELLS],
+            farthest: [[f32::INFINITY; SQUARES]; SQUARES],
         }
     }
 
-    /// Everything.
-    pub const ALL: Self = Self {
-        directions: [Vec3::ZERO; DIRECTIONS],
-        ends: [[f32::NEG_INFINITY, f32::INFINITY]; DIRECTIONS],
-    };
-
     /// Whether it is nothing.
     pub fn is_nothing(&self) -> bool {
-        self.ends.iter().any(|[low, high]| low > high)
+        self.rows.iter().all(|row| *row == 0)
+    }
+
+    /// What a box covers of the map, if it does not lie beside it.
+    fn under(&self, bounds: &Bounds, reach: f32) -> Option<Under> {
+        let (centre, half) = (bounds.centre(), 0.5 * bounds.extent());
+        let at = Vec3::from_array(self.axes.map(|axis| axis.dot(centre)));
+        let size = Vec3::from_array(self.axes.map(|axis| axis.abs().dot(half))) + reach;
+        let cell = |at: Vec3| (at.truncate() * self.scale + self.origin).floor();
+        let (first, last) = (cell(at - size), cell(at + size));
+        let most = Vec2::splat((CELLS - 1) as f32);
+        if last.cmplt(Vec2::ZERO).any() || first.cmpgt(most).any() {
+            return None;
+        }
+        let [first, last] = [first, last].map(|c| c.clamp(Vec2::ZERO, most).as_uvec2());
+        let squares = first.x as usize / SQUARE..=last.x as usize / SQUARE;
+        Some(Under {
+            rows: first.y as usize..=last.y as usize,
+            columns: (u128::MAX >> (CELLS as u32 - 1 - (last.x - first.x))) << first.x,
+            squares,
+            toward: [at.z - size.z, at.z + size.z],
+        })
     }
 
     /// Takes in a box.
     pub fn add(&mut self, bounds: &Bounds) {
-        let (centre, half) = (bounds.centre(), 0.5 * bounds.extent());
-        for (direction, ends) in self.directions.iter().zip(&mut self.ends) {
-            let (at, reach) = (direction.dot(centre), direction.abs().dot(half));
-            *ends = [ends[0].min(at - reach), ends[1].max(at + reach)];
+        let Some(under) = self.under(bounds, self.reach) else {
+            return;
+        };
+        let squares = under.rows.start() / SQUARE..=under.rows.end() / SQUARE;
+        for row in &mut self.rows[under.rows] {
+            *row |= under.columns;
+        }
+        for row in &mut self.farthest[squares] {
+            for farthest in &mut row[under.squares.clone()] {
+                *farthest = farthest.min(under.toward[0]);
+            }
         }
     }
 
-    /// Its lowest and highest coordinates across the light, along the axes `right` and `up`, metres; none if it is nothing or has
-    /// no end.
-    pub fn across(&self) -> Option<[Vec2; 2]> {
-        let (right, up) = (self.ends[0], self.ends[ACROSS / 2]);
-        let [low, high] = [0, 1].map(|i| Vec2::new(right[i], up[i]));
-        (low.is_finite() && high.is_finite()).then_some([low, high])
-    }
-
-    /// Whether something of a cluster may stand between the region and the light.
+    /// Whether something of a cluster may stand between what is shaded and the light.
     pub fn may_be_shaded_by(&self, cluster: &Cluster) -> bool {
-        let (centre, half) = (cluster.bounds.centre(), 0.5 * cluster.bounds.extent());
-        let mut slabs = self.directions.iter().zip(&self.ends).enumerate();
-        slabs.all(|(i, (direction, ends))| {
-            let (at, reach) = (direction.dot(centre), direction.abs().dot(half));
-            // However near the light: it shades what is behind.
-            at + reach >= ends[0] && (i == ACROSS || at - reach <= ends[1])
+        let Some(under) = self.under(&cluster.bounds, 0.0) else {
+            return false;
+        };
+        let square = u128::MAX >> (CELLS - SQUARE);
+        // However near the light: it shades what is behind.
+        let is_before = |y: usize, x: usize| self.farthest[y / SQUARE][x] <= under.toward[1];
+        under.rows.clone().any(|y| {
+            let covered = self.rows[y] & under.columns;
+            let mut squares = under.squares.clone();
+            covered != 0
+                && squares.any(|x| covered & square << (SQUARE * x) != 0 && is_before(y, x))
         })
     }
 
-    /// Wider by so many metres on all sides.
-    pub fn grown(&self, by: f32) -> Self {
-        Self {
-            ends: self.ends.map(|[low, high]| [low - by, high + by]),
-            ..*self
-        }
+    /// The first and the last corner of what is shaded, each 0 to 1 over the map: all of it where nothing is.
+    pub fn part(&self) -> [Vec2; 2] {
+        let columns = self.rows.iter().fold(0, |all, row| all | row);
+        let first = self.rows.iter().position(|row| *row != 0);
+        let last = self.rows.iter().rposition(|row| *row != 0);
+        let Some((first, last)) = first.zip(last) else {
+            return [Vec2::ZERO, Vec2::ONE];
+        };
+        let of = |column: u32, row: usize| Vec2::new(column as f32, row as f32) / CELLS as f32;
+        [
+            of(columns.trailing_zeros(), first),
+            of(u128::BITS - columns.leading_zeros(), last + 1),
+        ]
     }
 
-    /// With room for what may come into view, along each direction by its own extent: what is seen of a narrow view is a strip.
-    pub fn with_room(&self) -> Self {
-        let across = self.ends[..ACROSS].iter().map(|[low, high]| high - low);
-        let most = across.fold(0.0, f32::max);
-        let mut wider = *self;
-        for (i, [low, high]) in wider.ends.iter_mut().enumerate() {
-            let room = ROOM * if i < ACROSS { *high - *low } else { most };
-            (*low, *high) = (*low - room, *high + room);
-        }
-        wider
-    }
-
-    /// Whether all of another region is within this one.
+    /// Whether all of another one, of the same map, is within this one.
     pub fn holds(&self, other: &Self) -> bool {
-        let mut ends = self.ends.iter().zip(&other.ends);
-        ends.all(|(mine, others)| mine[0] <= others[0] && others[1] <= mine[1])
+        let mut rows = self.rows.iter().zip(&other.rows);
+        let [mine, others] = [self, other].map(|shade| shade.farthest.as_flattened());
+        rows.all(|(mine, other)| other & !mine == 0)
+            && mine.iter().zip(others).all(|(mine, other)| mine <= other)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::passes::shadow_fit;
+
+    const TOWARD: Vec3 = Vec3::new(0.6, 0.8, 0.0);
+
+    fn around(centre: Vec3) -> Bounds {
+        Bounds {
+            min: centre - 0.5,
+            max: centre + 0.5,
+        }
+    }
 
     fn at(centre: Vec3) -> Cluster {
         Cluster {
             first: 0,
             count: 3,
-            bounds: Bounds {
-                min: centre - 0.5,
-                max: centre + 0.5,
-            },
+            bounds: around(centre),
             solid: None,
             is_wound: false,
         }
     }
 
+    /// Of a map of 64 m.
+    fn nothing() -> Shade {
+        let casters = Bounds {
+            min: Vec3::splat(-16.0),
+            max: Vec3::splat(16.0),
+        };
+        let map = shadow_fit::fit_all(TOWARD, &casters, 1024);
+        assert!((30.0..90.0).contains(&(map.texel * 1024.0)), "{map:?}");
+        Shade::none(TOWARD, &map.shadow_from_world, 0.0)
+    }
+
     #[test]
     fn what_stands_toward_the_light_shades_and_what_stands_beside_or_behind_does_not() {
-        let toward = Vec3::new(0.6, 0.8, 0.0);
-        let right = Vec3::Y.cross(toward).normalize();
-        let mut shade = Shade::none([right, toward.cross(right), toward]);
+        let [right, up, _] = axes(TOWARD);
+        let mut shade = nothing();
         assert!(
             !shade.may_be_shaded_by(&at(Vec3::ZERO)),
             "nothing is shaded"
         );
-        assert!(shade.is_nothing() && shade.grown(1.0).with_room().is_nothing());
-        shade.add(&at(Vec3::ZERO).bounds);
+        assert!(shade.is_nothing());
+        assert_eq!(shade.part(), [Vec2::ZERO, Vec2::ONE]);
+        shade.add(&around(Vec3::ZERO));
         assert!(!shade.is_nothing() && !Shade::ALL.is_nothing());
-        let [low, high] = shade.across().expect("ends");
-        assert!(low.x == -high.x && low.y == -high.y && high.cmpgt(Vec2::splat(0.49)).all());
-        assert_eq!(Shade::ALL.across(), None);
+        let [low, high] = shade.part();
+        assert!(low.cmplt(Vec2::splat(0.5)).all() && high.cmpgt(Vec2::splat(0.5)).all());
+        assert!((high - low).max_element() < 0.2, "{low} {high}");
         for distance in [0.0, 5.0, 1e4] {
-            assert!(shade.may_be_shaded_by(&at(toward * distance)), "{distance}");
+            assert!(shade.may_be_shaded_by(&at(TOWARD * distance)), "{distance}");
         }
-        assert!(!shade.may_be_shaded_by(&at(-toward * 3.0)));
-        for beside in [right, -right, toward.cross(right)] {
-            assert!(!shade.may_be_shaded_by(&at(toward * 20.0 + beside * 3.0)));
+        assert!(!shade.may_be_shaded_by(&at(-TOWARD * 3.0)));
+        for beside in [right, -right, up, -up] {
+            assert!(!shade.may_be_shaded_by(&at(TOWARD * 20.0 + beside * 6.0)));
+            assert!(!shade.may_be_shaded_by(&at(beside * 1e3)), "beside the map");
         }
-        assert!(Shade::ALL.may_be_shaded_by(&at(-toward * 3e3)));
+        assert!(Shade::ALL.may_be_shaded_by(&at(-TOWARD * 3e3)));
     }
 
     #[test]
-    fn room_holds_what_moves_a_little() {
-        let axes = [Vec3::X, Vec3::Y, Vec3::Z];
-        let of = |x: f32| {
-            let mut shade = Shade::none(axes);
-            shade.add(&at(Vec3::X * x).bounds);
+    fn between_what_is_seen_nothing_is_shaded() {
+        let [right, ..] = axes(TOWARD);
+        let mut shade = nothing();
+        for side in [-10.0, 10.0] {
+            shade.add(&around(right * side));
+        }
+        assert!(!shade.may_be_shaded_by(&at(TOWARD)));
+        assert!(shade.may_be_shaded_by(&at(TOWARD + right * 10.0)));
+        // What is beside the map is not looked up in it.
+        let before = shade;
+        shade.add(&around(right * 500.0));
+        assert_eq!(shade, before);
+    }
+
+    #[test]
+    fn lookups_reach_farther_than_what_is_seen() {
+        let [right, ..] = axes(TOWARD);
+        let mut shade = Shade {
+            reach: 6.0,
+            ..nothing()
+        };
+        shade.add(&around(Vec3::ZERO));
+        assert!(shade.may_be_shaded_by(&at(TOWARD + right * 5.0)));
+        assert!(shade.may_be_shaded_by(&at(-TOWARD * 5.0)));
+    }
+
+    #[test]
+    fn what_is_drawn_with_room_holds_what_is_seen_after_a_step() {
+        let of = |boxes: &[Vec3]| {
+            let mut shade = nothing();
+            boxes.iter().for_each(|at| shade.add(&around(*at)));
             shade
         };
-        let drawn = of(0.0).with_room();
-        // A twenty-fourth of the edge.
-        assert!(drawn.holds(&of(0.04)));
-        assert!(!drawn.holds(&of(0.045)));
-        assert!(drawn.holds(&Shade::none(axes)), "nothing needs nothing");
+        let drawn = of(&[Vec3::ZERO, Vec3::X * 3.0]);
+        for seen in [&[][..], &[Vec3::ZERO], &[Vec3::X * 3.0, Vec3::ZERO]] {
+            assert!(drawn.holds(&of(seen)), "{seen:?}");
+        }
+        assert!(!drawn.holds(&of(&[Vec3::X * 6.0])), "beside");
+        assert!(
+            !drawn.holds(&of(&[-TOWARD * 2.0])),
+            "farther from the light"
+        );
+        assert!(Shade::ALL.holds(&drawn) && !drawn.holds(&Shade::ALL));
     }
 }

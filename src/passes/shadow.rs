@@ -53,7 +53,11 @@ pub(super) struct Tile {
 impl Tile {
     /// First texel and size of what is ever looked up in it.
     fn part(&self) -> ([u32; 2], [u32; 2]) {
-        let [low, high] = self.view.shaded().map(|corner| corner * self.edge as f32);
+        let [low, high] = self
+            .view
+            .shade
+            .part()
+            .map(|corner| corner * self.edge as f32);
         let first = low.floor().as_uvec2().min(UVec2::splat(self.edge - 1));
         let end = high.ceil().as_uvec2().max(first + 1);
         let origin = UVec2::from(self.origin);
@@ -228,7 +232,6 @@ impl Shadow {
         views: &SunViews,
     ) -> &Image {
         if self.is_stale(views) {
-            let views = views.with_room();
             let edge = self.resolution();
             let origins = (0..).map(|k| [k * edge, 0]);
             let tile = |(view, origin): (&ShadowView, _)| Tile {
@@ -246,7 +249,7 @@ impl Shadow {
             }
             self.casters
                 .record(recorder, "shadow map", geometry, &tiles, &self.depth);
-            self.drawn = Some(views);
+            self.drawn = Some(*views);
         }
         &self.depth
     }
@@ -286,7 +289,7 @@ mod tests {
             edge: 256,
         };
         assert_eq!(tile(view).part(), ([256, 512], [256; 2]), "all of it");
-        view.shade = Shade::none(shadow_fit::axes(toward));
+        view.shade = Shade::none(toward, &view.shadow_from_world, 0.0);
         assert_eq!(tile(view).part().1, [256; 2], "nothing is known");
         view.shade.add(&of(10.0));
         let (first, size) = tile(view).part();

@@ -38,21 +38,6 @@ impl ShadowView {
         self.shadow_from_world.inverse().transpose()
     }
 
-    /// The first and the last corner of what is looked up in it, each 0 to 1 over the map: all of it where the shade has no end.
-    pub fn shaded(&self) -> [Vec2; 2] {
-        let Some(ends) = self.shade.across() else {
-            return [Vec2::ZERO, Vec2::ONE];
-        };
-        let [right, up, toward] = axes(self.toward);
-        let along = toward * toward.dot(self.inside);
-        let [a, b] = ends.map(|end| {
-            let point = right * end.x + up * end.y + along;
-            let clip = self.shadow_from_world.project_point3(point);
-            (clip.truncate() * 0.5 + 0.5).clamp(Vec2::ZERO, Vec2::ONE)
-        });
-        [a.min(b), a.max(b)]
-    }
-
     /// What it does not see.
     pub fn cull(&self) -> Cull {
         Cull::light(self)

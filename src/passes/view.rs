@@ -51,6 +51,13 @@ impl View {
         }
     }
 
+    /// The same from so many metres behind: on all sides it sees equally far beside this one.
+    pub fn from_behind(&self, metres: f32) -> Self {
+        let mut view = *self;
+        view.camera.eye -= view.camera.forward() * metres;
+        view
+    }
+
     /// Width over height of the whole picture.
     pub fn aspect(&self) -> f32 {
         let picture = self.window.map_or(self.size.as_vec2(), |w| w.picture);

@@ -204,24 +204,15 @@ fn resizes_are_valid() {
     running.close_well();
 }
 
-/// CPU time of a process so far, seconds.
-fn cpu_seconds(pid: u32) -> f64 {
-    let text = fs::read_to_string(format!("/proc/{pid}/stat")).expect("it runs");
-    let after_name = text.rsplit(')').next().expect("fields");
-    let fields: Vec<&str> = after_name.split_whitespace().collect();
-    let ticks = |i: usize| fields[i].parse::<f64>().expect("a number");
-    (ticks(11) + ticks(12)) / 100.0
-}
-
 #[test]
 fn a_window_at_rest_costs_nothing() {
     let running = Running::new(&["--size", "640x360", "--samples", "2"]);
     running.picture();
     // What egui animates after a start is over by then.
     sleep(Duration::from_secs(2));
-    let before = cpu_seconds(running.pid());
+    let before = running.cpu_seconds();
     sleep(Duration::from_secs(10));
-    let share = (cpu_seconds(running.pid()) - before) / 10.0;
+    let share = (running.cpu_seconds() - before) / 10.0;
     println!("at rest: {:.2} % of one core", share * 100.0);
     assert!(share < 0.02, "{share}");
     running.close_well();

@@ -1,6 +1,7 @@
 //! The program with its window open on a display of its own.
 #![allow(dead_code)]
 
+use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
@@ -76,8 +77,19 @@ impl Running {
         running
     }
 
+    /// The picture at rest.
     pub fn picture(&self) -> Picture {
-        self.display.still_picture(self.window)
+        self.display
+            .still_picture(self.window, || self.cpu_seconds())
+    }
+
+    /// CPU time of the program so far, seconds.
+    pub fn cpu_seconds(&self) -> f64 {
+        let text = fs::read_to_string(format!("/proc/{}/stat", self.pid())).expect("it runs");
+        let after_name = text.rsplit(')').next().expect("fields");
+        let fields: Vec<&str> = after_name.split_whitespace().collect();
+        let ticks = |i: usize| fields[i].parse::<f64>().expect("a number");
+        (ticks(11) + ticks(12)) / 100.0
     }
 
     /// Does something that changes the picture, and gives the new one at rest.

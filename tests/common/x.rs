@@ -35,6 +35,9 @@ pub struct Display {
     xtest: u8,
 }
 
+/// CPU seconds that a program at rest may use in a second: what egui animates.
+const MOST_AT_REST: f64 = 0.2;
+
 impl Display {
     /// Starts it. Its absence is a failure.
     pub fn new() -> Self {
@@ -154,15 +157,18 @@ impl Display {
         Picture::from_srgb8([width as usize, height as usize], &bytes)
     }
 
-    /// The picture when it has stood still for a second.
-    pub fn still_picture(&self, window: Window) -> Picture {
+    /// The picture when it has stood still for a second in which the program had nothing to do, by its CPU time in seconds: while
+    /// it loads or a frame takes long, the picture stands still too.
+    pub fn still_picture(&self, window: Window, cpu_seconds: impl Fn() -> f64) -> Picture {
         let started = Instant::now();
         let mut last = self.picture(window, None);
         loop {
+            let before = cpu_seconds();
             sleep(Duration::from_secs(1));
+            let is_busy = cpu_seconds() - before > MOST_AT_REST;
             let next = self.picture(window, None);
             let is_blank = next.rgb.iter().all(|p| *p == next.rgb[0]);
-            if next == last && !is_blank {
+            if next == last && !is_blank && !is_busy {
                 return next;
             }
             assert!(

@@ -157,9 +157,11 @@ fn nth_size(n: u32) -> (u32, u32) {
 fn three_hundred_resizes_leave_nothing_behind() {
     let running = Running::bare(&["--size", "320x180", "--samples", "1"]);
     running.picture();
-    // The allocator takes some 3 % more in the first hundreds and gives a part of it back: what is lost for good goes on growing.
+    // Freed memory stays with the process, which takes up to 3 % more in the first four hundreds and hardly .5 % in the next eight:
+    // what is lost for good would go on growing.
+    let settling = 400;
     let mut settled = 0;
-    for n in 1..=500 {
+    for n in 1..=settling + 300 {
         let (width, height) = nth_size(n);
         running.display.resize(running.window, width, height);
         if n % 60 == 0 {
@@ -174,14 +176,14 @@ fn three_hundred_resizes_leave_nothing_behind() {
             running.display.focus(running.window);
             running.picture();
         }
-        if n % 50 == 0 && n <= 200 {
+        if n % 50 == 0 && n <= settling {
             settled = settled.max(resident(running.pid()));
         }
     }
     let last = resident(running.pid());
     let growth = last as f64 / settled as f64 - 1.0;
     println!(
-        "memory in the first 200 resizes at most {settled}, 300 later {last}: {:+.2} %",
+        "memory in the first {settling} resizes at most {settled}, 300 later {last}: {:+.2} %",
         growth * 100.0
     );
     assert!(growth <= 0.02, "{settled} -> {last}");

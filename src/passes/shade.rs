@@ -64,8 +64,8 @@ impl Shade {
         farthest: [[f32::NEG_INFINITY; SQUARES]; SQUARES],
     };
 
-    /// Nothing yet, of an upright square map that a light in the direction `toward` draws without perspective; lookups reach so
-    /// many metres farther than what is taken in.
+    /// Nothing yet, of a square map along the axes of `shadow_fit`, without perspective, of a light in
+    /// the direction `toward`; lookups reach so many metres farther than what is taken in.
     pub fn none(toward: Vec3, shadow_from_world: &Mat4, reach: f32) -> Self {
         let half = 0.5 * CELLS as f32;
         let origin = shadow_from_world.w_axis.truncate().truncate();
@@ -185,7 +185,7 @@ mod tests {
         }
     }
 
-    /// Of a map of 64 m.
+    /// Of a map of about 50 m.
     fn nothing() -> Shade {
         let casters = Bounds {
             min: Vec3::splat(-16.0),

@@ -53,11 +53,8 @@ pub(super) struct Tile {
 impl Tile {
     /// First texel and size of what is ever looked up in it.
     fn part(&self) -> ([u32; 2], [u32; 2]) {
-        let [low, high] = self
-            .view
-            .shade
-            .part()
-            .map(|corner| corner * self.edge as f32);
+        let corners = self.view.shade.part();
+        let [low, high] = corners.map(|corner| corner * self.edge as f32);
         let first = low.floor().as_uvec2().min(UVec2::splat(self.edge - 1));
         let end = high.ceil().as_uvec2().max(first + 1);
         let origin = UVec2::from(self.origin);

@@ -132,24 +132,22 @@ impl SunViews {
         room: f32,
         shadows: &Shadows,
     ) {
-        let reach = shadows.reach();
-        let mut shades = self
-            .views
-            .map(|view| Shade::none(view.toward, &view.shadow_from_world, reach * view.texel));
+        let views = &mut self.views[..self.count];
+        for view in &mut *views {
+            let reach = shadows.reach() * view.texel;
+            view.shade = Shade::none(view.toward, &view.shadow_from_world, reach);
+        }
         for cluster in seen {
             let Bounds { min, max } = cluster.bounds;
             let farthest = (max - eye).abs().max((eye - min).abs()).max_element();
             let nearest = (min - eye).max(eye - max).max_element();
             let mut finer = 0.0;
-            for (shade, reach) in shades.iter_mut().zip(self.reach).take(self.count) {
+            for (view, reach) in views.iter_mut().zip(self.reach) {
                 if farthest + room >= finer && nearest - room <= reach {
-                    shade.add(&cluster.bounds);
+                    view.shade.add(&cluster.bounds);
                 }
                 finer = BLEND * reach;
             }
-        }
-        for (view, shade) in self.views.iter_mut().zip(shades) {
-            view.shade = shade;
         }
     }
 

@@ -224,8 +224,9 @@ impl Frame {
                 let sun = sample.sun_direction;
                 let mut views = SunViews::fit(sun, bounds, casters, &view, resolution, count);
                 let (eye, shadows) = (camera.eye, &self.settings.lighting.shadows);
-                views.shade(self.geometry.seen(&view), eye, 0.0, shadows);
-                if shadow.is_stale(&views) {
+                let seen = self.geometry.seen(&view);
+                let drawn = shadow.drawn();
+                if !drawn.is_some_and(|drawn| views.stay(drawn, seen, eye, shadows)) {
                     let room = shade::room(bounds, eye);
                     let behind = view.from_behind(room);
                     views.shade(self.geometry.around(&behind), eye, room, shadows);

@@ -132,32 +132,43 @@ impl SunViews {
         room: f32,
         shadows: &Shadows,
     ) {
-        let views = &mut self.views[..self.count];
-        for view in &mut *views {
-            let reach = shadows.reach() * view.texel;
-            view.shade = Shade::none(view.toward, &view.shadow_from_world, reach);
+        for view in &mut self.views[..self.count] {
+            view.shade = Shade::none(view.toward, &view.shadow_from_world);
         }
         for cluster in seen {
-            let Bounds { min, max } = cluster.bounds;
-            let farthest = (max - eye).abs().max((eye - min).abs()).max_element();
-            let nearest = (min - eye).max(eye - max).max_element();
-            let mut finer = 0.0;
-            for (view, reach) in views.iter_mut().zip(self.reach) {
-                if farthest + room >= finer && nearest - room <= reach {
-                    view.shade.add(&cluster.bounds);
-                }
-                finer = BLEND * reach;
+            for k in looked_up(&self.reach, &cluster.bounds, eye, room) {
+                let view = &mut self.views[k];
+                let reach = shadows.reach() * view.texel;
+                view.shade.add(&cluster.bounds, reach);
             }
         }
     }
 
-    /// Whether maps drawn for these views serve the others.
-    pub fn serve(&self, others: &Self) -> bool {
-        let serves = |(mine, other): (&ShadowView, &ShadowView)| {
-            let shade = mine.shade;
-            *mine == ShadowView { shade, ..*other } && shade.holds(&other.shade)
+    /// Takes over what maps of the same views were drawn for, if that holds all of `seen`; whether it does.
+    pub fn stay<'c>(
+        &mut self,
+        drawn: &Self,
+        seen: impl IntoIterator<Item = &'c Cluster>,
+        eye: Vec3,
+        shadows: &Shadows,
+    ) -> bool {
+        let is_same = |(mine, other): (&ShadowView, &ShadowView)| {
+            let shade = other.shade;
+            *other == ShadowView { shade, ..*mine }
         };
-        self.count == others.count && self.iter().zip(others.iter()).all(serves)
+        let are_same = self.count == drawn.count && self.iter().zip(drawn.iter()).all(is_same);
+        let is_held = |cluster: &Cluster| {
+            looked_up(&self.reach, &cluster.bounds, eye, 0.0).all(|k| {
+                let view = &drawn.views[k];
+                let reach = shadows.reach() * view.texel;
+                view.shade.holds(&cluster.bounds, reach)
+            })
+        };
+        let stays = are_same && seen.into_iter().all(is_held);
+        if stays {
+            self.views = drawn.views;
+        }
+        stays
     }
 
     /// The maps, the finest first.
@@ -182,6 +193,26 @@ impl SunViews {
             tan_radius: SUN_ANGULAR_RADIUS.tan() as f32,
         }
     }
+}
+
+/// The maps in which something of a box is looked up, from an eye that may go `room` metres; `reach` is that of the views.
+fn looked_up(
+    reach: &[f32; MOST],
+    bounds: &Bounds,
+    eye: Vec3,
+    room: f32,
+) -> impl Iterator<Item = usize> {
+    let &Bounds { min, max } = bounds;
+    let farthest = (max - eye).abs().max((eye - min).abs()).max_element() + room;
+    let nearest = (min - eye).max(eye - max).max_element() - room;
+    // A map begins where the one before is blended into it; behind the whole, which reaches without end, there is none.
+    let reach = *reach;
+    let mut finer = 0.0;
+    (0..MOST).filter(move |&k| {
+        let is_in = farthest >= finer && nearest <= reach[k];
+        finer = BLEND * reach[k];
+        is_in
+    })
 }
 
 /// From the eye to the sides of the cubes, metres, in equal ratios up to what holds the scene.

@@ -34,8 +34,6 @@ pub struct Shade {
     scale: f32,
     /// Where the axes cross the map, cells from its corner.
     origin: Vec2,
-    /// How far from what is seen the map is looked up, metres.
-    reach: f32,
     /// Rows of cells, a bit for each.
     rows: [u128; CELLS],
     /// Lowest coordinate toward the light in each square, metres; infinity where nothing is shaded.
@@ -53,27 +51,30 @@ struct Under {
     toward: [f32; 2],
 }
 
+impl Under {
+    fn rows_of_squares(&self) -> RangeInclusive<usize> {
+        self.rows.start() / SQUARE..=self.rows.end() / SQUARE
+    }
+}
+
 impl Shade {
     /// Everything.
     pub const ALL: Self = Self {
         axes: [Vec3::ZERO; 3],
         scale: 0.0,
         origin: Vec2::ZERO,
-        reach: 0.0,
         rows: [u128::MAX; CELLS],
         farthest: [[f32::NEG_INFINITY; SQUARES]; SQUARES],
     };
 
-    /// Nothing yet, of a square map along the axes of `shadow_fit`, without perspective, of a light in
-    /// the direction `toward`; lookups reach so many metres farther than what is taken in.
-    pub fn none(toward: Vec3, shadow_from_world: &Mat4, reach: f32) -> Self {
+    /// Nothing yet, of a square map along the axes of `shadow_fit`, without perspective, of a light in the direction `toward`.
+    pub fn none(toward: Vec3, shadow_from_world: &Mat4) -> Self {
         let half = 0.5 * CELLS as f32;
         let origin = shadow_from_world.w_axis.truncate().truncate();
         Self {
             axes: axes(toward),
             scale: half * shadow_from_world.row(0).truncate().length(),
             origin: half * (origin + 1.0),
-            reach,
             rows: [0; CELLS],
             farthest: [[f32::INFINITY; SQUARES]; SQUARES],
         }
@@ -84,7 +85,7 @@ impl Shade {
         self.rows.iter().all(|row| *row == 0)
     }
 
-    /// What a box covers of the map, if it does not lie beside it.
+    /// What is covered by a box that is so many metres larger on all sides, if it does not lie beside the map.
     fn under(&self, bounds: &Bounds, reach: f32) -> Option<Under> {
         let (centre, half) = (bounds.centre(), 0.5 * bounds.extent());
         let at = Vec3::from_array(self.axes.map(|axis| axis.dot(centre)));
@@ -105,12 +106,12 @@ impl Shade {
         })
     }
 
-    /// Takes in a box.
-    pub fn add(&mut self, bounds: &Bounds) {
-        let Some(under) = self.under(bounds, self.reach) else {
+    /// Takes in a box; lookups reach so many metres farther.
+    pub fn add(&mut self, bounds: &Bounds, reach: f32) {
+        let Some(under) = self.under(bounds, reach) else {
             return;
         };
-        let squares = under.rows.start() / SQUARE..=under.rows.end() / SQUARE;
+        let squares = under.rows_of_squares();
         for row in &mut self.rows[under.rows] {
             *row |= under.columns;
         }
@@ -152,12 +153,14 @@ impl Shade {
         ]
     }
 
-    /// Whether all of another one, of the same map, is within this one.
-    pub fn holds(&self, other: &Self) -> bool {
-        let mut rows = self.rows.iter().zip(&other.rows);
-        let [mine, others] = [self, other].map(|shade| shade.farthest.as_flattened());
-        rows.all(|(mine, other)| other & !mine == 0)
-            && mine.iter().zip(others).all(|(mine, other)| mine <= other)
+    /// Whether a box, of which lookups reach so many metres farther, is within it already: taking it in would change nothing.
+    pub fn holds(&self, bounds: &Bounds, reach: f32) -> bool {
+        self.under(bounds, reach).is_none_or(|under| {
+            let mut rows = self.rows[under.rows.clone()].iter();
+            let squares = self.farthest[under.rows_of_squares()].iter();
+            let mut depths = squares.flat_map(|row| &row[under.squares.clone()]);
+            rows.all(|row| under.columns & !row == 0) && depths.all(|z| *z <= under.toward[0])
+        })
     }
 }
 
@@ -193,7 +196,7 @@ mod tests {
         };
         let map = shadow_fit::fit_all(TOWARD, &casters, 1024);
         assert!((30.0..90.0).contains(&(map.texel * 1024.0)), "{map:?}");
-        Shade::none(TOWARD, &map.shadow_from_world, 0.0)
+        Shade::none(TOWARD, &map.shadow_from_world)
     }
 
     #[test]
@@ -206,7 +209,7 @@ mod tests {
         );
         assert!(shade.is_nothing());
         assert_eq!(shade.part(), [Vec2::ZERO, Vec2::ONE]);
-        shade.add(&around(Vec3::ZERO));
+        shade.add(&around(Vec3::ZERO), 0.0);
         assert!(!shade.is_nothing() && !Shade::ALL.is_nothing());
         let [low, high] = shade.part();
         assert!(low.cmplt(Vec2::splat(0.5)).all() && high.cmpgt(Vec2::splat(0.5)).all());
@@ -227,44 +230,45 @@ mod tests {
         let [right, ..] = axes(TOWARD);
         let mut shade = nothing();
         for side in [-10.0, 10.0] {
-            shade.add(&around(right * side));
+            shade.add(&around(right * side), 0.0);
         }
         assert!(!shade.may_be_shaded_by(&at(TOWARD)));
         assert!(shade.may_be_shaded_by(&at(TOWARD + right * 10.0)));
         // What is beside the map is not looked up in it.
         let before = shade;
-        shade.add(&around(right * 500.0));
+        shade.add(&around(right * 500.0), 0.0);
         assert_eq!(shade, before);
     }
 
     #[test]
     fn lookups_reach_farther_than_what_is_seen() {
         let [right, ..] = axes(TOWARD);
-        let mut shade = Shade {
-            reach: 6.0,
-            ..nothing()
-        };
-        shade.add(&around(Vec3::ZERO));
+        let mut shade = nothing();
+        shade.add(&around(Vec3::ZERO), 6.0);
         assert!(shade.may_be_shaded_by(&at(TOWARD + right * 5.0)));
         assert!(shade.may_be_shaded_by(&at(-TOWARD * 5.0)));
     }
 
     #[test]
     fn what_is_drawn_with_room_holds_what_is_seen_after_a_step() {
-        let of = |boxes: &[Vec3]| {
-            let mut shade = nothing();
-            boxes.iter().for_each(|at| shade.add(&around(*at)));
-            shade
-        };
-        let drawn = of(&[Vec3::ZERO, Vec3::X * 3.0]);
-        for seen in [&[][..], &[Vec3::ZERO], &[Vec3::X * 3.0, Vec3::ZERO]] {
-            assert!(drawn.holds(&of(seen)), "{seen:?}");
+        let mut drawn = nothing();
+        let boxes = [Vec3::ZERO, Vec3::X * 3.0].map(around);
+        boxes.iter().for_each(|seen| drawn.add(seen, 0.5));
+        for seen in &boxes {
+            assert!(drawn.holds(seen, 0.5) && drawn.holds(seen, 0.0));
+            assert!(!nothing().holds(seen, 0.0), "nothing");
+            assert!(!drawn.holds(seen, 3.0), "lookups reach farther");
         }
-        assert!(!drawn.holds(&of(&[Vec3::X * 6.0])), "beside");
+        assert!(!drawn.holds(&around(Vec3::X * 6.0), 0.0), "beside");
         assert!(
-            !drawn.holds(&of(&[-TOWARD * 2.0])),
+            !drawn.holds(&around(-TOWARD * 2.0), 0.0),
             "farther from the light"
         );
-        assert!(Shade::ALL.holds(&drawn) && !drawn.holds(&Shade::ALL));
+        assert!(drawn.holds(&around(Vec3::X * 1e3), 0.0), "beside the map");
+        let everything = Bounds {
+            min: Vec3::splat(-1e3),
+            max: Vec3::splat(1e3),
+        };
+        assert!(Shade::ALL.holds(&everything, 0.0) && !drawn.holds(&everything, 0.0));
     }
 }

@@ -216,9 +216,16 @@ impl Shadow {
         self.depth.size()[1]
     }
 
+    /// What the maps were drawn for.
+    pub fn drawn(&self) -> Option<&SunViews> {
+        self.drawn.as_ref()
+    }
+
     /// Whether the maps of these views must be drawn anew.
     pub fn is_stale(&self, views: &SunViews) -> bool {
-        !self.drawn.is_some_and(|drawn| drawn.serve(views))
+        !self
+            .drawn()
+            .is_some_and(|drawn| drawn.iter().eq(views.iter()))
     }
 
     /// Draws the map if the sun or the fit changed.
@@ -286,9 +293,9 @@ mod tests {
             edge: 256,
         };
         assert_eq!(tile(view).part(), ([256, 512], [256; 2]), "all of it");
-        view.shade = Shade::none(toward, &view.shadow_from_world, 0.0);
+        view.shade = Shade::none(toward, &view.shadow_from_world);
         assert_eq!(tile(view).part().1, [256; 2], "nothing is known");
-        view.shade.add(&of(10.0));
+        view.shade.add(&of(10.0), 0.0);
         let (first, size) = tile(view).part();
         assert!(size.iter().all(|edge| *edge < 80), "{size:?}");
         for corner in of(10.0).corners() {

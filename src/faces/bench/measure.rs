@@ -77,8 +77,7 @@ impl<'j> Subject<'j> {
 /// A frame and the recorders that draw it: one that times passes, one that leaves the frame whole.
 pub struct Bench<'j> {
     job: &'j Job,
-    /// From where.
-    pub camera: Camera,
+    camera: Camera,
     motion: Motion,
     frame: Frame,
     parts: Recorder,

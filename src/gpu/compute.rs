@@ -82,7 +82,7 @@ impl<'r> Pass<'r> {
         self.recorder.end_timing(&mark);
         self.recorder.unlabel();
         let traffic = self.stored_traffic(target);
-        self.recorder.end_work(&mark, || traffic);
+        self.recorder.end_work(&mark, 1, || traffic);
         self.recorder.isolate(&mark);
     }
 

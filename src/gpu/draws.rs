@@ -156,6 +156,7 @@ impl<'r> Draws<'_, 'r> {
     pub fn indexed(&mut self, first: u32, count: u32) {
         self.pass.flush();
         self.pass.buffer_bytes += 4 * u64::from(count);
+        self.pass.drawn += 1;
         let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
         // SAFETY: the range lies within the bound index buffer (checked when the scene was loaded).
         unsafe { raw.cmd_draw_indexed(command, count, 1, first, 0, 0) };
@@ -169,6 +170,7 @@ impl<'r> Draws<'_, 'r> {
     /// Draws three vertices without vertex data.
     pub fn triangle(&mut self) {
         self.pass.flush();
+        self.pass.drawn += 1;
         let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
         // SAFETY: the pipeline has no vertex streams, so any vertex index is good.
         unsafe { raw.cmd_draw(command, 3, 1, 0, 0) };

@@ -21,7 +21,7 @@ impl Recorder {
         image.set_last_use(Use::CopySource);
         self.end_timing(&mark);
         self.unlabel();
-        self.end_work(&mark, || mip_traffic(image));
+        self.end_work(&mark, u64::from(image.levels() - 1), || mip_traffic(image));
         self.isolate(&mark);
     }
 

@@ -95,6 +95,8 @@ pub struct Pass<'r> {
     pub(super) faces: Faces,
     /// Bytes of the buffers and textures that are read.
     pub(super) buffer_bytes: u64,
+    /// Draws so far.
+    pub(super) drawn: u64,
 }
 
 impl<'r> Pass<'r> {
@@ -118,6 +120,7 @@ impl<'r> Pass<'r> {
             area: None,
             faces: Faces::default(),
             buffer_bytes: 0,
+            drawn: 0,
         }
     }
 
@@ -217,7 +220,7 @@ impl<'r> Pass<'r> {
         };
         self.recorder.unlabel();
         let traffic = self.traffic();
-        self.recorder.end_work(&mark, || traffic);
+        self.recorder.end_work(&mark, self.drawn, || traffic);
         self.recorder.isolate(&mark);
     }
 

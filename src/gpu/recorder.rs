@@ -322,11 +322,11 @@ impl Recorder {
         }
     }
 
-    /// With [`Timing::Work`], notes what the pass that was just recorded touches.
-    pub(super) fn end_work(&mut self, mark: &Mark, traffic: impl FnOnce() -> Traffic) {
+    /// With [`Timing::Work`], notes what the pass that was just recorded is made of, and what it touches.
+    pub(super) fn end_work(&mut self, mark: &Mark, draws: u64, traffic: impl FnOnce() -> Traffic) {
         if let (Mark::Work(index), Some(work)) = (mark, &mut self.work) {
             work.end(self.command, *index);
-            work.note(*index, traffic());
+            work.note(*index, draws, traffic());
         }
     }
 

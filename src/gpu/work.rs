@@ -13,6 +13,8 @@ use super::image::Image;
 pub struct PassWork {
     /// Name of the pass.
     pub name: &'static str,
+    /// Draws, dispatches or copies that it is made of.
+    pub draws: u64,
     /// Memory that it must touch.
     pub traffic: Traffic,
     /// What the device counted, where it counts.
@@ -156,6 +158,7 @@ impl WorkLog {
     pub(super) fn begin(&mut self, command: vk::CommandBuffer, name: &'static str) -> usize {
         self.passes.push(PassWork {
             name,
+            draws: 0,
             traffic: Traffic::default(),
             statistics: None,
         });
@@ -180,8 +183,9 @@ impl WorkLog {
         }
     }
 
-    pub(super) fn note(&mut self, index: usize, traffic: Traffic) {
+    pub(super) fn note(&mut self, index: usize, draws: u64, traffic: Traffic) {
         if let Some(pass) = self.passes.get_mut(index) {
+            pass.draws = draws;
             pass.traffic = traffic;
         }
     }

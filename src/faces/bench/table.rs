@@ -69,8 +69,9 @@ impl Report {
     /// Bytes and counters of each pass.
     fn work(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let counted = self.passes.iter().any(|row| row.work.statistics.is_some());
-        let [name, pixels, read, written, rate] = [
+        let [name, draws, pixels, read, written, rate] = [
             "work (bytes: at least)",
+            "draws",
             "pixels",
             "read B/px",
             "write B/px",
@@ -78,7 +79,7 @@ impl Report {
         ];
         write!(
             f,
-            "{name:24} {pixels:>9} {read:>10} {written:>10} {rate:>7}"
+            "{name:24} {draws:>6} {pixels:>9} {read:>10} {written:>10} {rate:>7}"
         )?;
         if counted {
             let [vertices, clipped, shaded] = ["vertices", "triangles", "shaded/px"];
@@ -94,8 +95,8 @@ fn work(f: &mut Formatter<'_>, row: &Row) -> fmt::Result {
     let rate = w.gb_per_s.map_or("-".to_owned(), |r| format!("{r:.2}"));
     write!(
         f,
-        "{:24} {:9} {:10.2} {:10.2} {rate:>7}",
-        row.name, w.pixels, w.bytes_read_per_pixel, w.bytes_written_per_pixel
+        "{:24} {:6} {:9} {:10.2} {:10.2} {rate:>7}",
+        row.name, w.draws, w.pixels, w.bytes_read_per_pixel, w.bytes_written_per_pixel
     )?;
     if let Some(s) = &w.statistics {
         let shaded = (s.fragment_invocations + s.compute_invocations) as f64;

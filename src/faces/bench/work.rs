@@ -7,6 +7,9 @@ use crate::gpu::{PassWork, PipelineStatistics, Traffic};
 /// The work of all passes of one name in a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Work {
+    /// Draws, dispatches or copies.
+    #[serde(default)]
+    pub draws: u64,
     /// Pixels of the targets, all layers.
     pub pixels: u64,
     /// Bytes that must be read (see [`Traffic`]), for each pixel.
@@ -38,8 +41,10 @@ impl Work {
     /// The work of the passes called `name`, done in `ms` milliseconds.
     pub fn of(name: &str, passes: &[PassWork], ms: f64) -> Self {
         let mut total = Traffic::default();
+        let mut draws = 0;
         let mut counted: Option<Statistics> = None;
         for pass in passes.iter().filter(|pass| pass.name == name) {
+            draws += pass.draws;
             total.pixels += pass.traffic.pixels;
             total.bytes_read += pass.traffic.bytes_read;
             total.bytes_written += pass.traffic.bytes_written;
@@ -50,6 +55,7 @@ impl Work {
         let per_pixel = |bytes: u64| bytes as f64 / total.pixels.max(1) as f64;
         let bytes = (total.bytes_read + total.bytes_written) as f64;
         Self {
+            draws,
             pixels: total.pixels,
             bytes_read_per_pixel: per_pixel(total.bytes_read),
             bytes_written_per_pixel: per_pixel(total.bytes_written),
@@ -77,6 +83,7 @@ mod tests {
     fn passes_of_one_name_are_summed() {
         let pass = |name, pixels, bytes_read, bytes_written, fragment_invocations| PassWork {
             name,
+            draws: 2,
             traffic: Traffic {
                 pixels,
                 bytes_read,
@@ -93,7 +100,7 @@ mod tests {
             pass("sky", 300, 400, 2400, 300),
         ];
         let work = Work::of("sky", &passes, 2.0);
-        assert_eq!(work.pixels, 400);
+        assert_eq!((work.draws, work.pixels), (4, 400));
         assert_eq!(work.bytes_read_per_pixel, 2.0);
         assert_eq!(work.bytes_written_per_pixel, 8.0);
         // 4000 bytes in 2 ms.

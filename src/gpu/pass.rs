@@ -1,6 +1,8 @@
 //! One pass as a chain on the recorder: each word binds, registers the use and checks it against what the
 //! pipeline declares.
 
+use std::ops::Range;
+
 use arrayvec::ArrayVec;
 use ash::vk;
 
@@ -9,15 +11,16 @@ use super::buffer::Buffer;
 use super::draws::{Draws, Faces};
 use super::image::{Image, is_depth};
 use super::layout::{GpuStruct, check_layout};
-use super::pipeline::{Pipeline, block_size};
+use super::pipeline::Pipeline;
 use super::recorder::Recorder;
 use super::sampler::Sampler;
-use super::shader::{Binding, BindingKind};
+use super::shader::{Binding, BindingKind, Field};
 use super::work::{Traffic, texels};
 
 const MAX_BINDINGS: usize = 16;
 const MAX_COLORS: usize = 8;
-const MAX_PUSH: usize = 128;
+/// Words of push constants that every device has room for.
+const MAX_PUSH: usize = 32;
 
 /// What becomes of the old content of an attachment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,9 +90,11 @@ pub struct Pass<'r> {
     pub(super) stores: ArrayVec<&'r Image, MAX_COLORS>,
     colors: ArrayVec<(&'r Image, Load), MAX_COLORS>,
     depth: Option<(&'r Image, Load)>,
-    push: ArrayVec<u8, MAX_PUSH>,
-    /// Whether the next draw needs the push constants: set anew, or never given to the command buffer.
-    pushed_anew: bool,
+    push: PushWords,
+    /// What of it the command buffer has.
+    pushed: PushWords,
+    /// Members of the host struct that was seen to agree with the pipeline's block.
+    checked_push: Option<&'static [Field]>,
     /// Part of the target, when not all of it is drawn to.
     area: Option<vk::Rect2D>,
     pub(super) faces: Faces,
@@ -115,8 +120,9 @@ impl<'r> Pass<'r> {
             stores: ArrayVec::new(),
             colors: ArrayVec::new(),
             depth: None,
-            push: ArrayVec::new(),
-            pushed_anew: true,
+            push: PushWords::NONE,
+            pushed: PushWords::NONE,
+            checked_push: None,
             area: None,
             faces: Faces::default(),
             buffer_bytes: 0,
@@ -299,33 +305,31 @@ impl<'r> Pass<'r> {
         self.bind(binding, Resource::Image(info));
     }
 
-    fn check_block(
-        &self,
-        name: &str,
-        host: &[super::shader::Field],
-        block: &[super::shader::Field],
-    ) {
+    fn check_block(&self, name: &str, host: &[Field], block: &[Field]) {
         if let Err(difference) = check_layout(host, block) {
             panic!("pass {}: {name}: {difference}", self.name);
         }
     }
 
     pub(super) fn set_push<T: GpuStruct>(&mut self, value: &T) {
-        let Some((fields, _)) = self.pipeline.push else {
-            panic!("pass {}: no push constants declared", self.name)
-        };
-        self.check_block("push", T::FIELDS, fields);
-        self.push.clear();
-        self.pushed_anew = true;
-        let fits = self
-            .push
-            .try_extend_from_slice(bytemuck::bytes_of(value))
-            .is_ok();
-        assert!(
-            fits,
-            "pass {}: more than {MAX_PUSH} bytes of push constants",
-            self.name
-        );
+        // A pass may push for thousands of draws: the same members need no second look.
+        let checked = self
+            .checked_push
+            .is_some_and(|c| std::ptr::eq(c, T::FIELDS));
+        if !checked {
+            let Some((fields, _)) = self.pipeline.push else {
+                panic!("pass {}: no push constants declared", self.name)
+            };
+            self.check_block("push", T::FIELDS, fields);
+            let fits = size_of::<T>() <= 4 * MAX_PUSH && size_of::<T>().is_multiple_of(4);
+            assert!(
+                fits,
+                "pass {}: not {MAX_PUSH} words of push constants",
+                self.name
+            );
+            self.checked_push = Some(T::FIELDS);
+        }
+        self.push = PushWords::of(value);
     }
 
     fn check_attachments(&self) {
@@ -452,26 +456,29 @@ impl<'r> Pass<'r> {
             self.flush_descriptors();
         }
         self.changed = false;
-        if let Some((fields, stages)) = self.pipeline.push
-            && std::mem::take(&mut self.pushed_anew)
-        {
-            assert_eq!(
-                self.push.len() as u32,
-                block_size(fields),
-                "pass {}: push",
-                self.name
-            );
-            // SAFETY: the range was declared for these stages by the layout.
-            unsafe {
-                self.recorder.context.raw().cmd_push_constants(
-                    self.recorder.command,
-                    self.pipeline.layout(),
-                    stages,
-                    0,
-                    &self.push,
-                );
-            }
+        if let Some((_, stages)) = self.pipeline.push {
+            self.flush_push(stages);
         }
+    }
+
+    /// Pushes the words that differ from those pushed before, from the first to the last.
+    fn flush_push(&mut self, stages: vk::ShaderStageFlags) {
+        assert!(self.push.count > 0, "pass {}: push", self.name);
+        let changed = self.push.changed_from(&self.pushed);
+        if changed.is_empty() {
+            return;
+        }
+        // SAFETY: the block was declared for these stages by the layout; its size was checked when it was set.
+        unsafe {
+            self.recorder.context.raw().cmd_push_constants(
+                self.recorder.command,
+                self.pipeline.layout(),
+                stages,
+                4 * changed.start as u32,
+                bytemuck::cast_slice(&self.push.words[changed]),
+            );
+        }
+        self.pushed = self.push;
     }
 
     fn flush_descriptors(&mut self) {
@@ -516,4 +523,58 @@ impl<'r> Pass<'r> {
     }
 }
 
+/// A block of push constants, word by word.
+#[derive(Clone, Copy)]
+struct PushWords {
+    words: [u32; MAX_PUSH],
+    count: usize,
+}
+
+impl PushWords {
+    const NONE: Self = Self {
+        words: [0; MAX_PUSH],
+        count: 0,
+    };
+
+    fn of<T: GpuStruct>(value: &T) -> Self {
+        let bytes = bytemuck::bytes_of(value);
+        let mut this = Self::NONE;
+        this.count = bytes.len() / 4;
+        bytemuck::cast_slice_mut(&mut this.words)[..bytes.len()].copy_from_slice(bytes);
+        this
+    }
+
+    /// From the first to the last of the words in which it differs from another; all if that is not of its size.
+    fn changed_from(&self, old: &Self) -> Range<usize> {
+        if self.count != old.count {
+            return 0..self.count;
+        }
+        let differs = |k: &usize| self.words[*k] != old.words[*k];
+        let first = (0..self.count).find(differs).unwrap_or(self.count);
+        let last = (first..self.count).rfind(differs);
+        first..last.map_or(first, |last| last + 1)
+    }
+}
+
 type AttachmentInfo = vk::RenderingAttachmentInfo<'static>;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu_struct;
+
+    gpu_struct! {
+        struct Block { a: f32, b: [f32; 2], c: u32 }
+    }
+
+    #[test]
+    fn of_a_block_only_what_changed_is_pushed() {
+        let of = |a, b, c| PushWords::of(&Block { a, b, c });
+        let first = of(1.0, [2.0, 3.0], 4);
+        assert_eq!(first.changed_from(&PushWords::NONE), 0..4, "all at first");
+        assert_eq!(first.changed_from(&first), 4..4);
+        assert_eq!(of(1.0, [2.0, 3.0], 5).changed_from(&first), 3..4);
+        assert_eq!(of(0.0, [2.0, 3.0], 4).changed_from(&first), 0..1);
+        assert_eq!(of(1.0, [9.0, 3.0], 9).changed_from(&first), 1..4);
+    }
+}

@@ -19,14 +19,52 @@ enum Viewer {
     Toward(Vec3),
 }
 
+/// Left, right, bottom and top of a view side by side: a point p is inside where the products of its planes with (p, 1) are not
+/// negative.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Sides {
+    /// x, y and z of their normals.
+    normals: [Vec4; 3],
+    offsets: Vec4,
+}
+
 /// A view as culling sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cull {
-    /// Left, right, bottom, top: inside where the product with (p, 1) is not negative.
-    planes: [Vec4; 4],
+    sides: Sides,
     viewer: Viewer,
     front: Winding,
-    shade: Shade,
+    /// Of a light: what it shades in the picture.
+    shade: Option<Shade>,
+}
+
+impl Sides {
+    /// Of a matrix to clip space (Gribb and Hartmann 2001): -w <= x <= w and -w <= y <= w, as products with (p, 1).
+    fn of(clip_from_world: &Mat4) -> Self {
+        let [x, y, w] = [0, 1, 3].map(|i| clip_from_world.row(i));
+        let planes = Mat4::from_cols(w + x, w - x, w + y, w - y).transpose();
+        Self {
+            normals: [planes.x_axis, planes.y_axis, planes.z_axis],
+            offsets: planes.w_axis,
+        }
+    }
+
+    /// Whether some of a box is on the inner side of all of them, or so near that rounding decides.
+    fn reach(&self, bounds: &Bounds) -> bool {
+        let (centre, half) = (
+            0.5 * (bounds.min + bounds.max),
+            0.5 * (bounds.max - bounds.min),
+        );
+        let along = |normals: [Vec4; 3], p: Vec3| {
+            let [x, y, z] = normals;
+            x * p.x + y * p.y + z * p.z
+        };
+        let sizes = self.normals.map(Vec4::abs);
+        let size = along(sizes, half);
+        let slack = 1e-5 * (along(sizes, centre.abs()) + size + self.offsets.abs());
+        let farthest = along(self.normals, centre) + self.offsets + size;
+        farthest.cmpge(-slack).all()
+    }
 }
 
 impl Cull {
@@ -52,41 +90,33 @@ impl Cull {
     pub fn light(map: &ShadowView) -> Self {
         let viewer = Viewer::Toward(map.toward);
         Self {
-            shade: map.shade,
+            shade: Some(map.shade),
             ..Self::new(map.shadow_from_world, viewer, map.inside, map.texel)
         }
     }
 
     fn new(clip_from_world: Mat4, viewer: Viewer, at: Vec3, size: f32) -> Self {
-        let row = |i| clip_from_world.row(i);
-        // Gribb and Hartmann 2001: -w <= x <= w, as products with (p, 1).
-        let planes = [
-            row(3) + row(0),
-            row(3) - row(0),
-            row(3) + row(1),
-            row(3) - row(1),
-        ];
         let toward = match viewer {
             Viewer::At { eye, .. } => (eye - at).normalize(),
             Viewer::Toward(toward) => toward,
         };
         Self {
-            planes,
+            sides: Sides::of(&clip_from_world),
             viewer,
             front: front(clip_from_world, toward, at, size),
-            shade: Shade::ALL,
+            shade: None,
         }
     }
 
     /// Whether some of a cluster may be seen.
     pub fn sees(&self, cluster: &Cluster) -> bool {
-        self.holds(cluster) && !self.is_behind(cluster) && self.shade.may_be_shaded_by(cluster)
+        let shades = |shade: &Shade| shade.may_be_shaded_by(cluster);
+        self.holds(cluster) && !self.is_behind(cluster) && self.shade.as_ref().is_none_or(shades)
     }
 
     /// Whether some of it is within the view's sides.
     pub fn holds(&self, cluster: &Cluster) -> bool {
-        let mut planes = self.planes.iter();
-        planes.all(|plane| reaches(*plane, &cluster.bounds))
+        self.sides.reach(&cluster.bounds)
     }
 
     /// The faces of a cluster that may be seen.
@@ -127,14 +157,6 @@ impl Cull {
             }
         }
     }
-}
-
-/// Whether some of a box is on the inner side of a plane, or so near it that rounding decides.
-fn reaches(plane: Vec4, bounds: &Bounds) -> bool {
-    let normal = plane.truncate();
-    let farthest = Vec3::select(normal.cmpge(Vec3::ZERO), bounds.max, bounds.min);
-    let slack = 1e-5 * (normal.abs().dot(farthest.abs()) + plane.w.abs());
-    normal.dot(farthest) + plane.w >= -slack
 }
 
 /// How triangles that are counter-clockwise seen from the viewer wind in the picture: by one of `size` metres at a point.

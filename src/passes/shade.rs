@@ -3,7 +3,7 @@
 
 use std::ops::RangeInclusive;
 
-use glam::{Mat4, Vec2, Vec3};
+use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use crate::scene::{Bounds, Cluster};
 
@@ -28,12 +28,12 @@ pub fn room(bounds: &Bounds, eye: Vec3) -> f32 {
 /// receivers' mask of Bittner, Mattausch, Silvennoinen & Wimmer 2011, "Shadow caster culling for efficient shadow mapping").
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shade {
-    /// Right, up, toward the light: unit vectors, or zero where all is shaded.
-    axes: [Vec3; 3],
-    /// Cells to a metre across the light.
-    scale: f32,
-    /// Where the axes cross the map, cells from its corner.
-    origin: Vec2,
+    /// What a metre along x, y and z of the world is: cells to the right and up, metres toward the light. Zero where all is shaded.
+    axes: [Vec4; 3],
+    /// The same of a metre in any direction.
+    metre: Vec4,
+    /// Where the world's origin is, cells from the map's corner.
+    origin: Vec4,
     /// Rows of cells, a bit for each.
     rows: [u128; CELLS],
     /// Lowest coordinate toward the light in each square, metres; infinity where nothing is shaded.
@@ -60,9 +60,9 @@ impl Under {
 impl Shade {
     /// Everything.
     pub const ALL: Self = Self {
-        axes: [Vec3::ZERO; 3],
-        scale: 0.0,
-        origin: Vec2::ZERO,
+        axes: [Vec4::ZERO; 3],
+        metre: Vec4::ZERO,
+        origin: Vec4::ZERO,
         rows: [u128::MAX; CELLS],
         farthest: [[f32::NEG_INFINITY; SQUARES]; SQUARES],
     };
@@ -70,11 +70,13 @@ impl Shade {
     /// Nothing yet, of a square map along the axes of `shadow_fit`, without perspective, of a light in the direction `toward`.
     pub fn none(toward: Vec3, shadow_from_world: &Mat4) -> Self {
         let half = 0.5 * CELLS as f32;
-        let origin = shadow_from_world.w_axis.truncate().truncate();
+        let scale = half * shadow_from_world.row(0).truncate().length();
+        let origin = half * (shadow_from_world.w_axis.truncate().truncate() + 1.0);
+        let [right, up, toward] = axes(toward);
         Self {
-            axes: axes(toward),
-            scale: half * shadow_from_world.row(0).truncate().length(),
-            origin: half * (origin + 1.0),
+            axes: [0, 1, 2].map(|k| Vec4::new(scale * right[k], scale * up[k], toward[k], 0.0)),
+            metre: Vec4::new(scale, scale, 1.0, 0.0),
+            origin: origin.extend(0.0).extend(0.0),
             rows: [0; CELLS],
             farthest: [[f32::INFINITY; SQUARES]; SQUARES],
         }
@@ -87,22 +89,26 @@ impl Shade {
 
     /// What is covered by a box that is so many metres larger on all sides, if it does not lie beside the map.
     fn under(&self, bounds: &Bounds, reach: f32) -> Option<Under> {
-        let (centre, half) = (bounds.centre(), 0.5 * bounds.extent());
-        let at = Vec3::from_array(self.axes.map(|axis| axis.dot(centre)));
-        let size = Vec3::from_array(self.axes.map(|axis| axis.abs().dot(half))) + reach;
-        let cell = |at: Vec3| (at.truncate() * self.scale + self.origin).floor();
-        let (first, last) = (cell(at - size), cell(at + size));
-        let most = Vec2::splat((CELLS - 1) as f32);
-        if last.cmplt(Vec2::ZERO).any() || first.cmpgt(most).any() {
+        let (centre, half) = (
+            0.5 * (bounds.min + bounds.max),
+            0.5 * (bounds.max - bounds.min),
+        );
+        let [x, y, z] = self.axes;
+        let at = x * centre.x + y * centre.y + z * centre.z + self.origin;
+        let size = x.abs() * half.x + y.abs() * half.y + z.abs() * half.z + self.metre * reach;
+        let (low, high) = (at - size, at + size);
+        let [first, last] = [low, high].map(|corner| corner.truncate().truncate());
+        if last.cmplt(Vec2::ZERO).any() || first.cmpge(Vec2::splat(CELLS as f32)).any() {
             return None;
         }
+        let most = Vec2::splat((CELLS - 1) as f32);
         let [first, last] = [first, last].map(|c| c.clamp(Vec2::ZERO, most).as_uvec2());
         let squares = first.x as usize / SQUARE..=last.x as usize / SQUARE;
         Some(Under {
             rows: first.y as usize..=last.y as usize,
             columns: (u128::MAX >> (CELLS as u32 - 1 - (last.x - first.x))) << first.x,
             squares,
-            toward: [at.z - size.z, at.z + size.z],
+            toward: [low.z, high.z],
         })
     }
 

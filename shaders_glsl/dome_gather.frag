@@ -72,7 +72,7 @@ void gather(vec2 uv, float d) {
         return;
     }
     vec3 reflected = vec3(1.0);
-    if (!SHOW_IRRADIANCE) reflected = pixel_albedo(ALBEDO_IMAGE, albedo, materials, own.y, ivec2(gl_FragCoord.xy)).rgb / PI;
+    if (!SHOW_IRRADIANCE) reflected = pixel_albedo(ALBEDO_IMAGE, albedo, materials, own.y, uv).rgb / PI;
     sky *= vec4(reflected, luminance(reflected));
     rest.a = luminance(open) * luminance(reflected);
 }

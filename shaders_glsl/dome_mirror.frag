@@ -49,8 +49,8 @@ const float SHARPEST = 256.0;
 
 void gather(vec2 uv, float d) {
     uvec3 own = textureLod(words, uv, 0.0).xyz;
-    vec4 m = texelFetch(materials, material_specular(own.y), 0);
-    vec3 rho_s = m.rgb * (pixel_albedo(ALBEDO_IMAGE, albedo, materials, own.y, ivec2(gl_FragCoord.xy)).a * push.specular_scale);
+    vec4 m = material_specular(materials, own.y);
+    vec3 rho_s = m.rgb * (pixel_albedo(ALBEDO_IMAGE, albedo, materials, own.y, uv).a * push.specular_scale);
     if (all(lessThanEqual(rho_s, vec3(0.0)))) return;
     vec3 n = normal_unpack(own.x);
     vec3 toward = view.world_from_view * in_view(uv, d);

@@ -110,7 +110,7 @@ void main() {
     uvec3 own = textureLod(words, uv, 0.0).xyz;
     vec3 n = normal_unpack(own.x);
     uint word = own.y;
-    vec4 surface = pixel_albedo(ALBEDO_IMAGE, albedo, materials, word, pixel);
+    vec4 surface = pixel_albedo(ALBEDO_IMAGE, albedo, materials, word, uv);
     float n_dot_l = dot(n, sun.direction);
 
     float V = 0.0;
@@ -134,7 +134,7 @@ void main() {
     if (SUN) sum += surface.rgb / PI * sun_irradiance;
     if (SKY) sum += surface.rgb / PI * irradiance;
     if (SUN_SPECULAR || SKY_SPECULAR) {
-        vec4 m = texelFetch(materials, material_specular(word), 0);
+        vec4 m = material_specular(materials, word);
         vec3 rho_s = m.rgb * (surface.a * sun.specular_scale);
         vec3 toward = normalize(world_ray);
         if (FRESNEL && any(greaterThan(rho_s, vec3(0.0)))) rho_s = grazing(rho_s, m.a, -dot(toward, n));

@@ -1,5 +1,5 @@
 // The table of materials: an image of rows of so many columns, two rows to each 1024 materials.
-const int MATERIAL_COLUMNS = 1024;
+const uint MATERIAL_COLUMNS = 1024u;
 
 /// The word of a surface: the number of its material, and the upper half of the bits of how thick its body is (metres).
 uint material_word(uint number, float thickness) {
@@ -11,19 +11,21 @@ float material_thickness(uint word) {
     return uintBitsToFloat(word & 0xffff0000u);
 }
 
-/// Where the first of the two rows has the material of a word of the G-buffer: rgb: rho_d.
-ivec2 material_diffuse(uint word) {
-    int number = int(word & 0xffffu);
-    return ivec2(number % MATERIAL_COLUMNS, 2 * (number / MATERIAL_COLUMNS));
-}
-
-/// rho_d of a pixel, and a factor on rho_s: from an image, or of the material where the scene has no maps.
-vec4 pixel_albedo(bool from_image, sampler2D albedo, sampler2D materials, uint word, ivec2 pixel) {
-    if (from_image) return texelFetch(albedo, pixel, 0);
-    return vec4(texelFetch(materials, material_diffuse(word), 0).rgb, 1.0);
+/// One of the two rows of the material of a word of the G-buffer; the table's sampler is nearest: a software device checks
+/// fetches against the edges, and lookups cost it less.
+vec4 material_row(sampler2D materials, uint word, uint row) {
+    uint number = word & 0xffffu;
+    uvec2 texel = uvec2(number % MATERIAL_COLUMNS, 2u * (number / MATERIAL_COLUMNS) + row);
+    return textureLod(materials, (vec2(texel) + 0.5) / vec2(textureSize(materials, 0)), 0.0);
 }
 
 /// The second: rgb: rho_s; a: shininess p.
-ivec2 material_specular(uint word) {
-    return material_diffuse(word) + ivec2(0, 1);
+vec4 material_specular(sampler2D materials, uint word) {
+    return material_row(materials, word, 1u);
+}
+
+/// rho_d of a pixel, and a factor on rho_s: from an image, or of the material where the scene has no maps.
+vec4 pixel_albedo(bool from_image, sampler2D albedo, sampler2D materials, uint word, vec2 uv) {
+    if (from_image) return textureLod(albedo, uv, 0.0);
+    return vec4(material_row(materials, word, 0u).rgb, 1.0);
 }

@@ -561,10 +561,17 @@ type AttachmentInfo = vk::RenderingAttachmentInfo<'static>;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu_struct;
 
-    gpu_struct! {
-        struct Block { a: f32, b: [f32; 2], c: u32 }
+    #[repr(C)]
+    #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+    struct Block {
+        a: f32,
+        b: [f32; 2],
+        c: u32,
+    }
+
+    impl GpuStruct for Block {
+        const FIELDS: &'static [Field] = &[];
     }
 
     #[test]

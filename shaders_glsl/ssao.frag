@@ -52,30 +52,41 @@ vec2 origin;   // texels
 vec2 ray_step; // of a texel, of rays with z = -1
 vec2 ray_base; // of texel 0
 vec2 texel_size; // of the picture's
+vec2 pixel_size; // of the G-buffer's
 
 vec3 point(vec2 texel, float distance) {
     return vec3(texel * ray_step + ray_base, -1.0) * distance;
 }
 
-vec3 normal_at(ivec2 texel) {
-    return normal_unpack(texelFetch(words, texel * DOWNSCALE, 0).r) * view.world_from_view;
+// Nearest lookups cost a software device less than fetches, which it checks against the edges.
+
+uint occluder_at(vec2 texel) {
+    return textureLod(occluders, (texel + 0.5) * texel_size, 0.0).r;
+}
+
+vec3 normal_at(vec2 texel) {
+    return normal_unpack(textureLod(words, (texel * float(DOWNSCALE) + 0.5) * pixel_size, 0.0).r) * view.world_from_view;
+}
+
+/// Past the picture's edge that of its last pixel.
+float depth_at(vec2 pixel) {
+    return textureLod(depth, (pixel + 0.5) * pixel_size, 0.0).r;
 }
 
 /// Relative change of depth toward the neighbour, on either side, that lies on the same face: the one of less change.
-float depth_slope(ivec2 pixel, ivec2 unit, float d) {
-    ivec2 last = textureSize(depth, 0) - 1;
-    float before = texelFetch(depth, max(pixel - unit, ivec2(0)), 0).r - d;
-    float after = texelFetch(depth, min(pixel + unit, last), 0).r - d;
+float depth_slope(vec2 pixel, vec2 unit, float d) {
+    float before = depth_at(pixel - unit) - d;
+    float after = depth_at(pixel + unit) - d;
     // At the picture's edge there is one only.
-    bool is_first = any(lessThan(pixel - unit, ivec2(0)));
-    bool is_last = any(greaterThan(pixel + unit, last));
+    bool is_first = any(lessThan(pixel - unit, vec2(0.0)));
+    bool is_last = any(greaterThan(pixel + unit, vec2(textureSize(depth, 0) - 1)));
     return (is_first || (!is_last && abs(after) < abs(before)) ? after : -before) / d;
 }
 
 /// The normal of the face under a pixel; the shading normal where no neighbour lies on it.
-vec3 face_at(ivec2 pixel) {
-    float d = texelFetch(depth, pixel, 0).r;
-    vec2 slope = vec2(depth_slope(pixel, ivec2(1, 0), d), depth_slope(pixel, ivec2(0, 1), d)) * float(DOWNSCALE) / ray_step;
+vec3 face_at(vec2 pixel) {
+    float d = depth_at(pixel);
+    vec2 slope = vec2(depth_slope(pixel, vec2(1.0, 0.0), d), depth_slope(pixel, vec2(0.0, 1.0), d)) * float(DOWNSCALE) / ray_step;
     vec3 normal = normal_of_slopes(slope, -p.xy / p.z);
     return dot(normal, n) > 0.8 ? normal : n;
 }
@@ -122,8 +133,7 @@ uint between(float a, float b, float dither) {
 
 /// The sectors that one sample blocks: a box seen from p, from its front to its back, as wide as the step.
 uint blocked_by(vec2 texel, Side side, float half_width, float dither) {
-    // A nearest lookup costs a software device less than a fetch, which it checks against the edges.
-    uint word = textureLod(occluders, (texel + 0.5) * texel_size, 0.0).r;
+    uint word = occluder_at(texel);
     float distance = packed_distance(word);
     vec3 delta = point(texel, distance) - p;
     float r2 = dot(delta, delta);
@@ -140,9 +150,9 @@ uint blocked_by(vec2 texel, Side side, float half_width, float dither) {
 }
 
 /// The sectors blocked past the picture's edge, where the surface at the edge goes on as a plane up to the radius.
-uint blocked_past(ivec2 texel, Side side, float dither) {
+uint blocked_past(vec2 texel, Side side, float dither) {
     vec3 m = normal_at(texel);
-    vec3 delta = point(vec2(texel), packed_distance(texelFetch(occluders, texel, 0).r)) - p;
+    vec3 delta = point(texel, packed_distance(occluder_at(texel))) - p;
     vec2 q = vec2(dot(delta, side.axis), dot(delta, v));
     vec2 away = vec2(dot(m, v), -dot(m, side.axis));
     float room = push.radius * push.radius - dot(q, q);
@@ -170,7 +180,7 @@ uint blocked_sectors(Side side, float jitter, float dither) {
         vec2 texel = floor(origin + side.stride * min(max(s * s, first), last));
         sectors |= blocked_by(texel, side, half_width * s, dither);
     }
-    if (last < 1.0) sectors |= blocked_past(ivec2(origin + side.stride * last), side, dither);
+    if (last < 1.0) sectors |= blocked_past(floor(origin + side.stride * last), side, dither);
     return sectors;
 }
 
@@ -253,18 +263,19 @@ float slice_occlusion(float turn, float jitter, float dither, float distance) {
 
 void main() {
     ivec2 own = ivec2(gl_FragCoord.xy);
-    ivec2 texel = own * OCCLUSION_SPACING;
-    float distance = packed_distance(texelFetch(occluders, texel, 0).r);
-    // The depth test leaves only points with a surface.
+    vec2 texel = vec2(own * OCCLUSION_SPACING);
     vec2 full_size = vec2(textureSize(words, 0));
     ray_step = 2.0 * float(DOWNSCALE) / full_size * view.ray_scale;
     ray_base = view_ray(0.5 / full_size, view.ray_scale, view.ray_offset).xy;
     texel_size = 1.0 / vec2(textureSize(occluders, 0));
-    p = point(vec2(texel), distance);
+    pixel_size = 1.0 / full_size;
+    // The depth test leaves only points with a surface.
+    float distance = packed_distance(occluder_at(texel));
+    p = point(texel, distance);
     v = normalize(-p);
     n = normal_at(texel);
-    face = face_at(texel * DOWNSCALE);
-    origin = vec2(texel) + 0.5;
+    face = face_at(texel * float(DOWNSCALE));
+    origin = texel + 0.5;
     // A pattern of 4x4 directions and step offsets, after Jimenez et al., taken out again by the blur.
     ivec2 cell = own & 3;
     float turn = fract(float(((cell.x + cell.y) & 3) * 4 + cell.x) / 16.0 + push.phase);

@@ -10,18 +10,17 @@ layout(location = 0) out uint occlusion; // A and the distance along the view ax
 layout(set = 0, binding = 0) uniform usampler2D noisy_occlusion;
 layout(set = 0, binding = 1) uniform usampler2D occluders;
 
-float distance_at(ivec2 texel) {
-    ivec2 last = textureSize(occluders, 0) - 1;
-    return packed_distance(texelFetch(occluders, clamp(texel, ivec2(0), last), 0).r);
+/// Past the picture's edge that of its last texel.
+float distance_at(vec2 texel) {
+    return packed_distance(textureLod(occluders, (texel + 0.5) / vec2(textureSize(occluders, 0)), 0.0).r);
 }
 
 void main() {
-    ivec2 own = ivec2(gl_FragCoord.xy);
-    ivec2 texel = own * OCCLUSION_SPACING;
+    vec2 texel = floor(gl_FragCoord.xy) * float(OCCLUSION_SPACING);
     float centre = distance_at(texel);
     // The slope of a plane seen at a grazing angle is no edge: the tolerance follows the smaller neighbouring step.
-    float slope = min(abs(distance_at(texel - ivec2(1, 0)) - centre), abs(distance_at(texel + ivec2(1, 0)) - centre))
-                + min(abs(distance_at(texel - ivec2(0, 1)) - centre), abs(distance_at(texel + ivec2(0, 1)) - centre));
+    float slope = min(abs(distance_at(texel - vec2(1, 0)) - centre), abs(distance_at(texel + vec2(1, 0)) - centre))
+                + min(abs(distance_at(texel - vec2(0, 1)) - centre), abs(distance_at(texel + vec2(0, 1)) - centre));
     float scale = 1.0 / (0.01 * centre + 3.0 * slope * float(OCCLUSION_SPACING) + 1e-6);
     vec2 size = vec2(textureSize(noisy_occlusion, 0));
     vec2 sum = vec2(0.0);

@@ -21,8 +21,9 @@ layout(push_constant, scalar) uniform Push {
 } push;
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy) * DOWNSCALE;
-    float d = texelFetch(depth, pixel, 0).r;
-    float thickness = material_thickness(texelFetch(words, pixel, 0).y) * CHORDS;
+    // Nearest lookups: a software device checks fetches against the edges.
+    vec2 uv = (floor(gl_FragCoord.xy) * float(DOWNSCALE) + 0.5) / vec2(textureSize(depth, 0));
+    float d = textureLod(depth, uv, 0.0).r;
+    float thickness = material_thickness(textureLod(words, uv, 0.0).y) * CHORDS;
     occluder = occluder_pack(d > 0.0 ? push.near / d : NOWHERE, thickness);
 }

@@ -10,5 +10,6 @@ layout(constant_id = 0) const int DOWNSCALE = 2;
 layout(set = 0, binding = 0) uniform sampler2D depth;
 
 void main() {
-    gl_FragDepth = texelFetch(depth, ivec2(gl_FragCoord.xy) * (DOWNSCALE * OCCLUSION_SPACING), 0).r;
+    vec2 pixel = floor(gl_FragCoord.xy) * float(DOWNSCALE * OCCLUSION_SPACING);
+    gl_FragDepth = textureLod(depth, (pixel + 0.5) / vec2(textureSize(depth, 0)), 0.0).r;
 }

@@ -44,7 +44,7 @@ void main() {
         return;
     }
     float exposure = push.exposure;
-    if (AUTO) exposure /= texelFetch(average_luminance, ivec2(0), 0).r;
+    if (AUTO) exposure /= textureLod(average_luminance, vec2(0.5), 0.0).r;
     if (GREY) c = vec3(luminance(c));
     c = max(c * exposure + push.offset, 0.0);
     if (EXPONENTIAL) c = tone_exponential(c);

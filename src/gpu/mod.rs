@@ -32,6 +32,7 @@ mod pipeline;
 mod pipeline_cache;
 mod pipeline_state;
 mod presenter;
+mod push_words;
 mod read_back;
 mod recorder;
 mod sampler;

@@ -1,8 +1,6 @@
 //! One pass as a chain on the recorder: each word binds, registers the use and checks it against what the
 //! pipeline declares.
 
-use std::ops::Range;
-
 use arrayvec::ArrayVec;
 use ash::vk;
 
@@ -12,6 +10,7 @@ use super::draws::{Draws, Faces};
 use super::image::{Image, is_depth};
 use super::layout::{GpuStruct, check_layout};
 use super::pipeline::Pipeline;
+use super::push_words::PushWords;
 use super::recorder::Recorder;
 use super::sampler::Sampler;
 use super::shader::{Binding, BindingKind, Field};
@@ -19,8 +18,6 @@ use super::work::{Traffic, texels};
 
 const MAX_BINDINGS: usize = 16;
 const MAX_COLORS: usize = 8;
-/// Words of push constants that every device has room for.
-const MAX_PUSH: usize = 32;
 
 /// What becomes of the old content of an attachment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -321,12 +318,6 @@ impl<'r> Pass<'r> {
                 panic!("pass {}: no push constants declared", self.name)
             };
             self.check_block("push", T::FIELDS, fields);
-            let fits = size_of::<T>() <= 4 * MAX_PUSH && size_of::<T>().is_multiple_of(4);
-            assert!(
-                fits,
-                "pass {}: not {MAX_PUSH} words of push constants",
-                self.name
-            );
             self.checked_push = Some(T::FIELDS);
         }
         self.push = PushWords::of(value);
@@ -463,7 +454,7 @@ impl<'r> Pass<'r> {
 
     /// Pushes the words that differ from those pushed before, from the first to the last.
     fn flush_push(&mut self, stages: vk::ShaderStageFlags) {
-        assert!(self.push.count > 0, "pass {}: push", self.name);
+        assert!(!self.push.is_empty(), "pass {}: push", self.name);
         let changed = self.push.changed_from(&self.pushed);
         if changed.is_empty() {
             return;
@@ -475,7 +466,7 @@ impl<'r> Pass<'r> {
                 self.pipeline.layout(),
                 stages,
                 4 * changed.start as u32,
-                bytemuck::cast_slice(&self.push.words[changed]),
+                self.push.bytes(changed),
             );
         }
         self.pushed = self.push;
@@ -523,65 +514,4 @@ impl<'r> Pass<'r> {
     }
 }
 
-/// A block of push constants, word by word.
-#[derive(Clone, Copy)]
-struct PushWords {
-    words: [u32; MAX_PUSH],
-    count: usize,
-}
-
-impl PushWords {
-    const NONE: Self = Self {
-        words: [0; MAX_PUSH],
-        count: 0,
-    };
-
-    fn of<T: GpuStruct>(value: &T) -> Self {
-        let bytes = bytemuck::bytes_of(value);
-        let mut this = Self::NONE;
-        this.count = bytes.len() / 4;
-        bytemuck::cast_slice_mut(&mut this.words)[..bytes.len()].copy_from_slice(bytes);
-        this
-    }
-
-    /// From the first to the last of the words in which it differs from another; all if that is not of its size.
-    fn changed_from(&self, old: &Self) -> Range<usize> {
-        if self.count != old.count {
-            return 0..self.count;
-        }
-        let differs = |k: &usize| self.words[*k] != old.words[*k];
-        let first = (0..self.count).find(differs).unwrap_or(self.count);
-        let last = (first..self.count).rfind(differs);
-        first..last.map_or(first, |last| last + 1)
-    }
-}
-
 type AttachmentInfo = vk::RenderingAttachmentInfo<'static>;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[repr(C)]
-    #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-    struct Block {
-        a: f32,
-        b: [f32; 2],
-        c: u32,
-    }
-
-    impl GpuStruct for Block {
-        const FIELDS: &'static [Field] = &[];
-    }
-
-    #[test]
-    fn of_a_block_only_what_changed_is_pushed() {
-        let of = |a, b, c| PushWords::of(&Block { a, b, c });
-        let first = of(1.0, [2.0, 3.0], 4);
-        assert_eq!(first.changed_from(&PushWords::NONE), 0..4, "all at first");
-        assert_eq!(first.changed_from(&first), 4..4);
-        assert_eq!(of(1.0, [2.0, 3.0], 5).changed_from(&first), 3..4);
-        assert_eq!(of(0.0, [2.0, 3.0], 4).changed_from(&first), 0..1);
-        assert_eq!(of(1.0, [9.0, 3.0], 9).changed_from(&first), 1..4);
-    }
-}

@@ -74,7 +74,7 @@ pub struct Pipeline {
 }
 
 /// Bytes of a push block.
-pub(super) fn block_size(fields: &[Field]) -> u32 {
+fn block_size(fields: &[Field]) -> u32 {
     fields.iter().map(|f| f.offset + f.size).max().unwrap_or(0)
 }
 

@@ -1,7 +1,7 @@
 //! What a view cannot see: clusters outside of its pyramid, and those of solids that turn their backs. To a light, also what
 //! shades nothing that is in the picture.
 
-use glam::{DVec2, Mat4, Vec3, Vec4};
+use glam::{DVec2, Mat4, Vec3};
 
 use crate::gpu::{Faces, Winding};
 use crate::scene::{Bounds, Cluster};
@@ -19,52 +19,15 @@ enum Viewer {
     Toward(Vec3),
 }
 
-/// Left, right, bottom and top of a view side by side: a point p is inside where the products of its planes with (p, 1) are not
-/// negative.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Sides {
-    /// x, y and z of their normals.
-    normals: [Vec4; 3],
-    offsets: Vec4,
-}
-
 /// A view as culling sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cull {
-    sides: Sides,
+    /// Left, right, bottom, top, a row each: inside where the product with (p, 1) is not negative.
+    sides: Mat4,
     viewer: Viewer,
     front: Winding,
     /// Of a light: what it shades in the picture.
     shade: Option<Shade>,
-}
-
-impl Sides {
-    /// Of a matrix to clip space (Gribb and Hartmann 2001): -w <= x <= w and -w <= y <= w, as products with (p, 1).
-    fn of(clip_from_world: &Mat4) -> Self {
-        let [x, y, w] = [0, 1, 3].map(|i| clip_from_world.row(i));
-        let planes = Mat4::from_cols(w + x, w - x, w + y, w - y).transpose();
-        Self {
-            normals: [planes.x_axis, planes.y_axis, planes.z_axis],
-            offsets: planes.w_axis,
-        }
-    }
-
-    /// Whether some of a box is on the inner side of all of them, or so near that rounding decides.
-    fn reach(&self, bounds: &Bounds) -> bool {
-        let (centre, half) = (
-            0.5 * (bounds.min + bounds.max),
-            0.5 * (bounds.max - bounds.min),
-        );
-        let along = |normals: [Vec4; 3], p: Vec3| {
-            let [x, y, z] = normals;
-            x * p.x + y * p.y + z * p.z
-        };
-        let sizes = self.normals.map(Vec4::abs);
-        let size = along(sizes, half);
-        let slack = 1e-5 * (along(sizes, centre.abs()) + size + self.offsets.abs());
-        let farthest = along(self.normals, centre) + self.offsets + size;
-        farthest.cmpge(-slack).all()
-    }
 }
 
 impl Cull {
@@ -101,7 +64,7 @@ impl Cull {
             Viewer::Toward(toward) => toward,
         };
         Self {
-            sides: Sides::of(&clip_from_world),
+            sides: sides(&clip_from_world),
             viewer,
             front: front(clip_from_world, toward, at, size),
             shade: None,
@@ -116,7 +79,7 @@ impl Cull {
 
     /// Whether some of it is within the view's sides.
     pub fn holds(&self, cluster: &Cluster) -> bool {
-        self.sides.reach(&cluster.bounds)
+        reaches(&self.sides, &cluster.bounds)
     }
 
     /// The faces of a cluster that may be seen.
@@ -157,6 +120,22 @@ impl Cull {
             }
         }
     }
+}
+
+/// The sides of a view by its matrix to clip space (Gribb and Hartmann 2001): -w <= x <= w and -w <= y <= w, as products with
+/// (p, 1).
+fn sides(clip_from_world: &Mat4) -> Mat4 {
+    let [x, y, w] = [0, 1, 3].map(|i| clip_from_world.row(i));
+    Mat4::from_cols(w + x, w - x, w + y, w - y).transpose()
+}
+
+/// Whether some of a box is on the inner side of all four, or so near that rounding decides.
+fn reaches(sides: &Mat4, bounds: &Bounds) -> bool {
+    let (centre, half) = (bounds.centre(), 0.5 * bounds.extent());
+    let sizes = sides.abs();
+    let farthest = *sides * centre.extend(1.0) + sizes * half.extend(0.0);
+    let slack = 1e-5 * (sizes * (centre.abs() + half).extend(1.0));
+    farthest.cmpge(-slack).all()
 }
 
 /// How triangles that are counter-clockwise seen from the viewer wind in the picture: by one of `size` metres at a point.

@@ -28,12 +28,11 @@ pub fn room(bounds: &Bounds, eye: Vec3) -> f32 {
 /// receivers' mask of Bittner, Mattausch, Silvennoinen & Wimmer 2011, "Shadow caster culling for efficient shadow mapping").
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shade {
-    /// What a metre along x, y and z of the world is: cells to the right and up, metres toward the light. Zero where all is shaded.
-    axes: [Vec4; 3],
-    /// The same of a metre in any direction.
+    /// From the world to cells from the map's corner, to the right and up, and to metres toward the light; the fourth row is
+    /// zero. All of it is where all is shaded.
+    cells_from_world: Mat4,
+    /// What a metre in any direction is there.
     metre: Vec4,
-    /// Where the world's origin is, cells from the map's corner.
-    origin: Vec4,
     /// Rows of cells, a bit for each.
     rows: [u128; CELLS],
     /// Lowest coordinate toward the light in each square, metres; infinity where nothing is shaded.
@@ -60,9 +59,8 @@ impl Under {
 impl Shade {
     /// Everything.
     pub const ALL: Self = Self {
-        axes: [Vec4::ZERO; 3],
+        cells_from_world: Mat4::ZERO,
         metre: Vec4::ZERO,
-        origin: Vec4::ZERO,
         rows: [u128::MAX; CELLS],
         farthest: [[f32::NEG_INFINITY; SQUARES]; SQUARES],
     };
@@ -73,10 +71,15 @@ impl Shade {
         let scale = half * shadow_from_world.row(0).truncate().length();
         let origin = half * (shadow_from_world.w_axis.truncate().truncate() + 1.0);
         let [right, up, toward] = axes(toward);
+        let rows = [
+            (scale * right).extend(origin.x),
+            (scale * up).extend(origin.y),
+            toward.extend(0.0),
+            Vec4::ZERO,
+        ];
         Self {
-            axes: [0, 1, 2].map(|k| Vec4::new(scale * right[k], scale * up[k], toward[k], 0.0)),
+            cells_from_world: Mat4::from_cols_array_2d(&rows.map(Vec4::into)).transpose(),
             metre: Vec4::new(scale, scale, 1.0, 0.0),
-            origin: origin.extend(0.0).extend(0.0),
             rows: [0; CELLS],
             farthest: [[f32::INFINITY; SQUARES]; SQUARES],
         }
@@ -89,13 +92,9 @@ impl Shade {
 
     /// What is covered by a box that is so many metres larger on all sides, if it does not lie beside the map.
     fn under(&self, bounds: &Bounds, reach: f32) -> Option<Under> {
-        let (centre, half) = (
-            0.5 * (bounds.min + bounds.max),
-            0.5 * (bounds.max - bounds.min),
-        );
-        let [x, y, z] = self.axes;
-        let at = x * centre.x + y * centre.y + z * centre.z + self.origin;
-        let size = x.abs() * half.x + y.abs() * half.y + z.abs() * half.z + self.metre * reach;
+        let half = 0.5 * bounds.extent();
+        let at = self.cells_from_world * bounds.centre().extend(1.0);
+        let size = self.cells_from_world.abs() * half.extend(0.0) + self.metre * reach;
         let (low, high) = (at - size, at + size);
         let [first, last] = [low, high].map(|corner| corner.truncate().truncate());
         if last.cmplt(Vec2::ZERO).any() || first.cmpge(Vec2::splat(CELLS as f32)).any() {

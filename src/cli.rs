@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::error::ErrorKind;
 use clap::{Arg, Parser, Subcommand};
 
-use crate::faces::{BakeWishes, BenchWishes, CompareWishes, SkyWishes};
+use crate::commands::{BakeWishes, BenchWishes, CompareWishes, SkyWishes};
 use crate::settings::{Optional, Options, one_line};
 
 /// What the user wants done.

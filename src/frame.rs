@@ -18,23 +18,23 @@ pub use self::settings::FrameSettings;
 
 use crate::daylight::sky::Daylight;
 use crate::gpu::{Context, Image, Recorder, Result};
-use crate::passes::accumulate::Accumulate;
-use crate::passes::background::Background;
-use crate::passes::cascades::SunViews;
-use crate::passes::cover::Cover;
-use crate::passes::dome::Gathered;
-use crate::passes::dome_fit::{self, Receivers};
-use crate::passes::exposure::Exposure;
-use crate::passes::gbuffer::Gbuffer;
-use crate::passes::geometry::Geometry;
-use crate::passes::irradiance::Irradiance;
-use crate::passes::lighting::{Light, Lighting, Show};
-use crate::passes::probe::Probe;
-use crate::passes::shade;
-use crate::passes::shadow::Shadow;
-use crate::passes::sky_cube::SkyCube;
-use crate::passes::ssao::Ssao;
-use crate::passes::tone_map::ToneMap;
+use crate::passes::dome::fit::{self, Receivers};
+use crate::passes::dome::gather::Gathered;
+use crate::passes::light::background::Background;
+use crate::passes::light::lighting::{Light, Lighting, Show};
+use crate::passes::light::probe::Probe;
+use crate::passes::occlusion::height_map::Cover;
+use crate::passes::occlusion::ssao::Ssao;
+use crate::passes::picture::accumulate::Accumulate;
+use crate::passes::picture::exposure::Exposure;
+use crate::passes::picture::tone_map::ToneMap;
+use crate::passes::sky::cube::SkyCube;
+use crate::passes::sky::irradiance::Irradiance;
+use crate::passes::sun_shadow::cascades::SunViews;
+use crate::passes::sun_shadow::map::Shadow;
+use crate::passes::sun_shadow::receiver_mask;
+use crate::passes::surfaces::gbuffer::Gbuffer;
+use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::view::View;
 use crate::scene::{Camera, Scene};
 
@@ -218,7 +218,7 @@ impl Frame {
             Some(_) => {
                 let receivers = Receivers::new(bounds, &view);
                 let (sun, shift) = (sample.sun_direction, sample.texel);
-                SunViews::one(dome_fit::fit(sun, bounds, &receivers, resolution, shift))
+                SunViews::one(fit::fit(sun, bounds, &receivers, resolution, shift))
             }
             None => {
                 let sun = sample.sun_direction;
@@ -227,7 +227,7 @@ impl Frame {
                 let seen = self.geometry.seen(&view);
                 let drawn = shadow.drawn();
                 if !drawn.is_some_and(|drawn| views.stay(drawn, seen, eye, shadows)) {
-                    let room = shade::room(bounds, eye);
+                    let room = receiver_mask::room(bounds, eye);
                     let behind = view.from_behind(room);
                     views.shade(self.geometry.around(&behind), eye, room, shadows);
                 }

@@ -24,9 +24,9 @@
 //! - [`passes`]: one file a pass; [`frame`] owns them.
 //! - [`lecture`]: every formula of the slides with its function, shader and test.
 //! - [`compare`]: two pictures, how far apart: radiometric errors and FLIP.
-//! - [`cli`] and [`settings`]: text to settings. [`faces`]: drivers of the one frame. [`output`]: files, whole or not at all.
+//! - [`cli`] and [`settings`]: text to settings. [`commands`]: drivers of the one frame. [`output`]: files, whole or not at all.
 //!
-//! Imports run one way: faces → frame → passes → gpu, scene, daylight; the last three import nothing of ours.
+//! Imports run one way: commands → frame → passes → gpu, scene, daylight; the last three import nothing of ours.
 //!
 //! # Conventions
 //!
@@ -43,10 +43,10 @@
 //! | matrices | named destination_from_source: `clip_from_view` |
 
 pub mod cli;
+pub mod commands;
 pub mod compare;
 pub mod daylight;
 pub mod error;
-pub mod faces;
 pub mod frame;
 pub mod gpu;
 pub mod lecture;

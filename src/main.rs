@@ -3,8 +3,8 @@
 use std::process::ExitCode;
 
 use skylight::cli::{self, CliExit};
+use skylight::commands;
 use skylight::error::Result;
-use skylight::faces;
 use skylight::output::print;
 
 fn main() -> ExitCode {
@@ -18,7 +18,7 @@ fn main() -> ExitCode {
             return exit.code().into();
         }
     };
-    ended(faces::run(command))
+    ended(commands::run(command))
 }
 
 fn ended(result: Result<()>) -> ExitCode {

@@ -3,8 +3,8 @@
 use super::Frame;
 use crate::daylight::sky::Daylight;
 use crate::gpu::{Recorder, Result};
-use crate::passes::lighting::Light;
-use crate::passes::probe::{Probe, Reading};
+use crate::passes::light::lighting::Light;
+use crate::passes::light::probe::{Probe, Reading};
 
 impl Frame {
     /// Records the question what one pixel of the newest frame shows; [`Frame::reading`] has the answer when the work is

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use super::{FrameSettings, Visibility};
 use crate::gpu::{Context, Image, Result};
-use crate::passes::dome::Dome;
-use crate::passes::fade::Fade;
-use crate::passes::geometry::Geometry;
-use crate::passes::lighting::Lighting;
-use crate::passes::shadow::Shadow;
+use crate::passes::dome::gather::Dome;
+use crate::passes::light::lighting::Lighting;
+use crate::passes::picture::fade::Fade;
+use crate::passes::sun_shadow::map::Shadow;
+use crate::passes::surfaces::geometry::Geometry;
 
 /// The passes of [`Visibility::Dome`] and [`Visibility::Progressive`].
 pub(super) struct Converging {

@@ -2,7 +2,7 @@
 
 use super::Frame;
 use crate::gpu::{Recorder, Result};
-use crate::passes::tone_map::{ToneMap, ToneSettings};
+use crate::passes::picture::tone_map::{ToneMap, ToneSettings};
 
 impl Frame {
     /// Maps the newest picture again, by other settings. `rec` must be recording, with no frame in flight.

@@ -2,7 +2,7 @@
 
 use super::Frame;
 use crate::gpu::{Image, Result};
-use crate::passes::ssao::Ssao;
+use crate::passes::occlusion::ssao::Ssao;
 use crate::passes::view::Window;
 
 /// What a part has from the picture that it belongs to.

@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use crate::daylight::sampling;
 use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
-use crate::passes::dome::DomeSettings;
+use crate::passes::dome::gather::DomeSettings;
 
 /// What hides the sky from a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, ValueEnum, Deserialize)]

@@ -6,13 +6,13 @@ use glam::UVec2;
 
 use super::{Sampling, Visibility};
 use crate::gpu::{Context, Result};
-use crate::passes::cascades;
-use crate::passes::geometry::Geometry;
-use crate::passes::irradiance::IrradianceSettings;
-use crate::passes::lighting::LightingSettings;
-use crate::passes::shadow::Shadow;
-use crate::passes::ssao::SsaoSettings;
-use crate::passes::tone_map::ToneSettings;
+use crate::passes::light::lighting::LightingSettings;
+use crate::passes::occlusion::ssao::SsaoSettings;
+use crate::passes::picture::tone_map::ToneSettings;
+use crate::passes::sky::irradiance::IrradianceSettings;
+use crate::passes::sun_shadow::cascades;
+use crate::passes::sun_shadow::map::Shadow;
+use crate::passes::surfaces::geometry::Geometry;
 
 /// Everything that is fixed while frames are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,12 +38,12 @@ pub struct FrameSettings {
 }
 
 impl FrameSettings {
-    /// Whether frames are averaged by [`crate::passes::accumulate::Accumulate`].
+    /// Whether frames are averaged by [`crate::passes::picture::accumulate::Accumulate`].
     pub(super) fn averages(&self) -> bool {
         self.samples > 1 && self.sampling.visibility == Visibility::Ssao
     }
 
-    /// Whether the mean of its frames has the sky's true visibility ([`crate::passes::dome::Dome`]).
+    /// Whether the mean of its frames has the sky's true visibility ([`crate::passes::dome::gather::Dome`]).
     pub(super) fn converges(&self) -> bool {
         self.sampling.visibility != Visibility::Ssao
     }

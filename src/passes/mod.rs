@@ -1,35 +1,14 @@
-//! One file per pass: each owns its pipeline and the images it writes; the images it reads are parameters.
+//! The passes, in folders by topic: each owns its pipeline and the images it writes; the images it reads are parameters.
 //!
 //! Units on the device are kcd/m² and klx (half floats end at 65 504); files and the CPU use cd/m² and lux.
 
-pub mod accumulate;
-pub mod background;
-pub mod cascades;
-pub mod cover;
-pub mod cube_route;
-pub mod cull;
-pub mod details;
 pub mod dome;
-pub mod dome_block;
-pub mod dome_fit;
-mod draw_runs;
-pub mod exposure;
-pub mod fade;
-pub mod gbuffer;
-pub mod geometry;
-mod geometry_upload;
-pub mod irradiance;
-pub mod lighting;
-pub mod precision;
-pub mod present;
-pub mod probe;
-pub mod reflection;
-pub mod shade;
-pub mod shadow;
-pub mod shadow_fit;
-pub mod sky_cube;
-pub mod ssao;
-pub mod tone_map;
+pub mod light;
+pub mod occlusion;
+pub mod picture;
+pub mod sky;
+pub mod sun_shadow;
+pub mod surfaces;
 pub mod view;
 
 use std::sync::Arc;

@@ -3,12 +3,12 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::error::{SceneError, printable};
-use super::files::Files;
-use super::material::Material;
-use super::picture::{TextureStore, Wanted};
-use super::progress::Reporter;
-use super::{LoadOptions, Scene};
+use crate::scene::error::{SceneError, printable};
+use crate::scene::files::Files;
+use crate::scene::material::Material;
+use crate::scene::progress::Reporter;
+use crate::scene::texture::picture::{TextureStore, Wanted};
+use crate::scene::{LoadOptions, Scene};
 
 /// Warnings beyond these are left out: a hostile file could ask for millions.
 const MAX_WARNINGS: usize = 100;

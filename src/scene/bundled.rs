@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::files::Files;
-use super::{LoadOptions, Loaded, Progress, SceneError, load_from};
+use crate::scene::files::Files;
+use crate::scene::{LoadOptions, Loaded, Progress, SceneError, load_from};
 
 /// Their files; `examples/make_colonnade.rs` and `examples/make_island` make the models.
 static FILES: &[(&str, &[u8])] = &[

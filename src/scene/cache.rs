@@ -10,13 +10,13 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::bounds::Bounds;
-use super::cached_layout::{FlatLayout, clusters, ranges};
-use super::files::{Digest, ReadFile, digest};
-use super::material::Material;
-use super::scene_file::NamedOptions;
-use super::texture::{Encoding, Texture};
-use super::{Layout, LoadOptions, Loaded, Part, Scene};
+use crate::scene::bounds::Bounds;
+use crate::scene::culling::cached_layout::{FlatLayout, clusters, ranges};
+use crate::scene::files::{Digest, ReadFile, digest};
+use crate::scene::material::Material;
+use crate::scene::scene_file::NamedOptions;
+use crate::scene::texture::{Encoding, Texture};
+use crate::scene::{Layout, LoadOptions, Loaded, Part, Scene};
 
 /// Changes with the form of entries and with what reading a model makes of it.
 const VERSION: u32 = 3;

@@ -6,7 +6,7 @@
 use glam::camera::rh::{proj::vulkan, view};
 use glam::{Mat4, Vec3};
 
-use super::bounds::Bounds;
+use crate::scene::bounds::Bounds;
 
 /// Vertical field of view of a camera that was given none, degrees.
 pub const DEFAULT_FOV_DEG: f32 = 45.0;

@@ -22,7 +22,7 @@ pub enum SceneError {
         /// The system's words.
         reason: String,
     },
-    /// Larger than [`LoadOptions::max_file_bytes`](super::LoadOptions::max_file_bytes).
+    /// Larger than [`LoadOptions::max_file_bytes`](crate::scene::LoadOptions::max_file_bytes).
     #[error(
         "{} has {bytes} bytes, the limit is {limit}; split it or raise --max-file-mib",
         shown(path)
@@ -35,7 +35,7 @@ pub enum SceneError {
         /// The limit, bytes.
         limit: u64,
     },
-    /// All files together are larger than [`LoadOptions::max_file_bytes`](super::LoadOptions::max_file_bytes).
+    /// All files together are larger than [`LoadOptions::max_file_bytes`](crate::scene::LoadOptions::max_file_bytes).
     #[error(
         "{}: with it the files of the scene have more than {limit} bytes; name fewer or raise --max-file-mib",
         shown(path)
@@ -46,7 +46,7 @@ pub enum SceneError {
         /// The limit, bytes.
         limit: u64,
     },
-    /// More triangles than [`LoadOptions::max_triangles`](super::LoadOptions::max_triangles) or than 32-bit numbers count.
+    /// More triangles than [`LoadOptions::max_triangles`](crate::scene::LoadOptions::max_triangles) or than 32-bit numbers count.
     #[error(
         "{}: {triangles} triangles, the limit is {limit}; simplify it or raise --max-triangles",
         shown(path)

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::error::SceneError;
+use crate::scene::error::SceneError;
 
 /// BLAKE3 of the content of a file.
 pub(super) type Digest = [u8; 32];

@@ -17,11 +17,11 @@ pub struct Material {
     pub dissolve: f32,
     /// Of a cut-out: where `dissolve` x alpha of `diffuse_texture` x alpha of the vertices is less, there is a hole. 0..1.
     pub alpha_cutoff: Option<f32>,
-    /// Number of the texture of ρ_d in [`Scene::textures`](super::Scene::textures).
+    /// Number of the texture of ρ_d in [`Scene::textures`](crate::scene::Scene::textures).
     pub diffuse_texture: Option<usize>,
-    /// Number of the texture of ρ_s in [`Scene::textures`](super::Scene::textures).
+    /// Number of the texture of ρ_s in [`Scene::textures`](crate::scene::Scene::textures).
     pub specular_texture: Option<usize>,
-    /// Number of the normal map in [`Scene::textures`](super::Scene::textures).
+    /// Number of the normal map in [`Scene::textures`](crate::scene::Scene::textures).
     pub normal_texture: Option<usize>,
     /// Factor on the slopes of the normal map.
     pub normal_scale: f32,

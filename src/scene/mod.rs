@@ -3,52 +3,35 @@
 //! [`load`] turns a scene file or a model into one [`Scene`]: every mesh in world space, in one arena of vertices and
 //! indices, ready to be uploaded. World space is right-handed, metres, +Y up, +X east, −Z north.
 
-mod arena;
-mod bodies;
 mod bounds;
 mod builder;
 mod bundled;
 mod cache;
-mod cached_layout;
 mod camera;
-mod clusters;
+mod culling;
 mod error;
 mod files;
 mod gltf;
-mod gltf_buffers;
-mod gltf_material;
-mod gltf_mesh;
-mod instance;
-mod layout;
 mod material;
-mod mtl;
-mod mtl_map;
-mod normal_map;
-mod normals;
+mod mesh;
 mod obj;
-mod obj_lines;
-mod obj_text;
-mod picture;
 mod progress;
 mod scene_file;
-mod soup;
-mod subdivide;
 mod texture;
-mod triangulate;
 
 use std::path::{Path, PathBuf};
 
 use glam::Affine3A;
 use serde::{Deserialize, Serialize};
 
-pub use bodies::{Bodies, Body};
 pub use bounds::Bounds;
 pub use bundled::{BUNDLED, bundled, bundled_name};
 pub use camera::{Camera, DEFAULT_FOV_DEG};
-pub use clusters::{Cluster, Clusters, Solid};
+pub use culling::bodies::{Bodies, Body};
+pub use culling::clusters::{Cluster, Clusters, Solid};
+pub use culling::layout::Layout;
 pub use error::SceneError;
 pub(crate) use error::shown;
-pub use layout::Layout;
 pub use material::Material;
 pub use progress::Progress;
 pub use scene_file::{NamedCamera, NamedMoment, NamedOptions};

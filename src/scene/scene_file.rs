@@ -8,10 +8,10 @@ use glam::{Affine3A, EulerRot, Mat3, Quat, Vec3};
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-use super::builder::Builder;
-use super::error::SceneError;
-use super::obj::Placement;
-use super::{LoadOptions, append_model};
+use crate::scene::builder::Builder;
+use crate::scene::error::SceneError;
+use crate::scene::obj::Placement;
+use crate::scene::{LoadOptions, append_model};
 
 /// The option tables and the options that each may hold.
 const TABLES: [(&str, &[&str]); 5] = [

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::error::Error;
 use crate::gpu::Optional;
-use crate::passes::dome::DomeSettings;
+use crate::passes::dome::gather::DomeSettings;
 use crate::scene::{Bounds, Camera, DEFAULT_FOV_DEG, Loaded, NamedOptions, SceneError};
 
 /// Samples from which on shadow maps from the sky are better than ambient occlusion in every view.

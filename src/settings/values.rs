@@ -7,7 +7,7 @@ use clap::ValueEnum;
 
 use crate::daylight::cities;
 use crate::daylight::false_colour::Range;
-pub use crate::passes::lighting::Show;
+pub use crate::passes::light::lighting::Show;
 
 /// Width and height of a picture, pixels, 1..16 384 each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

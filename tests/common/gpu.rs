@@ -9,10 +9,10 @@ use skylight::daylight::sky::{Conditions, Daylight, SkyModel};
 use skylight::daylight::tone_curve::{REINHARD_WHITE, ToneCurve};
 use skylight::frame::{Frame, FrameSettings, Sampling};
 use skylight::gpu::{Context, ContextOptions, Image, Recorder, Timing, read_back};
-use skylight::passes::irradiance::IrradianceSettings;
-use skylight::passes::lighting::{LightingSettings, Precision, Shadows, Show};
-use skylight::passes::ssao::SsaoSettings;
-use skylight::passes::tone_map::{Scale, ToneSettings};
+use skylight::passes::light::lighting::{LightingSettings, Precision, Shadows, Show};
+use skylight::passes::occlusion::ssao::SsaoSettings;
+use skylight::passes::picture::tone_map::{Scale, ToneSettings};
+use skylight::passes::sky::irradiance::IrradianceSettings;
 use skylight::scene::{Bounds, Camera, Material, Part, Scene};
 
 /// Relative step of 16-bit floats. Vulkan lets a device store either neighbour of a number (lavapipe truncates), so this, and
@@ -217,7 +217,7 @@ pub fn settings(width: u32, height: u32) -> FrameSettings {
             specular_scale: 1.0,
             limb_darkening: 0.0,
             fresnel: false,
-            mirrors: skylight::passes::reflection::Mirrors::default(),
+            mirrors: skylight::passes::dome::specular::Mirrors::default(),
             has_albedo: true,
             occlusion_downscale: 2,
             shadows: Shadows::default(),

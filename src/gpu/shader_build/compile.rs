@@ -18,14 +18,21 @@ fn stage_kind(path: &Path) -> Option<ShaderKind> {
     }
 }
 
-/// Compiles a stage; its includes lie in the folder `include` beside it. With `debug` it keeps names and lines, unoptimised.
+/// Compiles the stage `name`, a path below the folder of all shaders; includes lie in that folder's `include`. With `debug` it
+/// keeps names and lines, unoptimised.
 ///
 /// # Errors
 /// The compiler's lines, `file:line: message`.
-pub fn compile(compiler: &Compiler, path: &Path, debug: bool) -> Result<Vec<u32>, String> {
+pub fn compile(
+    compiler: &Compiler,
+    shaders: &Path,
+    name: &str,
+    debug: bool,
+) -> Result<Vec<u32>, String> {
+    let path = &shaders.join(name);
     let source = fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
     let kind = stage_kind(path).ok_or_else(|| format!("{}: no stage", path.display()))?;
-    let folder = path.parent().unwrap_or(Path::new("")).join("include");
+    let folder = shaders.join("include");
     let mut options = CompileOptions::new().map_err(|e| format!("shaderc: {e}"))?;
     options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_3 as u32);
     // In SPIR-V 1.6 the size of a work group may be a constant of its own (LocalSizeId), which takes the feature

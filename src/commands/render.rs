@@ -1,0 +1,256 @@
+//! `skylight render`: one picture to a file, without a window.
+
+use std::path::Path;
+
+use super::interrupt;
+use super::job::Job;
+use super::samples::{self, Drawn, Progress, Rule};
+use super::tiled::Tiled;
+use crate::daylight::colour::luminance;
+use crate::daylight::exposure::automatic;
+use crate::daylight::false_colour::{Quantity, Range};
+use crate::error::Result;
+use crate::frame::Frame;
+use crate::gpu::{Recorder, Timing, read_back};
+use crate::output::{
+    Channels, Effort, Encoding, Layer, LayerKind, check_writable, draw_legend, print, write_exr,
+    write_png,
+};
+use crate::passes::light::lighting::{Precision, Show};
+use crate::passes::picture::tone_map::ToneSettings;
+use crate::settings::{Exposure, Options, SettingsError};
+
+/// Samples from which drawing a picture takes much longer than compressing it well.
+const AVERAGED: u32 = 4;
+
+/// Renders `scene` to `output`.
+///
+/// # Errors
+/// Whatever keeps the file from being written; an older file is left alone then.
+pub fn run(scene: Option<&Path>, output: &Path, options: Options) -> Result<()> {
+    let exr = output
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("exr"));
+    if options.layers && !exr {
+        let what = "--layers needs an .exr file; choose one with -o";
+        return Err(SettingsError(what.to_owned()).into());
+    }
+    check_writable(output)?;
+    let (job, context) = Job::on_device(scene, options)?;
+    let precision = if exr {
+        Precision::Float
+    } else {
+        Precision::Half
+    };
+    if let Some(tiled) = Tiled::new(&job, &context, precision)? {
+        let summary = if exr {
+            let (shows, kinds): (Vec<Show>, Vec<_>) = wanted_layers(&job).unzip();
+            tiled.save_exr(output, &shows, &kinds)
+        } else {
+            tiled.save_png(output)
+        }?;
+        context.check_validation()?;
+        return print(&format!("{}: {summary}\n", output.display()));
+    }
+    let mut renderer = Renderer::new(&job, Recorder::new(&context, Timing::Off)?, exr)?;
+    let summary = if exr {
+        renderer.save_exr(output)
+    } else {
+        renderer.save_png(output)
+    }?;
+    context.check_validation()?;
+    print(&format!("{}: {summary}\n", output.display()))
+}
+
+struct Renderer<'j> {
+    job: &'j Job,
+    recorder: Recorder,
+    frame: Frame,
+    rule: Rule,
+    progress: Progress,
+}
+
+impl<'j> Renderer<'j> {
+    fn new(job: &'j Job, mut recorder: Recorder, exr: bool) -> Result<Self> {
+        let precision = if exr {
+            Precision::Float
+        } else {
+            Precision::Half
+        };
+        let settings = job.frame_settings(job.settings.show, precision);
+        recorder.begin()?;
+        let frame = Frame::new(&mut recorder, &job.scene, settings)?;
+        recorder.finish()?;
+        let rule = Rule {
+            most: settings.samples,
+            noise: job.settings.noise,
+        };
+        Ok(Self {
+            job,
+            recorder,
+            frame,
+            rule,
+            progress: Progress::new(&rule, job.settings.quiet),
+        })
+    }
+
+    /// Draws the picture, or the quantity that the frame shows.
+    fn draw(&mut self, rule: Rule) -> Result<Drawn> {
+        while !self.frame.is_refined() {
+            self.recorder.begin()?;
+            self.frame
+                .record_light(&mut self.recorder, &self.job.daylight);
+            self.recorder.finish()?;
+        }
+        interrupt::listen();
+        samples::draw(
+            &mut self.frame,
+            &mut self.recorder,
+            self.job,
+            &rule,
+            &self.progress,
+        )
+    }
+
+    fn save_png(&mut self, path: &Path) -> Result<String> {
+        let drawn = self.draw(self.rule)?;
+        let colours = self.false_colours()?;
+        let mut pixels = read_back(&mut self.recorder, self.frame.display())?;
+        let ev100 = self.ev100()?;
+        let mut metadata = self.job.metadata();
+        metadata.extend(drawn.metadata(&self.rule));
+        if let Some(ev100) = ev100 {
+            metadata.push(("ev100 used".into(), format!("{ev100:.3}")));
+        }
+        let gamma = self.job.settings.gamma.filter(|_| colours.is_none());
+        let encoding = gamma.map_or(Encoding::Srgb, Encoding::Gamma);
+        let mut summary = ev100.map_or(String::new(), |ev| format!(", EV100 {ev:.2}"));
+        if let Some((quantity, range)) = colours {
+            draw_legend(&mut pixels.bytes, pixels.size, quantity, range);
+            let used = format!("{},{}", range.min, range.max);
+            metadata.push(("false-colour-range used".into(), used));
+            summary = format!(", {range} {}", quantity.unit());
+        }
+        let effort = if drawn.samples < AVERAGED {
+            Effort::Quick
+        } else {
+            Effort::Small
+        };
+        let how = (encoding, effort);
+        write_png(path, pixels.size, &pixels.bytes, how, &metadata)?;
+        self.progress.clear();
+        let samples = drawn.summary(&self.rule);
+        let [width, height] = pixels.size;
+        Ok(format!("{width}x{height}{summary}{samples}"))
+    }
+
+    /// What false colours show, and their range; one that was not given is looked for in the picture, which is then mapped
+    /// again.
+    fn false_colours(&mut self) -> Result<Option<(Quantity, Range)>> {
+        let settings = &self.job.settings;
+        let Some(quantity) = settings.false_colour else {
+            return Ok(None);
+        };
+        if let Some(range) = settings.false_colour_range {
+            return Ok(Some((quantity, range)));
+        }
+        let texels = read_back(&mut self.recorder, self.frame.radiance())?.rgba();
+        let luminance = |t: &[f32; 4]| luminance(glam::Vec3::from_slice(t).as_dvec3()) * 1e3;
+        let range = Range::around(texels.iter().map(luminance)).unwrap_or(quantity.daytime());
+        let tone = ToneSettings {
+            false_colour: Some(range),
+            ..self.frame.settings().tone
+        };
+        self.recorder.begin()?;
+        self.frame.develop(&mut self.recorder, tone)?;
+        self.recorder.finish()?;
+        Ok(Some((quantity, range)))
+    }
+
+    /// The exposure used, of quantities that are exposed.
+    fn ev100(&mut self) -> Result<Option<f64>> {
+        let settings = &self.job.settings;
+        let exposed = settings.scale.is_none() && settings.false_colour.is_none();
+        if !exposed || settings.show.file_unit() == 1.0 {
+            return Ok(None);
+        }
+        if let Exposure::Ev100(ev100) = self.job.settings.exposure {
+            return Ok(Some(ev100));
+        }
+        let average = read_back(&mut self.recorder, self.frame.average_luminance())?.floats()[0];
+        Ok(Some(automatic(f64::from(average) * 1e3)))
+    }
+
+    fn save_exr(&mut self, path: &Path) -> Result<String> {
+        let shown = self.job.settings.show;
+        let (picture, drawn) = self.layer(shown, "", self.rule)?;
+        let mut layers = vec![picture];
+        if self.job.settings.layers {
+            // As many samples as the picture has, so that the addends sum to it.
+            let same = Rule {
+                most: drawn.samples,
+                noise: None,
+            };
+            for show in extra_layers().take_while(|_| !drawn.is_interrupted) {
+                self.progress.name(show.name());
+                self.frame.show(show)?;
+                let (layer, drawn) = self.layer(show, show.name(), same)?;
+                if drawn.is_interrupted {
+                    break;
+                }
+                layers.push(layer);
+            }
+        }
+        let size = self.frame.settings().size.to_array();
+        let mut metadata = self.job.metadata();
+        metadata.extend(drawn.metadata(&self.rule));
+        write_exr(path, size, &layers, &metadata)?;
+        self.progress.clear();
+        let (count, samples) = (layers.len(), drawn.summary(&self.rule));
+        Ok(format!(
+            "{}x{}, {count} layer(s){samples}",
+            size[0], size[1]
+        ))
+    }
+
+    fn layer(&mut self, show: Show, name: &'static str, rule: Rule) -> Result<(Layer, Drawn)> {
+        let drawn = self.draw(rule)?;
+        let mut texels = read_back(&mut self.recorder, self.frame.radiance())?.rgba();
+        let unit = show.file_unit();
+        if unit != 1.0 {
+            for texel in &mut texels {
+                *texel = texel.map(|v| v * unit);
+            }
+        }
+        let layer = Layer {
+            name,
+            channels: channels(show, name),
+            texels,
+        };
+        Ok((layer, drawn))
+    }
+}
+
+/// The layers beside the picture.
+fn extra_layers() -> impl Iterator<Item = Show> {
+    Show::ADDENDS.into_iter().chain(Show::INPUTS)
+}
+
+/// The picture, and the layers beside it that are asked for.
+fn wanted_layers(job: &Job) -> impl Iterator<Item = (Show, LayerKind)> {
+    let shown = job.settings.show;
+    let others = extra_layers().filter(|_| job.settings.layers);
+    std::iter::once((shown, ("", channels(shown, ""))))
+        .chain(others.map(|show| (show, (show.name(), channels(show, show.name())))))
+}
+
+/// The picture itself is always RGB, so that every program shows it.
+fn channels(show: Show, name: &str) -> Channels {
+    match show {
+        _ if name.is_empty() => Channels::Rgb,
+        Show::Visibility | Show::Occlusion => Channels::Single,
+        Show::Depth => Channels::Depth,
+        Show::Normal => Channels::Xyz,
+        _ => Channels::Rgb,
+    }
+}

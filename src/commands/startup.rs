@@ -1,0 +1,116 @@
+//! `skylight info --startup`: where the time goes before the first picture of the bundled scene is there.
+
+use std::fmt::Write as _;
+use std::time::Instant;
+
+use super::job::Job;
+use crate::error::Result;
+use crate::frame::Frame;
+use crate::gpu::{CacheState, Context, Recorder, Step, Timing, shaders};
+use crate::output::print;
+use crate::passes::light::lighting::Precision;
+use crate::settings::{Optional, Options};
+
+/// Pipelines that are listed, the slowest first.
+const LISTED: usize = 8;
+
+/// Goes the way of `render` and prints what each step took.
+///
+/// # Errors
+/// Whatever keeps the picture from being drawn.
+pub fn run(device: Option<String>, without: Option<Optional>) -> Result<()> {
+    let mut clock = Clock::new();
+    let options = Options {
+        device,
+        without,
+        ..Options::default()
+    };
+    let (job, context) = Job::on_device(None, options)?;
+    clock.done("read the bundled scene, decide about its light; open the device");
+    let mut recorder = Recorder::new(&context, Timing::Off)?;
+    let settings = job.frame_settings(job.settings.show, Precision::Half);
+    clock.done("recorder, settings of the frame");
+    recorder.begin()?;
+    let mut frame = Frame::new(&mut recorder, &job.scene, settings)?;
+    clock.done("pipelines, images, scene to the device (recorded)");
+    recorder.finish()?;
+    clock.done("scene to the device (run)");
+    for name in [
+        "first frame (software drivers compile shaders now)",
+        "second frame",
+    ] {
+        recorder.begin()?;
+        frame.record(&mut recorder, &job.daylight, &job.camera, 0);
+        recorder.finish()?;
+        clock.done(name);
+    }
+    context.check_validation()?;
+    print(&report(&clock.steps, &context))
+}
+
+struct Clock {
+    last: Instant,
+    steps: Vec<Step>,
+}
+
+impl Clock {
+    fn new() -> Self {
+        Self {
+            last: Instant::now(),
+            steps: Vec::new(),
+        }
+    }
+
+    fn done(&mut self, name: &str) {
+        let now = Instant::now();
+        self.steps.push(Step {
+            name: name.to_owned(),
+            ms: (now - self.last).as_secs_f64() * 1e3,
+        });
+        self.last = now;
+    }
+}
+
+fn report(steps: &[Step], context: &Context) -> String {
+    let mut text = format!("start-up on \"{}\", milliseconds\n", context.summary().name);
+    let mut line = |name: &str, ms: f64| {
+        let _ = writeln!(text, "{name:52} {ms:8.2}");
+    };
+    for step in steps {
+        line(&step.name, step.ms);
+    }
+    line("together", steps.iter().map(|s| s.ms).sum());
+    let _ = writeln!(text, "\nopening the device, while the scene was read:");
+    for step in context.opening() {
+        let _ = writeln!(text, "    {:48} {:8.2}", step.name, step.ms);
+    }
+    let mut pipelines = context.pipelines();
+    pipelines.sort_by(|a, b| b.ms.total_cmp(&a.ms));
+    let one_by_one: f64 = pipelines.iter().map(|p| p.ms).sum();
+    let _ = writeln!(
+        text,
+        "\n{} pipelines, made in parallel; one after the other {one_by_one:.2} ms; the slowest:",
+        pipelines.len()
+    );
+    for step in pipelines.iter().take(LISTED) {
+        let _ = writeln!(text, "    {:48} {:8.2}", step.name, step.ms);
+    }
+    let words: usize = shaders::ALL.iter().map(|s| s.words.len()).sum();
+    let _ = writeln!(
+        text,
+        "pipeline cache: {}\nshader modules: {}, {} KiB together",
+        cache(context.cache_state()),
+        shaders::ALL.len(),
+        4 * words / 1024
+    );
+    text
+}
+
+fn cache(state: CacheState) -> String {
+    match state {
+        CacheState::Off => "none: this user has no cache folder".to_owned(),
+        CacheState::New => "none yet; it is kept from now on".to_owned(),
+        CacheState::Read(bytes) => format!("read, {bytes} bytes of the driver"),
+        CacheState::Refused => "damaged or of another driver; made anew".to_owned(),
+    }
+}

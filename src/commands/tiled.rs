@@ -1,0 +1,271 @@
+//! Pictures that are too large to be drawn at once: tile by tile, stitched row by row into the file.
+//!
+//! All tiles have the same light: the sun's shadow map and the sky are those of the whole picture, exposure and ambient
+//! occlusion come from an overview of it. Where the overview is as fine as the picture (up to 36 million pixels), the tiles are
+//! the picture that is drawn at once; above, ambient occlusion is coarser, and there are no seams either way.
+
+mod plan;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use indicatif::ProgressBar;
+
+use self::plan::{Plan, Span};
+use super::job::Job;
+use super::progress;
+use crate::daylight::colour::luminance;
+use crate::daylight::exposure::{KEY, automatic};
+use crate::daylight::false_colour::Range;
+use crate::error::Result;
+use crate::frame::{Frame, FrameSettings, Visibility};
+use crate::gpu::{Context, Image, Pixels, Recorder, Timing, read_back};
+use crate::output::{Encoding, LayerKind, PngRows, write_exr_rows};
+use crate::passes::light::lighting::{Precision, Show};
+use crate::passes::picture::tone_map::Scale;
+use crate::settings::{Exposure, SettingsError};
+
+/// Draws tiles of the picture of a job.
+pub(super) struct Tiled<'j> {
+    job: &'j Job,
+    plan: Plan,
+    recorder: Recorder,
+    frame: Frame,
+    /// Log-average luminance, cd/m², where the exposure is automatic.
+    average: Option<f64>,
+    progress: ProgressBar,
+}
+
+/// The picture's size, cut into tiles; none where it can be drawn at once.
+fn plan(job: &Job, context: &Context) -> Option<Plan> {
+    let size = job.settings.size;
+    let limit = context.summary().max_image_edge;
+    Plan::new(
+        glam::UVec2::new(size.width, size.height),
+        job.settings.tile,
+        limit,
+    )
+}
+
+impl<'j> Tiled<'j> {
+    /// What draws `layers` of the picture in tiles; none where it can be drawn at once.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn new(job: &'j Job, context: &Arc<Context>, precision: Precision) -> Result<Option<Self>> {
+        let Some(plan) = plan(job, context) else {
+            return Ok(None);
+        };
+        if job.settings.noise.is_some() {
+            let what = "--noise is judged on whole pictures, not in tiles; say how many --samples, or choose a smaller --size";
+            return Err(SettingsError(what.to_owned()).into());
+        }
+        let occludes = job.settings.visibility == Visibility::Ssao && job.settings.ao_radius > 0.0;
+        let (size, coarser, window) = plan.overview(occludes);
+        let settings = FrameSettings {
+            size,
+            ..job.frame_settings(job.settings.show, precision)
+        };
+        let mut recorder = Recorder::new(context, Timing::Off)?;
+        recorder.begin()?;
+        let mut frame = Frame::new(&mut recorder, &job.scene, settings)?;
+        recorder.finish()?;
+        frame.look_through(window);
+        let tiles = plan.bands.len() * plan.columns.len();
+        let progress = progress(tiles as u64 + 1, "tiles", job.settings.quiet);
+        let mut tiled = Self {
+            job,
+            plan,
+            recorder,
+            frame,
+            average: None,
+            progress,
+        };
+        tiled.look_over(settings, occludes, coarser)?;
+        Ok(Some(tiled))
+    }
+
+    /// Draws the overview, takes from it what all tiles share, and gets ready for tiles.
+    fn look_over(&mut self, settings: FrameSettings, occludes: bool, coarser: u32) -> Result<()> {
+        while !self.frame.is_refined() {
+            self.recorder.begin()?;
+            self.frame
+                .record_light(&mut self.recorder, &self.job.daylight);
+            self.recorder.finish()?;
+        }
+        let averages = matches!(settings.tone.scale, Scale::Average(_));
+        let looks = self.job.settings.false_colour.is_some();
+        let mut occlusion = Vec::new();
+        if occludes || averages || looks {
+            for index in 0..self.job.settings.samples {
+                self.draw_sample(index)?;
+                if occludes && occlusion.len() < MOST_KEPT {
+                    occlusion.push(self.frame.take_occlusion()?);
+                }
+            }
+        }
+        let tone = self.tone(&settings)?;
+        let mut tile = FrameSettings {
+            size: self.plan.tile,
+            tone,
+            ..settings
+        };
+        tile.lighting.occlusion_downscale *= coarser;
+        self.recorder.begin()?;
+        self.frame.apply(&mut self.recorder, tile)?;
+        self.recorder.finish()?;
+        self.frame.share_occlusion(occlusion);
+        self.progress.inc(1);
+        Ok(())
+    }
+
+    /// The tone settings of tiles: what depends on the whole picture is decided by the overview.
+    fn tone(
+        &mut self,
+        settings: &FrameSettings,
+    ) -> Result<crate::passes::picture::tone_map::ToneSettings> {
+        let mut tone = settings.tone;
+        if matches!(tone.scale, Scale::Average(_)) {
+            let average = self.read(|frame| frame.average_luminance())?.floats()[0];
+            let average = f64::from(average) * 1e3;
+            self.average = Some(average);
+            // As the tone map does it with the average itself: an irradiance is not taken for paper then.
+            let paper = if tone.show == Show::Irradiance {
+                std::f64::consts::PI
+            } else {
+                1.0
+            };
+            tone.scale = Scale::Fixed(KEY / average * paper);
+        }
+        if tone.false_colour.is_some() && self.job.settings.false_colour_range.is_none() {
+            let texels = self.read(Frame::radiance)?.rgba();
+            let luminance = |t: &[f32; 4]| luminance(glam::Vec3::from_slice(t).as_dvec3()) * 1e3;
+            let around = Range::around(texels.iter().map(luminance));
+            tone.false_colour = around.or(tone.false_colour);
+        }
+        Ok(tone)
+    }
+
+    fn read(&mut self, image: impl FnOnce(&Frame) -> &Image) -> Result<Pixels> {
+        Ok(read_back(&mut self.recorder, image(&self.frame))?)
+    }
+
+    fn draw_sample(&mut self, index: u32) -> Result<()> {
+        self.recorder.begin()?;
+        self.frame.record(
+            &mut self.recorder,
+            &self.job.daylight,
+            &self.job.camera,
+            index,
+        );
+        Ok(self.recorder.finish()?)
+    }
+
+    /// Draws one row of tiles, and puts what `image` holds of them side by side, `bytes` a pixel.
+    fn band<T: Copy + Default>(
+        &mut self,
+        band: &Span,
+        image: impl Fn(&Frame) -> &Image,
+        texels: impl Fn(Pixels) -> Vec<T>,
+        each: usize,
+    ) -> Result<Vec<T>> {
+        let width = self.plan.full.x as usize * each;
+        let mut whole = vec![T::default(); width * band.count as usize];
+        for column in self.plan.columns.clone() {
+            self.frame.look_through(self.plan.window(&column, band));
+            for index in 0..self.job.settings.samples {
+                self.draw_sample(index)?;
+            }
+            let drawn = texels(self.read(&image)?);
+            let drawn_width = self.plan.tile.x as usize * each;
+            let skip = (column.first - column.origin) as usize * each;
+            let count = column.count as usize * each;
+            for row in 0..band.count as usize {
+                let from = (row + (band.first - band.origin) as usize) * drawn_width + skip;
+                let to = row * width + column.first as usize * each;
+                whole[to..to + count].copy_from_slice(&drawn[from..from + count]);
+            }
+            self.progress.inc(1);
+        }
+        Ok(whole)
+    }
+
+    /// Writes a PNG; tells size and exposure.
+    ///
+    /// # Errors
+    /// Whatever keeps the file from being written; an older one is left alone then.
+    pub fn save_png(mut self, path: &Path) -> Result<String> {
+        let settings = &self.job.settings;
+        if settings.false_colour.is_some() {
+            let what = "--false-colour draws its legend on whole pictures; choose a smaller --size, or a larger --tile";
+            return Err(SettingsError(what.to_owned()).into());
+        }
+        let ev100 = self.ev100();
+        let mut metadata = self.job.metadata();
+        metadata.extend(ev100.map(|ev| ("ev100 used".into(), format!("{ev:.3}"))));
+        let encoding = settings.gamma.map_or(Encoding::Srgb, Encoding::Gamma);
+        let mut rows = PngRows::new(path, self.plan.full.to_array(), encoding, &metadata)?;
+        for band in self.plan.bands.clone() {
+            rows.push(&self.band(&band, Frame::display, |p| p.bytes, 4)?)?;
+        }
+        rows.finish()?;
+        let exposure = ev100.map_or(String::new(), |ev| format!(", EV100 {ev:.2}"));
+        Ok(self.summary(&exposure))
+    }
+
+    /// The exposure used, of quantities that are exposed.
+    fn ev100(&self) -> Option<f64> {
+        let settings = &self.job.settings;
+        if settings.scale.is_some() || settings.show.file_unit() == 1.0 {
+            return None;
+        }
+        match settings.exposure {
+            Exposure::Ev100(ev100) => Some(ev100),
+            Exposure::Auto => self.average.map(automatic),
+        }
+    }
+
+    /// Writes an EXR of these quantities, the first of which is the picture; tells size and layers.
+    ///
+    /// # Errors
+    /// Whatever keeps the file from being written; an older one is left alone then.
+    pub fn save_exr(mut self, path: &Path, shows: &[Show], kinds: &[LayerKind]) -> Result<String> {
+        let metadata = self.job.metadata();
+        let mut bands = self.plan.bands.clone().into_iter();
+        let size = self.plan.full.to_array();
+        write_exr_rows(path, size, kinds, &metadata, || {
+            let Some(band) = bands.next() else {
+                return Ok(Vec::new());
+            };
+            let layers = shows
+                .iter()
+                .map(|show| self.layer(*show, &band, shows.len() > 1));
+            layers.collect()
+        })?;
+        Ok(self.summary(&format!(", {} layer(s)", kinds.len())))
+    }
+
+    /// One quantity of a row of tiles, in the file's unit.
+    fn layer(&mut self, show: Show, band: &Span, switches: bool) -> Result<Vec<[f32; 4]>> {
+        if switches {
+            self.frame.show(show)?;
+        }
+        let unit = show.file_unit();
+        let texels = |pixels: Pixels| pixels.rgba();
+        let mut texels = self.band(band, Frame::radiance, texels, 1)?;
+        for texel in &mut texels {
+            *texel = texel.map(|v| v * unit);
+        }
+        Ok(texels)
+    }
+
+    fn summary(&self, more: &str) -> String {
+        self.progress.finish_and_clear();
+        let [width, height] = self.plan.full.to_array();
+        let tiles = self.plan.bands.len() * self.plan.columns.len();
+        format!("{width}x{height} in {tiles} tiles{more}")
+    }
+}
+
+/// Most samples whose occlusion is kept: later ones see one of these again.
+const MOST_KEPT: usize = 16;

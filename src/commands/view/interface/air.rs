@@ -1,0 +1,49 @@
+//! Sky model, turbidity, ground.
+
+use egui::{Slider, Ui};
+
+use super::choice;
+use crate::commands::view::document::Document;
+
+pub(super) fn show(ui: &mut Ui, document: &mut Document) {
+    let settings = &mut document.job.settings;
+    choice(ui, "sky", &mut settings.sky);
+    let (least, most) = settings.sky.turbidity_range();
+    ui.add(Slider::new(&mut settings.turbidity, least..=most).text("turbidity"))
+        .on_hover_text("2 very clear, 3 clear, 6 hazy, 10 murky");
+    ui.add(Slider::new(&mut settings.ground_albedo, 0.0..=1.0).text("ground albedo"))
+        .on_hover_text("reflectance of the ground below the horizon");
+    choice(ui, "refraction", &mut settings.refraction);
+    let light = &document.job.daylight;
+    let lux = crate::daylight::colour::luminance;
+    let elevation = document.job.sun.apparent_elevation_deg;
+    let sun = lux(light.sun_illuminance) * elevation.to_radians().sin().max(0.0);
+    let sky = lux(light.sky_irradiance_up);
+    ui.label(format!(
+        "on open ground: sun {} + sky {}",
+        illuminance(sun),
+        illuminance(sky)
+    ));
+}
+
+/// `12.3 klx`, `0.25 lx`.
+pub(super) fn illuminance(lux: f64) -> String {
+    if lux >= 1000.0 {
+        format!("{:.1} klx", lux * 1e-3)
+    } else {
+        let digits = if lux >= 10.0 { 0 } else { 2 };
+        format!("{lux:.digits$} lx")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::illuminance;
+
+    #[test]
+    fn illuminances_have_three_digits_or_so() {
+        assert_eq!(illuminance(98_765.0), "98.8 klx");
+        assert_eq!(illuminance(123.4), "123 lx");
+        assert_eq!(illuminance(0.254), "0.25 lx");
+    }
+}

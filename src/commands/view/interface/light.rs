@@ -1,0 +1,93 @@
+//! How light is computed: irradiance, occlusion, shadows, samples.
+
+use egui::{ComboBox, Slider, Ui};
+
+use super::choice;
+use crate::commands::light::conditions;
+use crate::commands::view::document::Document;
+use crate::daylight::irradiance::IrradianceMethod;
+use crate::daylight::refinement::Refinement;
+use crate::daylight::sky::Conditions;
+
+/// Edges of the shadow map on offer, texels.
+const SHADOW_SIZES: [u32; 4] = [1024, 2048, 4096, 8192];
+
+/// The estimated error of the sky's irradiance, with what it was estimated for.
+#[derive(Default)]
+pub(super) struct Readout {
+    estimate: Option<(Conditions, Refinement)>,
+    error: Option<(u32, f64)>,
+}
+
+impl Readout {
+    pub(super) fn show(&mut self, ui: &mut Ui, document: &mut Document) {
+        let settings = &mut document.job.settings;
+        choice(ui, "irradiance", &mut settings.irradiance);
+        if settings.irradiance.is_sampled() {
+            let samples = Slider::new(&mut settings.irradiance_samples, 16..=65_536);
+            ui.add(samples.logarithmic(true).text("samples"));
+        }
+        let line = self.irradiance(document);
+        ui.label(line);
+        ui.separator();
+        let settings = &mut document.job.settings;
+        let radius = Slider::new(&mut settings.ao_radius, 0.0..=20.0);
+        ui.add(radius.text("occlusion radius, m"))
+            .on_hover_text("0 turns ambient occlusion off");
+        choice(ui, "occlusion", &mut settings.ao_resolution);
+        ui.separator();
+        shadow_size(ui, &mut settings.shadow_size);
+        let samples = Slider::new(&mut settings.samples, 1..=1024);
+        ui.add(samples.logarithmic(true).text("frames at rest"))
+            .on_hover_text(
+                "frames averaged when nothing moves: smooth edges, and shadows as soft as the sun's disc makes them",
+            );
+        ui.add(Slider::new(&mut settings.specular, 0.0..=4.0).text("specular"))
+            .on_hover_text("factor on every specular reflectance");
+        ui.checkbox(&mut settings.limb_darkening, "limb darkening");
+    }
+
+    /// How far the sky's irradiance is, and how far off.
+    fn irradiance(&mut self, document: &Document) -> String {
+        let (done, wanted) = document.frame().irradiance_progress();
+        let method = document.job.settings.irradiance;
+        let error = match method {
+            IrradianceMethod::Exact => "exact to the sky cube's texels".to_owned(),
+            IrradianceMethod::Sh => "nine harmonics".to_owned(),
+            IrradianceMethod::Quasi | IrradianceMethod::MonteCarlo => {
+                let error = self.error(document, method, done);
+                format!("{done} of {wanted} samples, ± {:.2} %", error * 100.0)
+            }
+        };
+        format!("sky irradiance: {error}")
+    }
+
+    fn error(&mut self, document: &Document, method: IrradianceMethod, done: u32) -> f64 {
+        let now = conditions(&document.job.settings, &document.job.sun);
+        if self.estimate.as_ref().is_none_or(|(of, _)| *of != now) {
+            let daylight = &document.job.daylight;
+            let refinement = Refinement::new(|direction| daylight.radiance(direction));
+            (self.estimate, self.error) = (Some((now, refinement)), None);
+        }
+        let (Some((_, refinement)), None) = (&self.estimate, self.error.filter(|e| e.0 == done))
+        else {
+            return self.error.map_or(0.0, |e| e.1);
+        };
+        let error = match method {
+            IrradianceMethod::MonteCarlo => refinement.monte_carlo_error(done.max(1)),
+            _ => refinement.quasi_error(done.max(1)),
+        };
+        self.error = Some((done, error));
+        error
+    }
+}
+
+fn shadow_size(ui: &mut Ui, size: &mut u32) {
+    ComboBox::new("shadow map", "shadow map")
+        .selected_text(size.to_string())
+        .show_ui(ui, |ui| {
+            for edge in SHADOW_SIZES {
+                ui.selectable_value(size, edge, edge.to_string());
+            }
+        });
+}

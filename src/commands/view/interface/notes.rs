@@ -1,0 +1,110 @@
+//! Messages over the picture: what was done, what went wrong, how far a load is.
+
+use std::time::{Duration, Instant};
+
+use egui::{Align2, ProgressBar, RichText, Ui};
+
+use super::corner;
+use crate::commands::view::style;
+
+/// How long a message stays that nobody needs to act on.
+const SHOWN: Duration = Duration::from_secs(5);
+/// Most messages at a time: the newest.
+const MOST: usize = 6;
+
+/// A line.
+struct Note {
+    text: String,
+    /// None: until it is dismissed.
+    until: Option<Instant>,
+}
+
+/// The messages of this moment.
+pub(in crate::commands::view) struct Notes {
+    notes: Vec<Note>,
+    is_quiet: bool,
+    /// How far a load is, and what it does.
+    pub(super) loading: Option<(f32, &'static str)>,
+}
+
+impl Notes {
+    pub(super) fn new(is_quiet: bool) -> Self {
+        Self {
+            notes: Vec::new(),
+            is_quiet,
+            loading: None,
+        }
+    }
+
+    /// Tells something for a while.
+    pub(in crate::commands::view) fn say(&mut self, text: &str) {
+        if !self.is_quiet {
+            self.add(text, Some(Instant::now() + SHOWN));
+        }
+    }
+
+    /// Tells of a failure, here and on stderr.
+    pub(in crate::commands::view) fn complain(&mut self, text: &str) {
+        eprintln!("error: {text}");
+        self.add(text, None);
+    }
+
+    fn add(&mut self, text: &str, until: Option<Instant>) {
+        self.notes.retain(|note| note.text != text);
+        self.notes.push(Note {
+            text: text.to_owned(),
+            until,
+        });
+        let excess = self.notes.len().saturating_sub(MOST);
+        self.notes.drain(..excess);
+    }
+
+    /// Closes all.
+    pub(super) fn dismiss(&mut self) {
+        self.notes.clear();
+    }
+
+    /// Shows them; only failures and loads over a bare picture.
+    pub(super) fn show(&mut self, ui: &Ui, all: bool) {
+        let now = Instant::now();
+        self.notes
+            .retain(|note| note.until.is_none_or(|until| until > now));
+        if let Some(next) = self.notes.iter().filter_map(|note| note.until).min() {
+            ui.ctx().request_repaint_after(next - now);
+        }
+        let is_shown = |note: &Note| all || note.until.is_none();
+        if !self.notes.iter().any(is_shown) && self.loading.is_none() {
+            return;
+        }
+        let mut closed = None;
+        corner(ui, "notes", Align2::CENTER_TOP, [0.0, 12.0], |ui| {
+            ui.set_max_width(620.0);
+            if let Some((share, stage)) = self.loading {
+                ui.add(ProgressBar::new(share).desired_width(300.0).text(stage));
+            }
+            let shown = self.notes.iter().enumerate().filter(|(_, n)| is_shown(n));
+            for (i, note) in shown {
+                if line(ui, note) {
+                    closed = Some(i);
+                }
+            }
+        });
+        if let Some(i) = closed {
+            self.notes.remove(i);
+        }
+    }
+}
+
+/// Whether it was closed.
+fn line(ui: &mut Ui, note: &Note) -> bool {
+    let Some(_) = note.until else {
+        let mut close = false;
+        ui.horizontal_wrapped(|ui| {
+            ui.label(RichText::new(&note.text).color(style::ALARM));
+            close = ui.button("dismiss").clicked();
+        });
+        return close;
+    };
+    ui.label(&note.text);
+    false
+}

@@ -1,0 +1,398 @@
+//! Instance, device, queue, memory and the few samplers: what everything else keeps alive.
+
+use std::mem::ManuallyDrop;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use ash::{ext, khr, vk};
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, Allocator, AllocatorCreateDesc};
+
+use crate::gpu::device::fault::{Call, Faults};
+use crate::gpu::device::heap::keep_freed_memory;
+use crate::gpu::device::instance::{InstanceGuard, has_instance_extension, load};
+use crate::gpu::device::select::{self, DeviceSummary, Optional};
+use crate::gpu::device::startup::{Startup, Step};
+use crate::gpu::device::surface::{self, RawSurface, Surface, WindowHandles};
+use crate::gpu::device::validation::Messenger;
+use crate::gpu::error::{During, GpuError, Result};
+use crate::gpu::memory::sampler::{self, Sampler};
+use crate::gpu::pipeline::cache::{CacheState, Key, PipelineCache};
+
+/// How to make a [`Context`].
+#[derive(Debug, Clone, Default)]
+pub struct ContextOptions {
+    /// Index or part of the name of the device; the best one otherwise.
+    pub device: Option<String>,
+    /// Turn on the validation layer with synchronization validation.
+    pub validate: bool,
+    /// What to do without although the device has it.
+    pub without: Vec<Optional>,
+    /// Where the driver's pipeline cache is kept between runs; nowhere without it.
+    pub cache_folder: Option<PathBuf>,
+    /// For tests: a call that is to fail, for instance `submit@3=device-lost`.
+    pub fault: Option<String>,
+}
+
+/// A logical device destroyed on drop.
+struct DeviceGuard {
+    raw: ash::Device,
+}
+
+impl Drop for DeviceGuard {
+    fn drop(&mut self) {
+        // SAFETY: all resources hold the Context, so none is alive any more.
+        unsafe {
+            let _ = self.raw.device_wait_idle();
+            self.raw.destroy_device(None);
+        }
+    }
+}
+
+/// The device and what belongs to it. Shared by everything that was made with it.
+pub struct Context {
+    // Dropped by hand first, then in the order of the fields: device, messenger, instance, loader.
+    allocator: ManuallyDrop<Arc<Mutex<Allocator>>>,
+    samplers: [vk::Sampler; Sampler::COUNT],
+    cache: PipelineCache,
+    pub(in crate::gpu) faults: Faults,
+    pub(in crate::gpu) startup: Startup,
+    device: DeviceGuard,
+    pub(in crate::gpu) push_descriptor: Option<khr::push_descriptor::Device>,
+    pub(in crate::gpu) swapchain: Option<khr::swapchain::Device>,
+    pub(in crate::gpu) debug: Option<ext::debug_utils::Device>,
+    pub(in crate::gpu) queue: vk::Queue,
+    pub(in crate::gpu) queue_family: u32,
+    pub(in crate::gpu) physical: vk::PhysicalDevice,
+    pub(in crate::gpu) limits: vk::PhysicalDeviceLimits,
+    summary: DeviceSummary,
+    #[cfg(feature = "hot-reload")]
+    pub(in crate::gpu) reloaded: crate::gpu::pipeline::hot_reload::Reloaded,
+    messenger: Option<Messenger>,
+    instance: InstanceGuard,
+    entry: ash::Entry,
+}
+
+impl Context {
+    /// Opens a device.
+    ///
+    /// # Errors
+    /// No loader, no device, an unknown `device`, a missing feature (named), or a driver fault.
+    pub fn new(options: &ContextOptions) -> Result<Arc<Self>> {
+        Ok(Self::open(options, None)?.0)
+    }
+
+    /// Opens a device that can present to a window.
+    ///
+    /// # Errors
+    /// As [`Context::new`], and when no device can present to this window.
+    pub fn for_window(
+        options: &ContextOptions,
+        window: Arc<dyn WindowHandles>,
+    ) -> Result<(Arc<Self>, Surface)> {
+        let (context, surface) = Self::open(options, Some(window))?;
+        let surface = surface.ok_or(GpuError::NoDevice)?;
+        Ok((context.clone(), Surface::new(context, surface)))
+    }
+
+    fn open(
+        options: &ContextOptions,
+        window: Option<Arc<dyn WindowHandles>>,
+    ) -> Result<(Arc<Self>, Option<RawSurface>)> {
+        let mut startup = Startup::new();
+        let faults = Faults::new(options.fault.as_deref())?;
+        let entry = load()?;
+        startup.done("Vulkan loader");
+        let windows = window
+            .as_deref()
+            .map_or(Ok(&[][..]), surface::instance_extensions)?;
+        let instance = InstanceGuard::new(&entry, options.validate, windows)?;
+        let messenger = options
+            .validate
+            .then(|| Messenger::new(&entry, &instance.raw))
+            .transpose()?;
+        let surface = window
+            .map(|window| RawSurface::new(&entry, &instance.raw, window))
+            .transpose()?;
+        startup.done("instance");
+        let chosen = select::choose(
+            select::candidates(&instance.raw, surface.as_ref(), &options.without)?,
+            options.device.as_deref(),
+        )?;
+        let push = chosen.summary.has(Optional::PushDescriptor);
+        if chosen.summary.is_software() {
+            keep_freed_memory();
+        }
+        startup.done("choice of the device");
+        let device = create_device(&instance.raw, &chosen, surface.is_some())?;
+        // SAFETY: `chosen` comes from this instance; the queue family was found on it.
+        let (queue, properties) = unsafe {
+            (
+                device.raw.get_device_queue(chosen.queue_family, 0),
+                instance.raw.get_physical_device_properties(chosen.handle),
+            )
+        };
+        startup.done("device");
+        let debug = has_instance_extension(&entry, None, ext::debug_utils::NAME)?
+            .then(|| ext::debug_utils::Device::new(&instance.raw, &device.raw));
+        let push_descriptor =
+            push.then(|| khr::push_descriptor::Device::new(&instance.raw, &device.raw));
+        let swapchain = surface
+            .is_some()
+            .then(|| khr::swapchain::Device::new(&instance.raw, &device.raw));
+        let allocator = create_allocator(&instance.raw, &device.raw, chosen.handle)?;
+        let samplers = sampler::create_all(&device.raw)?;
+        startup.done("memory, samplers");
+        let key = Key::new(&properties);
+        let cache = PipelineCache::new(&device.raw, key, options.cache_folder.as_deref())?;
+        startup.done("pipeline cache");
+        let context = Arc::new(Self {
+            allocator: ManuallyDrop::new(Arc::new(Mutex::new(allocator))),
+            samplers,
+            cache,
+            faults,
+            startup,
+            device,
+            push_descriptor,
+            swapchain,
+            debug,
+            queue,
+            queue_family: chosen.queue_family,
+            physical: chosen.handle,
+            limits: properties.limits,
+            summary: chosen.summary,
+            #[cfg(feature = "hot-reload")]
+            reloaded: Default::default(),
+            messenger,
+            instance,
+            entry,
+        });
+        Ok((context, surface))
+    }
+
+    pub(in crate::gpu) fn entry(&self) -> &ash::Entry {
+        &self.entry
+    }
+
+    pub(in crate::gpu) fn instance(&self) -> &ash::Instance {
+        &self.instance.raw
+    }
+
+    /// The allocator, for a renderer that manages its own buffers; it must be dropped before the context.
+    pub(in crate::gpu) fn shared_allocator(&self) -> Arc<Mutex<Allocator>> {
+        Arc::clone(&self.allocator)
+    }
+
+    /// The device in words.
+    pub fn summary(&self) -> &DeviceSummary {
+        &self.summary
+    }
+
+    /// Whether the device counts what its pipelines do.
+    pub(in crate::gpu) fn counts_work(&self) -> bool {
+        self.summary.has(Optional::PipelineStatistics)
+    }
+
+    pub(in crate::gpu) fn pipeline_cache(&self) -> vk::PipelineCache {
+        self.cache.raw
+    }
+
+    /// What became of the file of the pipeline cache.
+    pub fn cache_state(&self) -> CacheState {
+        self.cache.state
+    }
+
+    /// What opening the device took, step by step.
+    pub fn opening(&self) -> &[Step] {
+        &self.startup.steps
+    }
+
+    /// Every pipeline made so far, with what it took; they may have been made at the same time.
+    pub fn pipelines(&self) -> Vec<Step> {
+        self.startup.pipelines()
+    }
+
+    /// Messages of the validation layer so far; empty when validation is off.
+    pub fn validation_messages(&self) -> Vec<String> {
+        self.messenger
+            .as_ref()
+            .map(|m| m.log().messages())
+            .unwrap_or_default()
+    }
+
+    /// Fails when the validation layer has said anything.
+    ///
+    /// # Errors
+    /// Counts the messages and quotes the first.
+    pub fn check_validation(&self) -> Result<()> {
+        let messages = self.validation_messages();
+        match messages.first() {
+            None => Ok(()),
+            Some(first) => Err(GpuError::Validation {
+                count: messages.len(),
+                first: first.clone(),
+            }),
+        }
+    }
+
+    /// The first of `formats` that can be sampled and rendered to (blended and filtered are not asked for).
+    ///
+    /// # Errors
+    /// Names the formats when none can.
+    pub fn supported_format(&self, formats: &[vk::Format]) -> Result<vk::Format> {
+        let needed =
+            vk::FormatFeatureFlags::COLOR_ATTACHMENT | vk::FormatFeatureFlags::SAMPLED_IMAGE;
+        let able = |format: &&vk::Format| {
+            // SAFETY: the physical device belongs to the instance.
+            let p = unsafe {
+                self.instance
+                    .raw
+                    .get_physical_device_format_properties(self.physical, **format)
+            };
+            p.optimal_tiling_features.contains(needed)
+        };
+        formats
+            .iter()
+            .find(able)
+            .copied()
+            .ok_or_else(|| GpuError::Unsupported {
+                missing: format!("rendering to {formats:?} is"),
+                device: self.summary.name.clone(),
+            })
+    }
+
+    pub(in crate::gpu) fn raw(&self) -> &ash::Device {
+        &self.device.raw
+    }
+
+    pub(in crate::gpu) fn allocator(&self) -> MutexGuard<'_, Allocator> {
+        // A panic inside the allocator is a fault of its own; going on leaks at worst.
+        self.allocator
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Memory for a buffer or an image, which owns it from then on.
+    pub(in crate::gpu) fn allocate(&self, desc: &AllocationCreateDesc<'_>) -> Result<Allocation> {
+        let refused = |reason: String| GpuError::Memory {
+            what: desc.name.into(),
+            reason,
+        };
+        self.faults.at(Call::Memory).map_err(|fault| match fault {
+            vk::Result::ERROR_OUT_OF_DEVICE_MEMORY => refused("out of device memory".into()),
+            result => GpuError::Vulkan {
+                what: "allocate memory",
+                result,
+            },
+        })?;
+        self.allocator()
+            .allocate(desc)
+            .map_err(|e| refused(e.to_string().trim_end_matches('.').to_lowercase()))
+    }
+
+    pub(in crate::gpu) fn sampler(&self, sampler: Sampler) -> vk::Sampler {
+        self.samplers[sampler as usize]
+    }
+
+    /// Gives a handle a name that validation messages and captures show.
+    pub(in crate::gpu) fn name<H: vk::Handle>(&self, handle: H, name: &str) {
+        let Some(debug) = &self.debug else { return };
+        let Ok(name) = std::ffi::CString::new(name) else {
+            return;
+        };
+        let info = vk::DebugUtilsObjectNameInfoEXT::default()
+            .object_handle(handle)
+            .object_name(&name);
+        // SAFETY: the handle belongs to this device. A name that cannot be set is no loss.
+        let _ = unsafe { debug.set_debug_utils_object_name(&info) };
+    }
+
+    /// Bytes of device memory in use.
+    pub fn allocated_bytes(&self) -> u64 {
+        self.allocator().generate_report().total_allocated_bytes
+    }
+
+    /// Waits until the device has nothing to do.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn wait_idle(&self) -> Result<()> {
+        let planned = self.faults.at(Call::Wait);
+        // SAFETY: the queue is used by one thread at a time (recorders are not shared).
+        let waited = unsafe { self.raw().device_wait_idle() };
+        planned.and(waited).during("wait for the device")
+    }
+}
+
+impl Drop for Context {
+    fn drop(&mut self) {
+        // SAFETY: no resource is alive (each holds an Arc of this); the allocator is dropped once, before the device.
+        unsafe {
+            let _ = self.raw().device_wait_idle();
+            self.cache.save_and_destroy(&self.device.raw);
+            for sampler in self.samplers {
+                self.device.raw.destroy_sampler(sampler, None);
+            }
+            ManuallyDrop::drop(&mut self.allocator);
+        }
+    }
+}
+
+fn create_device(
+    instance: &ash::Instance,
+    chosen: &select::Candidate,
+    presents: bool,
+) -> Result<DeviceGuard> {
+    let priority = [1.0];
+    let queues = [vk::DeviceQueueCreateInfo::default()
+        .queue_family_index(chosen.queue_family)
+        .queue_priorities(&priority)];
+    let mut extensions = Vec::new();
+    if chosen.summary.has(Optional::PushDescriptor) {
+        extensions.push(select::PUSH_DESCRIPTORS.as_ptr());
+    }
+    if presents {
+        extensions.push(khr::swapchain::NAME.as_ptr());
+    }
+    let core = vk::PhysicalDeviceFeatures::default()
+        .geometry_shader(chosen.summary.has(Optional::GeometryShader))
+        .shader_storage_image_write_without_format(chosen.stores_without_format)
+        .pipeline_statistics_query(chosen.summary.has(Optional::PipelineStatistics));
+    let mut v12 = vk::PhysicalDeviceVulkan12Features::default()
+        .scalar_block_layout(true)
+        .host_query_reset(true);
+    let mut v13 = vk::PhysicalDeviceVulkan13Features::default()
+        .dynamic_rendering(true)
+        .synchronization2(true)
+        .shader_terminate_invocation(true);
+    let info = vk::DeviceCreateInfo::default()
+        .queue_create_infos(&queues)
+        .enabled_extension_names(&extensions)
+        .enabled_features(&core)
+        .push_next(&mut v12)
+        .push_next(&mut v13);
+    // SAFETY: all pointers of `info` live on this stack; the features were checked by `select`.
+    let raw = unsafe { instance.create_device(chosen.handle, &info, None) }
+        .during("create the Vulkan device")?;
+    Ok(DeviceGuard { raw })
+}
+
+fn create_allocator(
+    instance: &ash::Instance,
+    device: &ash::Device,
+    physical_device: vk::PhysicalDevice,
+) -> Result<Allocator> {
+    let mut debug_settings = gpu_allocator::AllocatorDebugSettings::default();
+    debug_settings.log_leaks_on_shutdown = false;
+    Allocator::new(&AllocatorCreateDesc {
+        instance: instance.clone(),
+        device: device.clone(),
+        physical_device,
+        debug_settings,
+        buffer_device_address: false,
+        allocation_sizes: gpu_allocator::AllocationSizes::default(),
+    })
+    .map_err(|e| GpuError::Memory {
+        what: "the allocator".into(),
+        reason: e.to_string(),
+    })
+}

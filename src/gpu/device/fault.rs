@@ -1,0 +1,166 @@
+//! Faults on purpose: a test names a Vulkan call, and that call answers as a broken driver would.
+//!
+//! Without a planned fault a call costs one comparison with `None`; nothing is compiled differently for tests, so what they
+//! see is what users get.
+
+use std::str::FromStr;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use ash::vk;
+
+use crate::gpu::error::GpuError;
+
+/// The calls that can be made to fail.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::gpu) enum Call {
+    /// Allocating device memory, of buffers and images.
+    Memory,
+    /// Creating a buffer.
+    Buffer,
+    /// Creating an image.
+    Image,
+    /// Creating a pipeline.
+    Pipeline,
+    /// Beginning a command buffer.
+    Record,
+    /// Submitting work.
+    Submit,
+    /// Waiting for work.
+    Wait,
+    /// Asking what the window's surface can do.
+    Surface,
+    /// Acquiring an image of the window.
+    Acquire,
+    /// Presenting to the window.
+    Present,
+}
+
+const CALLS: [(&str, Call); 10] = [
+    ("memory", Call::Memory),
+    ("buffer", Call::Buffer),
+    ("image", Call::Image),
+    ("pipeline", Call::Pipeline),
+    ("record", Call::Record),
+    ("submit", Call::Submit),
+    ("wait", Call::Wait),
+    ("surface", Call::Surface),
+    ("acquire", Call::Acquire),
+    ("present", Call::Present),
+];
+
+const ANSWERS: [(&str, vk::Result); 5] = [
+    ("device-lost", vk::Result::ERROR_DEVICE_LOST),
+    (
+        "out-of-device-memory",
+        vk::Result::ERROR_OUT_OF_DEVICE_MEMORY,
+    ),
+    ("out-of-host-memory", vk::Result::ERROR_OUT_OF_HOST_MEMORY),
+    ("surface-lost", vk::Result::ERROR_SURFACE_LOST_KHR),
+    ("out-of-date", vk::Result::ERROR_OUT_OF_DATE_KHR),
+];
+
+/// One fault: which call, the how many-th of its kind from 1 on, and its answer. As text: `submit@3=device-lost`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Fault {
+    call: Call,
+    number: u32,
+    answer: vk::Result,
+}
+
+impl FromStr for Fault {
+    type Err = GpuError;
+
+    fn from_str(text: &str) -> Result<Self, GpuError> {
+        let parse = || {
+            let (call, rest) = text.split_once('@')?;
+            let (number, answer) = rest.split_once('=')?;
+            Some(Self {
+                call: CALLS.iter().find(|(name, _)| *name == call)?.1,
+                number: number.parse().ok().filter(|n| *n > 0)?,
+                answer: ANSWERS.iter().find(|(name, _)| *name == answer)?.1,
+            })
+        };
+        parse().ok_or_else(|| GpuError::BadFault(text.to_owned()))
+    }
+}
+
+/// The planned fault of a device, if there is one.
+#[derive(Debug, Default)]
+pub(in crate::gpu) struct Faults {
+    planned: Option<Fault>,
+    seen: AtomicU32,
+}
+
+impl Faults {
+    /// From a text such as `memory@12=out-of-device-memory`.
+    pub fn new(text: Option<&str>) -> Result<Self, GpuError> {
+        Ok(Self {
+            planned: text.map(str::parse).transpose()?,
+            seen: AtomicU32::new(0),
+        })
+    }
+
+    /// Asked before a call is made: the answer that it is to have instead.
+    #[inline]
+    pub fn at(&self, call: Call) -> Result<(), vk::Result> {
+        match &self.planned {
+            None => Ok(()),
+            Some(fault) => self.strike(fault, call),
+        }
+    }
+
+    fn strike(&self, fault: &Fault, call: Call) -> Result<(), vk::Result> {
+        // A lost device stays lost, whatever is asked of it; memory or a surface may be there again the next time.
+        let is_lost = fault.answer == vk::Result::ERROR_DEVICE_LOST;
+        let strikes = if call == fault.call {
+            let number = self.seen.fetch_add(1, Ordering::Relaxed) + 1;
+            number == fault.number || (is_lost && number > fault.number)
+        } else {
+            is_lost && self.seen.load(Ordering::Relaxed) >= fault.number
+        };
+        if strikes { Err(fault.answer) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_call_fails_once() {
+        let faults = Faults::new(Some("memory@2=out-of-device-memory")).expect("a fault");
+        let memory: Vec<bool> = (0..4).map(|_| faults.at(Call::Memory).is_ok()).collect();
+        assert_eq!(memory, [true, false, true, true]);
+        assert!(faults.at(Call::Submit).is_ok());
+    }
+
+    #[test]
+    fn a_lost_device_stays_lost() {
+        let faults = Faults::new(Some("submit@2=device-lost")).expect("a fault");
+        assert!(faults.at(Call::Wait).is_ok() && faults.at(Call::Submit).is_ok());
+        assert_eq!(faults.at(Call::Submit), Err(vk::Result::ERROR_DEVICE_LOST));
+        for call in CALLS.map(|(_, call)| call) {
+            assert!(faults.at(call).is_err(), "{call:?}");
+        }
+    }
+
+    #[test]
+    fn without_a_fault_nothing_fails() {
+        let faults = Faults::new(None).expect("none");
+        assert!((0..9).all(|_| CALLS.iter().all(|(_, call)| faults.at(*call).is_ok())));
+    }
+
+    #[test]
+    fn other_texts_are_refused_with_the_form() {
+        for text in [
+            "",
+            "submit",
+            "submit@0=device-lost",
+            "jump@1=device-lost",
+            "wait@1=tired",
+        ] {
+            let line = Faults::new(Some(text)).expect_err(text).to_string();
+            assert!(line.contains("CALL@NUMBER=ANSWER"), "{line}");
+        }
+    }
+}

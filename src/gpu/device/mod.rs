@@ -1,0 +1,10 @@
+//! The device: instance, choice, surface of a window, validation, injected faults.
+
+pub(in crate::gpu) mod context;
+pub(in crate::gpu) mod fault;
+pub(in crate::gpu) mod heap;
+pub(in crate::gpu) mod instance;
+pub(in crate::gpu) mod select;
+pub(in crate::gpu) mod startup;
+pub(in crate::gpu) mod surface;
+pub(in crate::gpu) mod validation;

@@ -1,0 +1,144 @@
+//! The surface of a window: where a swapchain presents to.
+
+use std::ffi::c_char;
+use std::sync::Arc;
+
+use ash::{khr, vk};
+use raw_window_handle::{HasDisplayHandle, HasWindowHandle};
+
+use crate::gpu::device::context::Context;
+use crate::gpu::device::fault::Call;
+use crate::gpu::error::{During, GpuError, Result};
+
+/// A window, of whatever library.
+pub trait WindowHandles: HasDisplayHandle + HasWindowHandle {}
+
+impl<W: HasDisplayHandle + HasWindowHandle> WindowHandles for W {}
+
+fn refused(error: &raw_window_handle::HandleError) -> GpuError {
+    GpuError::Window(error.to_string())
+}
+
+/// Extensions that an instance needs to present to this window.
+pub(in crate::gpu) fn instance_extensions(
+    window: &dyn WindowHandles,
+) -> Result<&'static [*const c_char]> {
+    let display = window.display_handle().map_err(|e| refused(&e))?;
+    ash_window::enumerate_required_extensions(display.as_raw())
+        .during("list the extensions of the window system")
+}
+
+/// A surface that keeps its window alive; destroyed on drop, which must come before the instance's.
+pub(in crate::gpu) struct RawSurface {
+    loader: khr::surface::Instance,
+    handle: vk::SurfaceKHR,
+    window: Arc<dyn WindowHandles>,
+}
+
+impl RawSurface {
+    pub(in crate::gpu) fn new(
+        entry: &ash::Entry,
+        instance: &ash::Instance,
+        window: Arc<dyn WindowHandles>,
+    ) -> Result<Self> {
+        let display_handle = window.display_handle().map_err(|e| refused(&e))?;
+        let window_handle = window.window_handle().map_err(|e| refused(&e))?;
+        // SAFETY: the instance has the extensions of this window system, and the window lives as long as the surface.
+        let handle = unsafe {
+            ash_window::create_surface(
+                entry,
+                instance,
+                display_handle.as_raw(),
+                window_handle.as_raw(),
+                None,
+            )
+        }
+        .during("create the window's surface")?;
+        Ok(Self {
+            loader: khr::surface::Instance::new(entry, instance),
+            handle,
+            window: window.clone(),
+        })
+    }
+
+    /// Whether a queue family can present to it.
+    pub(in crate::gpu) fn is_supported(
+        &self,
+        device: vk::PhysicalDevice,
+        family: u32,
+    ) -> Result<bool> {
+        // SAFETY: device and surface belong to one instance.
+        unsafe {
+            self.loader
+                .get_physical_device_surface_support(device, family, self.handle)
+        }
+        .during("ask whether the device presents to the window")
+    }
+}
+
+impl Drop for RawSurface {
+    fn drop(&mut self) {
+        // SAFETY: its swapchain was destroyed before (it is owned by the same struct, declared before).
+        unsafe { self.loader.destroy_surface(self.handle, None) };
+    }
+}
+
+/// The surface of a window.
+pub struct Surface {
+    surface: RawSurface,
+    context: Arc<Context>,
+}
+
+impl Surface {
+    pub(in crate::gpu) fn new(context: Arc<Context>, surface: RawSurface) -> Self {
+        Self { surface, context }
+    }
+
+    pub(in crate::gpu) fn context(&self) -> &Arc<Context> {
+        &self.context
+    }
+
+    pub(in crate::gpu) fn handle(&self) -> vk::SurfaceKHR {
+        self.surface.handle
+    }
+
+    /// Makes it anew after the window system lost it; its swapchain must be gone.
+    pub(in crate::gpu) fn recreate(&mut self) -> Result<()> {
+        let window = self.surface.window.clone();
+        self.surface = RawSurface::new(self.context.entry(), self.context.instance(), window)?;
+        Ok(())
+    }
+
+    pub(in crate::gpu) fn capabilities(
+        &self,
+    ) -> std::result::Result<vk::SurfaceCapabilitiesKHR, vk::Result> {
+        self.context.faults.at(Call::Surface)?;
+        // SAFETY: device and surface belong to one instance.
+        unsafe {
+            self.surface
+                .loader
+                .get_physical_device_surface_capabilities(self.context.physical, self.handle())
+        }
+    }
+
+    /// The first sRGB format with 8 bits a channel.
+    pub(in crate::gpu) fn format(&self) -> Result<vk::SurfaceFormatKHR> {
+        // SAFETY: device and surface belong to one instance.
+        let formats = unsafe {
+            self.surface
+                .loader
+                .get_physical_device_surface_formats(self.context.physical, self.handle())
+        }
+        .during("list the formats of the window")?;
+        let encoded = [vk::Format::B8G8R8A8_SRGB, vk::Format::R8G8B8A8_SRGB];
+        formats
+            .into_iter()
+            .find(|f| {
+                encoded.contains(&f.format) && f.color_space == vk::ColorSpaceKHR::SRGB_NONLINEAR
+            })
+            .ok_or_else(|| GpuError::Unsupported {
+                missing: "an sRGB format of the window is".into(),
+                device: self.context.summary().name.clone(),
+            })
+    }
+}

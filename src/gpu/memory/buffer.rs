@@ -1,0 +1,155 @@
+//! Buffers with their memory.
+
+use std::sync::Arc;
+
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+
+use crate::gpu::device::context::Context;
+use crate::gpu::device::fault::Call;
+use crate::gpu::error::{During, Result};
+
+/// What a buffer is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BufferKind {
+    /// Vertex data on the device.
+    Vertex,
+    /// Indices on the device.
+    Index,
+    /// A storage buffer on the device.
+    Storage,
+    /// Written by the CPU, copied to the device.
+    Staging,
+    /// Written by the device, read by the CPU.
+    ReadBack,
+    /// Uniform blocks, written by the CPU every frame.
+    Uniform,
+}
+
+impl BufferKind {
+    const fn usage(self) -> vk::BufferUsageFlags {
+        let target = vk::BufferUsageFlags::TRANSFER_DST;
+        match self {
+            Self::Vertex => vk::BufferUsageFlags::from_raw(
+                target.as_raw() | vk::BufferUsageFlags::VERTEX_BUFFER.as_raw(),
+            ),
+            Self::Index => vk::BufferUsageFlags::from_raw(
+                target.as_raw() | vk::BufferUsageFlags::INDEX_BUFFER.as_raw(),
+            ),
+            Self::Storage => vk::BufferUsageFlags::from_raw(
+                target.as_raw() | vk::BufferUsageFlags::STORAGE_BUFFER.as_raw(),
+            ),
+            Self::Staging => vk::BufferUsageFlags::TRANSFER_SRC,
+            Self::ReadBack => target,
+            Self::Uniform => vk::BufferUsageFlags::UNIFORM_BUFFER,
+        }
+    }
+
+    const fn location(self) -> MemoryLocation {
+        match self {
+            Self::Vertex | Self::Index | Self::Storage => MemoryLocation::GpuOnly,
+            Self::Staging | Self::Uniform => MemoryLocation::CpuToGpu,
+            Self::ReadBack => MemoryLocation::GpuToCpu,
+        }
+    }
+}
+
+/// A buffer and its memory, freed on drop.
+pub struct Buffer {
+    context: Arc<Context>,
+    raw: vk::Buffer,
+    allocation: Option<Allocation>,
+    size: u64,
+}
+
+impl Buffer {
+    /// Makes a buffer of `size` bytes (at least one).
+    ///
+    /// # Errors
+    /// When the device has no memory left.
+    pub fn new(context: &Arc<Context>, name: &str, kind: BufferKind, size: u64) -> Result<Self> {
+        let size = size.max(4);
+        let info = vk::BufferCreateInfo::default()
+            .size(size)
+            .usage(kind.usage());
+        context.faults.at(Call::Buffer).during("create a buffer")?;
+        // SAFETY: the info has no pointers; the handle goes into its owner at once.
+        let raw = unsafe { context.raw().create_buffer(&info, None) }.during("create a buffer")?;
+        let mut buffer = Self {
+            context: context.clone(),
+            raw,
+            allocation: None,
+            size,
+        };
+        context.name(raw, name);
+        // SAFETY: `raw` was just created by this device.
+        let requirements = unsafe { context.raw().get_buffer_memory_requirements(raw) };
+        let allocation = context.allocate(&AllocationCreateDesc {
+            name,
+            requirements,
+            location: kind.location(),
+            linear: true,
+            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+        })?;
+        // SAFETY: the allocation was made for these requirements and is owned by the buffer.
+        let bound = unsafe {
+            context
+                .raw()
+                .bind_buffer_memory(raw, allocation.memory(), allocation.offset())
+        };
+        buffer.allocation = Some(allocation);
+        bound.during("bind buffer memory")?;
+        Ok(buffer)
+    }
+
+    /// Size in bytes.
+    pub fn size(&self) -> u64 {
+        self.size
+    }
+
+    /// The bytes, of a buffer that the CPU reads; empty otherwise.
+    pub fn bytes(&self) -> &[u8] {
+        let slice = self
+            .allocation
+            .as_ref()
+            .and_then(Allocation::mapped_slice)
+            .unwrap_or(&[]);
+        &slice[..slice.len().min(self.size as usize)]
+    }
+
+    /// The bytes, of a buffer that the CPU writes; empty otherwise.
+    pub fn bytes_mut(&mut self) -> &mut [u8] {
+        let size = self.size as usize;
+        let slice = self
+            .allocation
+            .as_mut()
+            .and_then(Allocation::mapped_slice_mut)
+            .unwrap_or(&mut []);
+        let size = slice.len().min(size);
+        &mut slice[..size]
+    }
+
+    /// The bytes, where device and CPU share the memory and see each other's writes without further ado.
+    pub(in crate::gpu) fn coherent_bytes_mut(&mut self) -> Option<&mut [u8]> {
+        let wanted = vk::MemoryPropertyFlags::HOST_COHERENT;
+        let properties = self.allocation.as_ref()?.memory_properties();
+        let bytes = properties.contains(wanted).then(|| self.bytes_mut())?;
+        (!bytes.is_empty()).then_some(bytes)
+    }
+
+    pub(in crate::gpu) fn raw(&self) -> vk::Buffer {
+        self.raw
+    }
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        // SAFETY: recorders wait for their work before they let go of resources.
+        unsafe { self.context.raw().destroy_buffer(self.raw, None) };
+        if let Some(allocation) = self.allocation.take() {
+            // Freeing fails only for a foreign allocation.
+            let _ = self.context.allocator().free(allocation);
+        }
+    }
+}

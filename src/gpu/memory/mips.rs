@@ -1,0 +1,87 @@
+//! Mip levels by repeated halving.
+
+use ash::vk;
+
+use crate::gpu::memory::image::Image;
+use crate::gpu::record::access::Use;
+use crate::gpu::record::recorder::Recorder;
+use crate::gpu::record::work::{Traffic, texel_bytes, texels};
+
+impl Recorder {
+    /// Fills the mip levels of an image from its first: each texel is the mean of four.
+    pub fn mipmap(&mut self, name: &'static str, image: &Image) {
+        self.label(name);
+        let mark = self.begin_timing(name);
+        self.transition([(image, Use::CopyTarget)].into_iter());
+        for level in 1..image.levels() {
+            self.level_transition(image, level - 1, Use::CopyTarget, Use::CopySource);
+            self.blit(image, level);
+        }
+        self.level_transition(image, image.levels() - 1, Use::CopyTarget, Use::CopySource);
+        image.set_last_use(Use::CopySource);
+        self.end_timing(&mark);
+        self.unlabel();
+        self.end_work(&mark, u64::from(image.levels() - 1), || mip_traffic(image));
+        self.isolate(&mark);
+    }
+
+    fn level_transition(&self, image: &Image, level: u32, from: Use, to: Use) {
+        let Some(barrier) = image.level_barrier(level, from, to) else {
+            return;
+        };
+        let barriers = [barrier];
+        let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
+        // SAFETY: the command buffer is recording outside of a rendering; the image is alive.
+        unsafe {
+            self.context
+                .raw()
+                .cmd_pipeline_barrier2(self.command, &info)
+        };
+    }
+
+    /// Halves level `level - 1` (a copy source) into `level` (a copy target).
+    fn blit(&self, image: &Image, level: u32) {
+        let layers = |mip_level| vk::ImageSubresourceLayers {
+            aspect_mask: image.aspect(),
+            mip_level,
+            base_array_layer: 0,
+            layer_count: image.layers(),
+        };
+        let corner = |level: u32| {
+            let edge = |size: u32| (size >> level).max(1).cast_signed();
+            let [x, y] = image.size().map(edge);
+            [vk::Offset3D::default(), vk::Offset3D { x, y, z: 1 }]
+        };
+        let region = [vk::ImageBlit::default()
+            .src_subresource(layers(level - 1))
+            .src_offsets(corner(level - 1))
+            .dst_subresource(layers(level))
+            .dst_offsets(corner(level))];
+        // SAFETY: both levels were brought to these layouts.
+        unsafe {
+            self.context.raw().cmd_blit_image(
+                self.command,
+                image.raw(),
+                vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+                image.raw(),
+                vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+                &region,
+                vk::Filter::LINEAR,
+            );
+        }
+    }
+}
+
+/// Every level but the last is read, every level but the first is written.
+fn mip_traffic(image: &Image) -> Traffic {
+    let bytes = |level: u32| {
+        let [width, height] = image.size().map(|edge| u64::from((edge >> level).max(1)));
+        width * height * u64::from(image.layers()) * texel_bytes(image.format())
+    };
+    let last = image.levels().saturating_sub(1);
+    Traffic {
+        bytes_read: (0..last).map(bytes).sum(),
+        bytes_written: (1..=last).map(bytes).sum(),
+        ..Traffic::new(texels(image))
+    }
+}

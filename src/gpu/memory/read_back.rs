@@ -1,0 +1,217 @@
+//! Any image back to the CPU.
+
+use ash::vk;
+
+use crate::gpu::error::Result;
+use crate::gpu::memory::buffer::{Buffer, BufferKind};
+use crate::gpu::memory::image::Image;
+use crate::gpu::record::access::{self, Use};
+use crate::gpu::record::recorder::Recorder;
+
+/// Texels of one image (mip level 0): layer after layer, row after row.
+#[derive(Debug, Clone)]
+pub struct Pixels {
+    /// Width and height, texels.
+    pub size: [u32; 2],
+    /// Number of layers.
+    pub layers: u32,
+    /// Channels of the format.
+    pub channels: usize,
+    /// The bytes as the format packs them.
+    pub bytes: Vec<u8>,
+    format: vk::Format,
+}
+
+/// Channels and bytes per channel.
+fn shape(format: vk::Format) -> (usize, usize) {
+    match format {
+        vk::Format::R8_UNORM => (1, 1),
+        vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB => (4, 1),
+        vk::Format::R16_SFLOAT | vk::Format::R16_UINT => (1, 2),
+        // Packed words: the lower half, then the upper.
+        vk::Format::R32_UINT => (2, 2),
+        vk::Format::R32G32_UINT => (4, 2),
+        vk::Format::R32G32B32A32_UINT => (8, 2),
+        vk::Format::R16G16_SNORM | vk::Format::R16G16_SFLOAT => (2, 2),
+        vk::Format::R16G16B16A16_SFLOAT => (4, 2),
+        vk::Format::R32_SFLOAT | vk::Format::D32_SFLOAT => (1, 4),
+        vk::Format::R32G32B32A32_SFLOAT => (4, 4),
+        other => unreachable!("no image of this program has the format {other:?}"),
+    }
+}
+
+/// One texel on its way to the CPU, in a slot of a buffer.
+#[derive(Debug, Clone, Copy)]
+pub struct Texel {
+    slot: usize,
+    format: vk::Format,
+}
+
+impl Texel {
+    /// Bytes of a slot: those of the widest format.
+    pub const MOST_BYTES: usize = 16;
+
+    /// Its channels, missing ones as in [`Pixels::rgba`]; once the work that copied it is done.
+    pub fn read(&self, buffer: &Buffer) -> [f32; 4] {
+        let (channels, width) = shape(self.format);
+        let start = self.slot * Self::MOST_BYTES;
+        let bytes = buffer.bytes().get(start..start + channels * width);
+        four(&floats(self.format, bytes.unwrap_or(&[])))
+    }
+}
+
+/// Copies one texel of a flat image to slot number `slot` of a read-back buffer, when the recorded work runs.
+///
+/// # Panics
+/// When the pixel is outside of the image.
+pub fn copy_texel(
+    recorder: &mut Recorder,
+    image: &Image,
+    pixel: [u32; 2],
+    buffer: &Buffer,
+    slot: usize,
+) -> Texel {
+    let [width, height] = image.size();
+    assert!(
+        pixel[0] < width && pixel[1] < height,
+        "{pixel:?} is outside of {}",
+        image.name()
+    );
+    let region = vk::BufferImageCopy::default()
+        .buffer_offset((slot * Texel::MOST_BYTES) as u64)
+        .image_offset(vk::Offset3D {
+            x: pixel[0].cast_signed(),
+            y: pixel[1].cast_signed(),
+            z: 0,
+        })
+        .image_extent(vk::Extent3D {
+            width: 1,
+            height: 1,
+            depth: 1,
+        });
+    copy(recorder, image, buffer, region);
+    let format = image.format();
+    Texel { slot, format }
+}
+
+/// Copies a region of all layers; the CPU sees it when the work is done.
+fn copy(recorder: &Recorder, image: &Image, target: &Buffer, region: vk::BufferImageCopy) {
+    recorder.transition([(image, Use::CopySource)].into_iter());
+    let region = [region.image_subresource(vk::ImageSubresourceLayers {
+        aspect_mask: image.aspect(),
+        mip_level: 0,
+        base_array_layer: 0,
+        layer_count: image.layers(),
+    })];
+    // SAFETY: the buffer holds the region; the image was brought to the copy layout; both live until the work is done.
+    unsafe {
+        recorder.context.raw().cmd_copy_image_to_buffer(
+            recorder.command,
+            image.raw(),
+            vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+            target.raw(),
+            &region,
+        );
+    }
+    show_to_host(recorder);
+}
+
+/// Copies an image to the CPU. The recorder must not be recording; this begins, submits and waits.
+///
+/// # Errors
+/// When memory is out or the device is lost.
+pub fn read_back(recorder: &mut Recorder, image: &Image) -> Result<Pixels> {
+    let (channels, width) = shape(image.format());
+    let [columns, rows] = image.size();
+    let texels = columns as usize * rows as usize * image.layers() as usize;
+    let bytes = texels * channels * width;
+    let name = format!("read-back of {}", image.name());
+    let target = Buffer::new(&recorder.context, &name, BufferKind::ReadBack, bytes as u64)?;
+    recorder.begin()?;
+    let region = vk::BufferImageCopy::default().image_extent(vk::Extent3D {
+        width: columns,
+        height: rows,
+        depth: 1,
+    });
+    copy(recorder, image, &target, region);
+    recorder.finish()?;
+    Ok(Pixels {
+        size: image.size(),
+        layers: image.layers(),
+        channels,
+        bytes: target.bytes()[..bytes].to_vec(),
+        format: image.format(),
+    })
+}
+
+fn show_to_host(recorder: &Recorder) {
+    let Some(b) = access::barrier(Use::CopyTarget, Use::HostRead) else {
+        return;
+    };
+    let barriers = [vk::MemoryBarrier2::default()
+        .src_stage_mask(b.src_stage)
+        .src_access_mask(b.src_access)
+        .dst_stage_mask(b.dst_stage)
+        .dst_access_mask(b.dst_access)];
+    let info = vk::DependencyInfo::default().memory_barriers(&barriers);
+    // SAFETY: the command buffer is recording.
+    unsafe {
+        recorder
+            .context
+            .raw()
+            .cmd_pipeline_barrier2(recorder.command, &info)
+    };
+}
+
+impl Pixels {
+    /// All channels as floats, in the order of `bytes`. Integers come as their value, normalised formats in
+    /// 0..1 or −1..1 (sRGB stays encoded).
+    pub fn floats(&self) -> Vec<f32> {
+        floats(self.format, &self.bytes)
+    }
+
+    /// Texels as `[f32; 4]`; missing channels are 0, a missing fourth is 1, those after the fourth are left out.
+    pub fn rgba(&self) -> Vec<[f32; 4]> {
+        self.floats()
+            .chunks_exact(self.channels)
+            .map(four)
+            .collect()
+    }
+}
+
+/// The first four channels; missing ones are 0, a missing fourth is 1.
+fn four(channels: &[f32]) -> [f32; 4] {
+    let mut texel = [0.0, 0.0, 0.0, 1.0];
+    for (to, from) in texel.iter_mut().zip(channels) {
+        *to = *from;
+    }
+    texel
+}
+
+fn floats(format: vk::Format, bytes: &[u8]) -> Vec<f32> {
+    let halves = |bytes: &[u8]| u16::from_ne_bytes([bytes[0], bytes[1]]);
+    let pairs = || bytes.chunks_exact(2).map(halves);
+    match format {
+        vk::Format::R8_UNORM | vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB => {
+            bytes.iter().map(|b| f32::from(*b) / 255.0).collect()
+        }
+        vk::Format::R16_UINT
+        | vk::Format::R32_UINT
+        | vk::Format::R32G32_UINT
+        | vk::Format::R32G32B32A32_UINT => pairs().map(f32::from).collect(),
+        vk::Format::R16G16_SNORM => pairs()
+            .map(|b| (f32::from(b.cast_signed()) / 32767.0).max(-1.0))
+            .collect(),
+        vk::Format::R16_SFLOAT | vk::Format::R16G16_SFLOAT | vk::Format::R16G16B16A16_SFLOAT => {
+            pairs().map(half_to_f32).collect()
+        }
+        _ => bytes
+            .chunks_exact(4)
+            .map(|b| f32::from_ne_bytes([b[0], b[1], b[2], b[3]]))
+            .collect(),
+    }
+}
+
+fn half_to_f32(bits: u16) -> f32 {
+    exr::prelude::f16::from_bits(bits).to_f32()
+}

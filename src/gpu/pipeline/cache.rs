@@ -1,0 +1,241 @@
+//! The driver's pipeline cache, kept in a file between runs.
+//!
+//! The file is a hint, never trusted: what does not fit the device and driver to the bit, or has a wrong checksum, is thrown
+//! away and made anew. Drivers are known to crash on damaged data.
+
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use ash::vk;
+
+use crate::gpu::error::{During, Result};
+
+/// First bytes of a file; the number is the version of its layout.
+const MAGIC: &[u8; 8] = b"SKYLPC01";
+/// Magic, vendor, device, driver, UUID, length, checksum.
+const HEADER: usize = 8 + 4 + 4 + 4 + vk::UUID_SIZE + 8 + 4;
+/// Bytes of the header that Vulkan puts before the data of `VK_PIPELINE_CACHE_HEADER_VERSION_ONE`.
+const VULKAN_HEADER: usize = 16 + vk::UUID_SIZE;
+/// Larger files are not read.
+const MOST_BYTES: u64 = 256 << 20;
+
+/// What data of a cache are good for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::gpu) struct Key {
+    vendor: u32,
+    device: u32,
+    driver: u32,
+    uuid: [u8; vk::UUID_SIZE],
+}
+
+impl Key {
+    pub(in crate::gpu) fn new(properties: &vk::PhysicalDeviceProperties) -> Self {
+        Self {
+            vendor: properties.vendor_id,
+            device: properties.device_id,
+            driver: properties.driver_version,
+            uuid: properties.pipeline_cache_uuid,
+        }
+    }
+
+    fn bytes(&self) -> Vec<u8> {
+        let numbers = [self.vendor, self.device, self.driver];
+        let numbers = numbers.iter().flat_map(|n| n.to_le_bytes());
+        numbers.chain(self.uuid).collect()
+    }
+
+    fn file(&self) -> String {
+        format!("pipelines-{:08x}-{:08x}.bin", self.vendor, self.device)
+    }
+
+    /// Whether Vulkan's own header says the same.
+    fn fits(&self, data: &[u8]) -> bool {
+        let Some(header) = data.get(..VULKAN_HEADER) else {
+            return false;
+        };
+        let version = vk::PipelineCacheHeaderVersion::ONE.as_raw().cast_unsigned();
+        let numbers = [VULKAN_HEADER as u32, version, self.vendor, self.device];
+        let expected = numbers.iter().flat_map(|n| n.to_ne_bytes());
+        expected.chain(self.uuid).eq(header.iter().copied())
+    }
+}
+
+/// Data of a cache as a file.
+fn encode(key: &Key, data: &[u8]) -> Vec<u8> {
+    let mut file = MAGIC.to_vec();
+    file.extend(key.bytes());
+    file.extend((data.len() as u64).to_le_bytes());
+    let checksum = checksum(&file, data);
+    file.extend(checksum.to_le_bytes());
+    file.extend(data);
+    file
+}
+
+/// The data in a file, when every bit of it is as it was written for this device and driver.
+fn decode<'f>(key: &Key, file: &'f [u8]) -> Option<&'f [u8]> {
+    let (header, data) = file.split_at_checked(HEADER)?;
+    let (described, sum) = header.split_at(HEADER - 4);
+    let mut expected = MAGIC.to_vec();
+    expected.extend(key.bytes());
+    expected.extend((data.len() as u64).to_le_bytes());
+    let intact = described == expected && sum == checksum(described, data).to_le_bytes();
+    (intact && key.fits(data)).then_some(data)
+}
+
+fn checksum(header: &[u8], data: &[u8]) -> u32 {
+    let mut hasher = crc32fast::Hasher::new();
+    hasher.update(header);
+    hasher.update(data);
+    hasher.finalize()
+}
+
+fn read(path: &Path) -> Option<Vec<u8>> {
+    let about = fs::metadata(path).ok()?;
+    (about.is_file() && about.len() <= MOST_BYTES).then(|| fs::read(path).ok())?
+}
+
+/// Beside the target first, so that a crash leaves the old file whole.
+fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    fs::create_dir_all(folder)?;
+    let mut file = tempfile::Builder::new()
+        .prefix(".pipelines-")
+        .tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    file.persist(path)?;
+    Ok(())
+}
+
+/// What became of the file at the start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CacheState {
+    /// No folder to keep it in.
+    Off,
+    /// There was none yet.
+    New,
+    /// It was read: so many bytes of the driver's data.
+    Read(usize),
+    /// It was damaged, or of another device or driver, and is made anew.
+    Refused,
+}
+
+/// The cache, alive as long as its device.
+pub(in crate::gpu) struct PipelineCache {
+    pub(in crate::gpu) raw: vk::PipelineCache,
+    pub(in crate::gpu) state: CacheState,
+    key: Key,
+    path: Option<PathBuf>,
+    loaded: Vec<u8>,
+}
+
+impl PipelineCache {
+    /// Reads the cache of a device from a folder, where there is one.
+    pub(in crate::gpu) fn new(
+        device: &ash::Device,
+        key: Key,
+        folder: Option<&Path>,
+    ) -> Result<Self> {
+        let path = folder.map(|folder| folder.join(key.file()));
+        let file = path.as_deref().and_then(read);
+        let data = file.as_deref().and_then(|file| decode(&key, file));
+        let state = match (&path, &file, data) {
+            (None, ..) => CacheState::Off,
+            (_, None, _) => CacheState::New,
+            (.., Some(data)) => CacheState::Read(data.len()),
+            (_, Some(_), None) => CacheState::Refused,
+        };
+        let loaded = data.unwrap_or_default().to_vec();
+        let info = vk::PipelineCacheCreateInfo::default().initial_data(&loaded);
+        // SAFETY: the data are what this driver gave for this device, to the bit, or none.
+        let raw = unsafe { device.create_pipeline_cache(&info, None) }
+            .during("create a pipeline cache")?;
+        Ok(Self {
+            raw,
+            state,
+            key,
+            path,
+            loaded,
+        })
+    }
+
+    /// Writes the file if the cache has something new, and destroys the cache.
+    ///
+    /// # Safety
+    /// The device must be alive, and no thread may make pipelines.
+    pub(in crate::gpu) unsafe fn save_and_destroy(&self, device: &ash::Device) {
+        if let Some(path) = &self.path {
+            // SAFETY: as asked of the caller.
+            let data = unsafe { device.get_pipeline_cache_data(self.raw) };
+            // Without its file the next start is slower: no reason to fail.
+            if let Ok(data) = data
+                && data != self.loaded
+            {
+                let _ = write(path, &encode(&self.key, &data));
+            }
+        }
+        // SAFETY: as asked of the caller.
+        unsafe { device.destroy_pipeline_cache(self.raw, None) };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn key() -> Key {
+        Key {
+            vendor: 0x10005,
+            device: 7,
+            driver: 3,
+            uuid: std::array::from_fn(|i| i as u8),
+        }
+    }
+
+    /// Data as a driver gives them.
+    fn data(key: &Key) -> Vec<u8> {
+        let numbers = [VULKAN_HEADER as u32, 1, key.vendor, key.device];
+        let header = numbers.iter().flat_map(|n| n.to_ne_bytes());
+        header.chain(key.uuid).chain(*b"the driver's own").collect()
+    }
+
+    #[test]
+    fn what_was_written_is_read() {
+        let data = data(&key());
+        assert_eq!(decode(&key(), &encode(&key(), &data)), Some(&data[..]));
+    }
+
+    #[test]
+    fn no_bit_may_be_wrong_and_no_byte_missing() {
+        let file = encode(&key(), &data(&key()));
+        for bit in 0..8 * file.len() {
+            let mut damaged = file.clone();
+            damaged[bit / 8] ^= 1 << (bit % 8);
+            assert_eq!(decode(&key(), &damaged), None, "bit {bit}");
+        }
+        for length in 0..file.len() {
+            assert_eq!(decode(&key(), &file[..length]), None, "{length} bytes");
+        }
+        let longer = [&file[..], &[0]].concat();
+        assert_eq!(decode(&key(), &longer), None);
+    }
+
+    #[test]
+    fn other_devices_and_drivers_are_refused() {
+        let file = encode(&key(), &data(&key()));
+        let others = [
+            Key { vendor: 1, ..key() },
+            Key { device: 8, ..key() },
+            Key { driver: 4, ..key() },
+            Key {
+                uuid: [9; vk::UUID_SIZE],
+                ..key()
+            },
+        ];
+        for other in others {
+            assert_eq!(decode(&other, &file), None, "{other:?}");
+            // A file that claims to be of this device but holds the data of another.
+            assert!(other.driver != 3 || decode(&key(), &encode(&key(), &data(&other))).is_none());
+        }
+    }
+}

@@ -1,0 +1,358 @@
+//! Pipelines (graphics with dynamic rendering, or compute), their layouts derived from what the stages declare.
+
+pub(in crate::gpu) mod cache;
+#[cfg(feature = "hot-reload")]
+pub(in crate::gpu) mod hot_reload;
+pub(in crate::gpu) mod layout;
+pub(in crate::gpu) mod shader;
+pub(in crate::gpu) mod stages;
+pub(in crate::gpu) mod state;
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use ash::vk;
+
+use crate::gpu::device::context::Context;
+use crate::gpu::device::fault::Call;
+use crate::gpu::error::{During, Result};
+use crate::gpu::pipeline::shader::{Binding, Field, Shader};
+use crate::gpu::pipeline::stages::{Constants, Modules};
+use crate::gpu::pipeline::state::{depth_state, rasterization, vertex_streams};
+use crate::gpu::record::compute;
+
+/// Depth test of a pipeline. Depth is reversed everywhere: 1 is nearest, 0 is infinitely far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Depth {
+    /// No depth attachment.
+    Off,
+    /// Fragments pass where something was drawn (depth is not 0); nothing is written. For full-screen triangles, whose
+    /// own depth is 0.
+    Surface(vk::Format),
+    /// Fragments pass where nothing was drawn (depth is 0); nothing is written. For full-screen triangles.
+    Background(vk::Format),
+    /// Nearer (greater) fragments win and are written.
+    Write {
+        /// Format of the attachment.
+        format: vk::Format,
+        /// Slope-scaled bias away from the viewer, in units of the largest depth slope.
+        slope_bias: f32,
+    },
+}
+
+/// What to make.
+#[derive(Debug, Clone, Copy)]
+pub struct PipelineDesc<'a> {
+    /// Name in messages and captures.
+    pub name: &'a str,
+    /// Vertex, perhaps geometry, perhaps fragment stage; or a compute stage alone.
+    pub stages: &'a [&'static Shader],
+    /// One tightly packed vertex stream for each location.
+    pub vertex: &'a [vk::Format],
+    /// Formats of the colour attachments.
+    pub colors: &'a [vk::Format],
+    /// Depth test.
+    pub depth: Depth,
+    /// Values of specialization constants, by name (bits).
+    pub constants: &'a [(&'a str, u32)],
+}
+
+/// A binding and the stages that see it.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::gpu) struct Slot {
+    pub(in crate::gpu) binding: Binding,
+    stages: vk::ShaderStageFlags,
+}
+
+/// A pipeline, its layout and what it declares.
+pub struct Pipeline {
+    context: Arc<Context>,
+    raw: vk::Pipeline,
+    layout: vk::PipelineLayout,
+    set_layout: vk::DescriptorSetLayout,
+    pub(in crate::gpu) slots: Vec<Slot>,
+    pub(in crate::gpu) push: Option<(&'static [Field], vk::ShaderStageFlags)>,
+    pub(in crate::gpu) colors: Vec<vk::Format>,
+    pub(in crate::gpu) depth: Option<vk::Format>,
+    pub(in crate::gpu) streams: usize,
+    pub(in crate::gpu) writes_depth: bool,
+    /// Invocations of a work group, of a compute pipeline.
+    pub(in crate::gpu) local_size: Option<[u32; 3]>,
+    name: String,
+}
+
+/// Bytes of a push block.
+fn block_size(fields: &[Field]) -> u32 {
+    fields.iter().map(|f| f.offset + f.size).max().unwrap_or(0)
+}
+
+fn merge_slots(stages: &[&'static Shader]) -> Vec<Slot> {
+    let mut slots: Vec<Slot> = Vec::new();
+    for shader in stages {
+        for binding in shader.bindings {
+            let flags = shader.stage.flags();
+            match slots
+                .iter_mut()
+                .find(|s| s.binding.binding == binding.binding)
+            {
+                Some(slot) => {
+                    assert_eq!(
+                        slot.binding, *binding,
+                        "{}: binding declared twice",
+                        shader.name
+                    );
+                    slot.stages |= flags;
+                }
+                None => slots.push(Slot {
+                    binding: *binding,
+                    stages: flags,
+                }),
+            }
+        }
+    }
+    slots.sort_by_key(|s| s.binding.binding);
+    slots
+}
+
+fn merge_push(stages: &[&'static Shader]) -> Option<(&'static [Field], vk::ShaderStageFlags)> {
+    let mut merged: Option<(&'static [Field], vk::ShaderStageFlags)> = None;
+    for shader in stages {
+        let Some(fields) = shader.push else { continue };
+        let flags = merged.map_or(vk::ShaderStageFlags::empty(), |m| m.1) | shader.stage.flags();
+        if let Some((first, _)) = merged {
+            assert_eq!(
+                first, fields,
+                "{}: push blocks of the stages differ",
+                shader.name
+            );
+        }
+        merged = Some((fields, flags));
+    }
+    merged
+}
+
+impl Pipeline {
+    /// Compiles a pipeline.
+    ///
+    /// # Errors
+    /// When the driver refuses.
+    ///
+    /// # Panics
+    /// When the stages contradict each other or a constant is not declared: a fault of this program.
+    pub fn new(context: &Arc<Context>, desc: &PipelineDesc<'_>) -> Result<Self> {
+        let start = Instant::now();
+        let slots = merge_slots(desc.stages);
+        let push = merge_push(desc.stages);
+        for (name, _) in desc.constants {
+            let declared = desc
+                .stages
+                .iter()
+                .any(|s| s.constants.iter().any(|c| c.0 == *name));
+            assert!(
+                declared,
+                "{}: no stage declares the constant {name}",
+                desc.name
+            );
+        }
+        let mut pipeline = Self {
+            context: context.clone(),
+            raw: vk::Pipeline::null(),
+            layout: vk::PipelineLayout::null(),
+            set_layout: vk::DescriptorSetLayout::null(),
+            slots,
+            push,
+            colors: desc.colors.to_vec(),
+            depth: match desc.depth {
+                Depth::Off => None,
+                Depth::Surface(format)
+                | Depth::Background(format)
+                | Depth::Write { format, .. } => Some(format),
+            },
+            streams: desc.vertex.len(),
+            writes_depth: matches!(desc.depth, Depth::Write { .. }),
+            local_size: desc.stages.iter().find_map(|s| s.local_size),
+            name: desc.name.to_owned(),
+        };
+        pipeline.set_layout = pipeline.create_set_layout()?;
+        pipeline.layout = pipeline.create_layout()?;
+        let modules = Modules::new(context, desc.stages)?;
+        pipeline.raw = pipeline.create(desc, &modules)?;
+        context.name(pipeline.raw, desc.name);
+        context.startup.pipeline(desc.name, start);
+        Ok(pipeline)
+    }
+
+    fn create_set_layout(&self) -> Result<vk::DescriptorSetLayout> {
+        let bindings: Vec<_> = self
+            .slots
+            .iter()
+            .map(|slot| {
+                vk::DescriptorSetLayoutBinding::default()
+                    .binding(slot.binding.binding)
+                    .descriptor_type(slot.binding.kind.descriptor())
+                    .descriptor_count(1)
+                    .stage_flags(slot.stages)
+            })
+            .collect();
+        let flags = if self.context.push_descriptor.is_some() {
+            vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR
+        } else {
+            vk::DescriptorSetLayoutCreateFlags::empty()
+        };
+        let info = vk::DescriptorSetLayoutCreateInfo::default()
+            .flags(flags)
+            .bindings(&bindings);
+        // SAFETY: `bindings` outlives the call.
+        unsafe { self.context.raw().create_descriptor_set_layout(&info, None) }
+            .during("create a descriptor set layout")
+    }
+
+    fn create_layout(&self) -> Result<vk::PipelineLayout> {
+        let ranges: Vec<_> = self
+            .push
+            .iter()
+            .map(|(fields, stages)| {
+                vk::PushConstantRange::default()
+                    .stage_flags(*stages)
+                    .size(block_size(fields))
+            })
+            .collect();
+        let sets = [self.set_layout];
+        let info = vk::PipelineLayoutCreateInfo::default()
+            .set_layouts(&sets)
+            .push_constant_ranges(&ranges);
+        // SAFETY: the arrays outlive the call.
+        unsafe { self.context.raw().create_pipeline_layout(&info, None) }
+            .during("create a pipeline layout")
+    }
+
+    fn create(&self, desc: &PipelineDesc<'_>, modules: &Modules) -> Result<vk::Pipeline> {
+        let what = "compile a pipeline";
+        self.context.faults.at(Call::Pipeline).during(what)?;
+        let constants: Vec<Constants> = desc
+            .stages
+            .iter()
+            .map(|s| Constants::new(s, desc.constants))
+            .collect();
+        let specializations: Vec<_> = constants.iter().map(Constants::info).collect();
+        let stages: Vec<_> = desc
+            .stages
+            .iter()
+            .zip(&modules.raw)
+            .zip(&specializations)
+            .map(|((shader, module), specialization)| {
+                vk::PipelineShaderStageCreateInfo::default()
+                    .stage(shader.stage.flags())
+                    .module(*module)
+                    .name(c"main")
+                    .specialization_info(specialization)
+            })
+            .collect();
+        if let ([stage], Some(_)) = (stages.as_slice(), self.local_size) {
+            return compute::create(&self.context, self.layout, *stage);
+        }
+        let (vertex_bindings, vertex_attributes) = vertex_streams(desc.vertex);
+        let vertex = vk::PipelineVertexInputStateCreateInfo::default()
+            .vertex_binding_descriptions(&vertex_bindings)
+            .vertex_attribute_descriptions(&vertex_attributes);
+        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
+            .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
+        let viewport = vk::PipelineViewportStateCreateInfo::default()
+            .viewport_count(1)
+            .scissor_count(1);
+        let multisample = vk::PipelineMultisampleStateCreateInfo::default()
+            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
+        let rasterization = rasterization(desc.depth);
+        let depth = depth_state(desc.depth);
+        let opaque = vk::PipelineColorBlendAttachmentState::default()
+            .color_write_mask(vk::ColorComponentFlags::RGBA);
+        let blends = vec![opaque; desc.colors.len()];
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
+        let states = [
+            vk::DynamicState::VIEWPORT,
+            vk::DynamicState::SCISSOR,
+            vk::DynamicState::CULL_MODE,
+            vk::DynamicState::FRONT_FACE,
+        ];
+        // What a full-screen triangle winds like is no question.
+        let states = if self.writes_depth {
+            &states
+        } else {
+            &states[..2]
+        };
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(states);
+        let mut rendering = vk::PipelineRenderingCreateInfo::default()
+            .color_attachment_formats(desc.colors)
+            .depth_attachment_format(self.depth.unwrap_or(vk::Format::UNDEFINED));
+        let info = vk::GraphicsPipelineCreateInfo::default()
+            .stages(&stages)
+            .vertex_input_state(&vertex)
+            .input_assembly_state(&assembly)
+            .viewport_state(&viewport)
+            .rasterization_state(&rasterization)
+            .multisample_state(&multisample)
+            .depth_stencil_state(&depth)
+            .color_blend_state(&blend)
+            .dynamic_state(&dynamic)
+            .layout(self.layout)
+            .push_next(&mut rendering);
+        // SAFETY: everything `info` points to lives on this stack.
+        let made = unsafe {
+            self.context.raw().create_graphics_pipelines(
+                self.context.pipeline_cache(),
+                &[info],
+                None,
+            )
+        };
+        made.map(|p| p[0]).map_err(|(_, r)| r).during(what)
+    }
+
+    /// Whether another pipeline can be used in the same pass with the same bindings.
+    pub(in crate::gpu) fn is_variant_of(&self, other: &Self) -> bool {
+        let slots = self.slots.iter().map(|s| s.binding);
+        slots.eq(other.slots.iter().map(|s| s.binding))
+            && self.push == other.push
+            && self.colors == other.colors
+            && self.depth == other.depth
+            && self.streams == other.streams
+    }
+
+    /// Name, as given.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    pub(in crate::gpu) fn bind_point(&self) -> vk::PipelineBindPoint {
+        match self.local_size {
+            Some(_) => vk::PipelineBindPoint::COMPUTE,
+            None => vk::PipelineBindPoint::GRAPHICS,
+        }
+    }
+
+    pub(in crate::gpu) fn raw(&self) -> vk::Pipeline {
+        self.raw
+    }
+
+    pub(in crate::gpu) fn layout(&self) -> vk::PipelineLayout {
+        self.layout
+    }
+
+    pub(in crate::gpu) fn set_layout(&self) -> vk::DescriptorSetLayout {
+        self.set_layout
+    }
+}
+
+impl Drop for Pipeline {
+    fn drop(&mut self) {
+        // SAFETY: recorders wait for their work before pipelines are let go; null handles are ignored.
+        unsafe {
+            self.context.raw().destroy_pipeline(self.raw, None);
+            self.context
+                .raw()
+                .destroy_pipeline_layout(self.layout, None);
+            self.context
+                .raw()
+                .destroy_descriptor_set_layout(self.set_layout, None);
+        }
+    }
+}

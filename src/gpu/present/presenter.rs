@@ -1,0 +1,108 @@
+//! Frames to a window, two in flight: the CPU records one while the device draws the other.
+
+use ash::vk;
+
+use crate::gpu::device::surface::Surface;
+use crate::gpu::error::Result;
+use crate::gpu::memory::image::Image;
+use crate::gpu::present::swapchain::{Semaphore, Swapchain};
+use crate::gpu::record::access::Use;
+use crate::gpu::record::recorder::Recorder;
+use crate::gpu::record::timings::{Timing, Timings};
+
+/// Frames in flight.
+pub(in crate::gpu) const FRAMES: usize = 2;
+
+/// What one frame in flight owns.
+struct Slot {
+    recorder: Recorder,
+    acquired: Semaphore,
+}
+
+/// Records and presents frames.
+pub struct Presenter {
+    slots: [Slot; FRAMES],
+    current: usize,
+    swapchain: Swapchain,
+}
+
+impl Presenter {
+    /// For a window of `size` pixels.
+    ///
+    /// # Errors
+    /// When the surface offers no sRGB format, or memory is out.
+    pub fn new(surface: Surface, size: [u32; 2]) -> Result<Self> {
+        let context = surface.context().clone();
+        let slot = || -> Result<Slot> {
+            Ok(Slot {
+                recorder: Recorder::new(&context, Timing::Off)?,
+                acquired: Semaphore::new(&context)?,
+            })
+        };
+        Ok(Self {
+            slots: [slot()?, slot()?],
+            current: 0,
+            swapchain: Swapchain::new(surface, size)?,
+        })
+    }
+
+    /// Format of the window's images.
+    pub fn format(&self) -> vk::Format {
+        self.swapchain.format()
+    }
+
+    /// The window has another size, pixels; 0 is minimised.
+    pub fn resize(&mut self, size: [u32; 2]) {
+        self.swapchain.resize(size);
+    }
+
+    /// Records a frame that ends with drawing to the window's image, and presents it. False when the window cannot be
+    /// drawn to now (it has no area, or is about to change): nothing was recorded then.
+    ///
+    /// # Errors
+    /// What `record` returns, or a lost device.
+    pub fn frame<E: From<crate::gpu::GpuError>>(
+        &mut self,
+        record: impl FnOnce(&mut Recorder, &Image) -> std::result::Result<(), E>,
+    ) -> std::result::Result<bool, E> {
+        let slot = &mut self.slots[self.current];
+        slot.recorder.wait()?;
+        let Some(index) = self.swapchain.acquire(slot.acquired.raw)? else {
+            return Ok(false);
+        };
+        let image = self.swapchain.image(index);
+        slot.recorder.begin()?;
+        slot.recorder.wait_for(slot.acquired.raw);
+        // Whatever happens in `record`, the image must go back: else the window would stand still.
+        let recorded = record(&mut slot.recorder, image);
+        slot.recorder
+            .transition([(image, Use::Present)].into_iter());
+        slot.recorder.submit(Some(self.swapchain.drawn(index)))?;
+        self.swapchain.present(index)?;
+        self.current = (self.current + 1) % FRAMES;
+        recorded.map(|()| true)
+    }
+
+    /// A recorder for work outside of frames, when nothing is in flight any more.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn idle(&mut self) -> Result<&mut Recorder> {
+        for slot in &mut self.slots {
+            slot.recorder.wait()?;
+        }
+        Ok(&mut self.slots[self.current].recorder)
+    }
+
+    /// Times passes differently from now on.
+    pub fn set_timing(&mut self, timing: Timing) {
+        for slot in &mut self.slots {
+            slot.recorder.set_timing(timing);
+        }
+    }
+
+    /// Times of the newest frame that is done.
+    pub fn timings(&self) -> &Timings {
+        self.slots[self.current].recorder.timings()
+    }
+}

@@ -1,0 +1,309 @@
+//! The images of a window, made anew whenever the window changed.
+
+use std::sync::Arc;
+
+use ash::{khr, vk};
+
+use crate::gpu::device::context::Context;
+use crate::gpu::device::fault::Call;
+use crate::gpu::device::surface::Surface;
+use crate::gpu::error::{During, GpuError, Result};
+use crate::gpu::memory::image::Image;
+use crate::gpu::record::access::Use;
+
+/// A semaphore destroyed on drop.
+pub(in crate::gpu) struct Semaphore {
+    context: Arc<Context>,
+    pub(in crate::gpu) raw: vk::Semaphore,
+}
+
+impl Semaphore {
+    pub(in crate::gpu) fn new(context: &Arc<Context>) -> Result<Self> {
+        // SAFETY: the info has no pointers.
+        let raw = unsafe {
+            context
+                .raw()
+                .create_semaphore(&vk::SemaphoreCreateInfo::default(), None)
+        }
+        .during("create a semaphore")?;
+        Ok(Self {
+            context: context.clone(),
+            raw,
+        })
+    }
+}
+
+impl Drop for Semaphore {
+    fn drop(&mut self) {
+        // SAFETY: the swapchain waits for the device before it lets go of its semaphores.
+        unsafe { self.context.raw().destroy_semaphore(self.raw, None) };
+    }
+}
+
+/// One image of the window with the semaphore that says it is drawn.
+struct Target {
+    image: Image,
+    drawn: Semaphore,
+}
+
+/// The chain of images of a surface.
+pub(in crate::gpu) struct Swapchain {
+    // Dropped in this order: views and semaphores, then (in `drop`) the chain, then the surface.
+    targets: Vec<Target>,
+    raw: vk::SwapchainKHR,
+    loader: khr::swapchain::Device,
+    format: vk::SurfaceFormatKHR,
+    wanted: [u32; 2],
+    is_stale: bool,
+    surface: Surface,
+}
+
+/// What came of asking for the next image.
+enum Acquired {
+    Image(u32),
+    Retry,
+    Nothing,
+}
+
+impl Swapchain {
+    /// Images of `size` pixels come with the first `acquire`.
+    pub(in crate::gpu) fn new(surface: Surface, size: [u32; 2]) -> Result<Self> {
+        let context = surface.context().clone();
+        let loader = context.swapchain.clone().ok_or(GpuError::NoDevice)?;
+        Ok(Self {
+            targets: Vec::new(),
+            raw: vk::SwapchainKHR::null(),
+            loader,
+            format: surface.format()?,
+            wanted: size,
+            is_stale: true,
+            surface,
+        })
+    }
+
+    pub(in crate::gpu) fn context(&self) -> &Arc<Context> {
+        self.surface.context()
+    }
+
+    pub(in crate::gpu) fn format(&self) -> vk::Format {
+        self.format.format
+    }
+
+    pub(in crate::gpu) fn image(&self, index: u32) -> &Image {
+        &self.targets[index as usize].image
+    }
+
+    pub(in crate::gpu) fn drawn(&self, index: u32) -> vk::Semaphore {
+        self.targets[index as usize].drawn.raw
+    }
+
+    /// The window has another size.
+    pub(in crate::gpu) fn resize(&mut self, size: [u32; 2]) {
+        self.is_stale |= size != self.wanted;
+        self.wanted = size;
+    }
+
+    /// The next image, or none while the window has no area or changes faster than it can be followed.
+    ///
+    /// `acquired` is signalled when the image may be drawn to.
+    pub(in crate::gpu) fn acquire(&mut self, acquired: vk::Semaphore) -> Result<Option<u32>> {
+        for _ in 0..3 {
+            if self.is_stale && !self.recreate()? {
+                return Ok(None);
+            }
+            match self.try_acquire(acquired)? {
+                Acquired::Image(index) => return Ok(Some(index)),
+                Acquired::Retry => self.is_stale = true,
+                Acquired::Nothing => return Ok(None),
+            }
+        }
+        Ok(None)
+    }
+
+    fn try_acquire(&mut self, acquired: vk::Semaphore) -> Result<Acquired> {
+        // A window system that gives no image for a second is busy elsewhere (a hidden window, a locked screen).
+        let patience = 1_000_000_000;
+        let planned = self.context().faults.at(Call::Acquire);
+        // SAFETY: the semaphore is unsignalled and nothing waits for it.
+        let got = planned.and_then(|()| unsafe {
+            self.loader
+                .acquire_next_image(self.raw, patience, acquired, vk::Fence::null())
+        });
+        match got {
+            Ok((index, is_suboptimal)) => {
+                // The image is good for this frame; the next one gets better ones.
+                self.is_stale |= is_suboptimal;
+                self.image(index).set_last_use(Use::Acquired);
+                Ok(Acquired::Image(index))
+            }
+            Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => Ok(Acquired::Retry),
+            Err(vk::Result::ERROR_SURFACE_LOST_KHR) => {
+                self.replace_surface()?;
+                Ok(Acquired::Retry)
+            }
+            Err(vk::Result::TIMEOUT | vk::Result::NOT_READY) => Ok(Acquired::Nothing),
+            Err(result) => Err(result).during("acquire an image of the window"),
+        }
+    }
+
+    /// Shows an image when its drawing is done.
+    pub(in crate::gpu) fn present(&mut self, index: u32) -> Result<()> {
+        let (chains, indices, waits) = ([self.raw], [index], [self.drawn(index)]);
+        let info = vk::PresentInfoKHR::default()
+            .swapchains(&chains)
+            .image_indices(&indices)
+            .wait_semaphores(&waits);
+        let queue = self.context().queue;
+        // SAFETY: the image was acquired and brought to the layout of presentation by the submission that signals.
+        let shown = unsafe { self.loader.queue_present(queue, &info) };
+        // Even a present that fails has waited for its semaphore: a planned fault comes after it.
+        match self.context().faults.at(Call::Present).and(shown) {
+            Ok(is_suboptimal) => self.is_stale |= is_suboptimal,
+            Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => self.is_stale = true,
+            Err(vk::Result::ERROR_SURFACE_LOST_KHR) => self.replace_surface()?,
+            Err(result) => return Err(result).during("present to the window"),
+        }
+        Ok(())
+    }
+
+    /// False while the window has no area.
+    fn recreate(&mut self) -> Result<bool> {
+        let can = match self.surface.capabilities() {
+            Err(vk::Result::ERROR_SURFACE_LOST_KHR) => {
+                self.replace_surface()?;
+                self.surface.capabilities()
+            }
+            other => other,
+        }
+        .during("ask what the window can do")?;
+        let extent = extent(&can, self.wanted);
+        if extent.width == 0 || extent.height == 0 {
+            return Ok(false);
+        }
+        self.context().wait_idle()?;
+        self.targets.clear();
+        let old = std::mem::replace(&mut self.raw, vk::SwapchainKHR::null());
+        let made = self.create(&can, extent, old);
+        // SAFETY: the device is idle, so no image of the old chain is in use; null is ignored.
+        unsafe { self.loader.destroy_swapchain(old, None) };
+        self.raw = made?;
+        self.targets = self.make_targets([extent.width, extent.height])?;
+        self.is_stale = false;
+        Ok(true)
+    }
+
+    fn create(
+        &self,
+        can: &vk::SurfaceCapabilitiesKHR,
+        extent: vk::Extent2D,
+        old: vk::SwapchainKHR,
+    ) -> Result<vk::SwapchainKHR> {
+        let most = if can.max_image_count == 0 {
+            u32::MAX
+        } else {
+            can.max_image_count
+        };
+        let opaque = vk::CompositeAlphaFlagsKHR::OPAQUE;
+        let alpha = if can.supported_composite_alpha.contains(opaque) {
+            opaque
+        } else {
+            vk::CompositeAlphaFlagsKHR::INHERIT
+        };
+        let info = vk::SwapchainCreateInfoKHR::default()
+            .surface(self.surface.handle())
+            .min_image_count((can.min_image_count + 1).min(most))
+            .image_format(self.format.format)
+            .image_color_space(self.format.color_space)
+            .image_extent(extent)
+            .image_array_layers(1)
+            .image_usage(vk::ImageUsageFlags::COLOR_ATTACHMENT)
+            .pre_transform(can.current_transform)
+            .composite_alpha(alpha)
+            // The one mode that every device has; it never tears.
+            .present_mode(vk::PresentModeKHR::FIFO)
+            .clipped(true)
+            .old_swapchain(old);
+        // SAFETY: the surface is alive and the old chain is retired by this call.
+        unsafe { self.loader.create_swapchain(&info, None) }.during("create the window's images")
+    }
+
+    fn make_targets(&self, size: [u32; 2]) -> Result<Vec<Target>> {
+        // SAFETY: the chain was just made.
+        let images = unsafe { self.loader.get_swapchain_images(self.raw) }
+            .during("list the window's images")?;
+        let context = self.context();
+        images
+            .into_iter()
+            .map(|raw| {
+                Ok(Target {
+                    image: Image::of_swapchain(context, raw, self.format.format, size)?,
+                    drawn: Semaphore::new(context)?,
+                })
+            })
+            .collect()
+    }
+
+    fn replace_surface(&mut self) -> Result<()> {
+        self.retire()?;
+        self.surface.recreate()?;
+        self.is_stale = true;
+        Ok(())
+    }
+
+    fn retire(&mut self) -> Result<()> {
+        let idle = self.context().wait_idle();
+        self.targets.clear();
+        let old = std::mem::replace(&mut self.raw, vk::SwapchainKHR::null());
+        // SAFETY: the device is idle or lost; null is ignored.
+        unsafe { self.loader.destroy_swapchain(old, None) };
+        idle
+    }
+}
+
+impl Drop for Swapchain {
+    fn drop(&mut self) {
+        // A lost device has nothing to wait for.
+        let _ = self.retire();
+    }
+}
+
+/// The size that the surface dictates, or the window's within the surface's limits.
+fn extent(can: &vk::SurfaceCapabilitiesKHR, wanted: [u32; 2]) -> vk::Extent2D {
+    if can.current_extent.width != u32::MAX {
+        return can.current_extent;
+    }
+    let (least, most) = (can.min_image_extent, can.max_image_extent);
+    vk::Extent2D {
+        width: wanted[0].min(most.width).max(least.width.min(wanted[0])),
+        height: wanted[1].min(most.height).max(least.height.min(wanted[1])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn surface(current: u32) -> vk::SurfaceCapabilitiesKHR {
+        vk::SurfaceCapabilitiesKHR::default()
+            .current_extent(vk::Extent2D {
+                width: current,
+                height: current,
+            })
+            .max_image_extent(vk::Extent2D {
+                width: 100,
+                height: 100,
+            })
+    }
+
+    #[test]
+    fn the_surface_rules_where_it_has_a_size() {
+        let of = |current, wanted| {
+            let e = extent(&surface(current), wanted);
+            [e.width, e.height]
+        };
+        assert_eq!(of(7, [50, 60]), [7, 7]);
+        assert_eq!(of(u32::MAX, [50, 600]), [50, 100]);
+        assert_eq!(of(0, [50, 60]), [0, 0]);
+        assert_eq!(of(u32::MAX, [0, 60]), [0, 60]);
+    }
+}

@@ -1,0 +1,136 @@
+//! The graphical user interface as `egui` tessellates it, drawn over a picture.
+
+use std::sync::Arc;
+
+use ash::vk;
+use egui_ash_renderer::allocator::GpuAllocator;
+use egui_ash_renderer::{DynamicRendering, Options, RenderMode, Renderer, RendererError};
+
+use crate::gpu::device::context::Context;
+use crate::gpu::error::{During, GpuError, Result};
+use crate::gpu::present::presenter::FRAMES;
+use crate::gpu::record::draws::Draws;
+
+/// What to draw.
+pub struct UiFrame {
+    /// Triangles.
+    pub primitives: Vec<egui::ClippedPrimitive>,
+    /// Pixels to a point.
+    pub pixels_per_point: f32,
+}
+
+/// Draws user interfaces.
+pub struct Overlay {
+    // Dropped before the context, as its allocator demands.
+    renderer: Renderer<GpuAllocator>,
+    command_pool: vk::CommandPool,
+    /// Textures that frames in flight may still show, oldest first.
+    retired: Vec<(usize, egui::TextureId)>,
+    context: Arc<Context>,
+}
+
+fn fault(error: RendererError) -> GpuError {
+    match error {
+        RendererError::Vulkan(result) => GpuError::Vulkan {
+            what: "draw the user interface",
+            result,
+        },
+        other => GpuError::Memory {
+            what: "the user interface".into(),
+            reason: other.to_string(),
+        },
+    }
+}
+
+impl Overlay {
+    /// For targets of an sRGB `format`.
+    ///
+    /// # Errors
+    /// When the driver refuses.
+    pub fn new(context: &Arc<Context>, format: vk::Format) -> Result<Self> {
+        let mode = RenderMode::DynamicRendering(DynamicRendering {
+            color_attachment_format: format,
+            depth_attachment_format: None,
+            stencil_attachment_format: None,
+        });
+        let options = Options {
+            in_flight_frames: FRAMES,
+            srgb_framebuffer: true,
+            ..Options::default()
+        };
+        let renderer = Renderer::with_gpu_allocator(
+            context.shared_allocator(),
+            context.raw().clone(),
+            mode,
+            options,
+        )
+        .map_err(fault)?;
+        let info = vk::CommandPoolCreateInfo::default().queue_family_index(context.queue_family);
+        // SAFETY: the info has no pointers.
+        let command_pool = unsafe { context.raw().create_command_pool(&info, None) }
+            .during("create a command pool")?;
+        Ok(Self {
+            renderer,
+            command_pool,
+            retired: Vec::new(),
+            context: context.clone(),
+        })
+    }
+
+    /// Takes over changed textures; before the frame that shows them is recorded.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub fn update(&mut self, mut textures: egui::TexturesDelta) -> Result<()> {
+        self.free_retired()?;
+        if !textures.set.is_empty() {
+            // The copies run on the queue at once, and a texture that changes may still be shown.
+            self.context.wait_idle()?;
+        }
+        for (id, deltas) in textures.set.drain() {
+            for delta in &deltas {
+                self.renderer
+                    .set_texture(self.context.queue, self.command_pool, id, delta)
+                    .map_err(fault)?;
+            }
+        }
+        self.retired
+            .extend(textures.free.drain().map(|id| (FRAMES, id)));
+        Ok(())
+    }
+
+    fn free_retired(&mut self) -> Result<()> {
+        for (frames, _) in &mut self.retired {
+            *frames = frames.saturating_sub(1);
+        }
+        let done = self.retired.iter().take_while(|r| r.0 == 0).count();
+        for (_, id) in self.retired.drain(..done) {
+            self.renderer.free_texture(id).map_err(fault)?;
+        }
+        Ok(())
+    }
+
+    /// Draws over what the pass has drawn so far; the last draw of the pass.
+    ///
+    /// # Errors
+    /// When memory is out.
+    pub fn draw(&mut self, draws: &mut Draws<'_, '_>, frame: &UiFrame) -> Result<()> {
+        let (command, [width, height]) = draws.foreign();
+        let extent = vk::Extent2D { width, height };
+        self.renderer
+            .cmd_draw(command, extent, frame.pixels_per_point, &frame.primitives)
+            .map_err(fault)
+    }
+}
+
+impl Drop for Overlay {
+    fn drop(&mut self) {
+        // SAFETY: the device is idle, so nothing of the pool or the renderer is in use.
+        unsafe {
+            let _ = self.context.raw().device_wait_idle();
+            self.context
+                .raw()
+                .destroy_command_pool(self.command_pool, None);
+        }
+    }
+}

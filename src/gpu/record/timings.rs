@@ -1,0 +1,180 @@
+//! Times of passes, by their names.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use ash::vk;
+use cpu_time::ProcessTime;
+
+use crate::gpu::device::context::Context;
+use crate::gpu::error::{During, Result};
+
+/// How passes are timed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Timing {
+    /// Not at all.
+    #[default]
+    Off,
+    /// By GPU timestamps within the one submission.
+    Timestamps,
+    /// Each pass is submitted alone and waited for: wall time, trustworthy on software drivers too.
+    Isolated,
+    /// Not at all; bytes and pipeline statistics are counted instead (they would disturb the times).
+    Work,
+}
+
+/// Time of one pass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PassTime {
+    /// Name of the pass.
+    pub name: &'static str,
+    /// Milliseconds of the device, or of the wall clock with [`Timing::Isolated`].
+    pub ms: f64,
+    /// Milliseconds of all threads of this process, with [`Timing::Isolated`]: what a software driver spends. It hardly
+    /// moves with the load of the machine.
+    pub cpu_ms: f64,
+}
+
+/// Times of the passes of one frame, in the order of recording.
+#[derive(Debug, Clone, Default)]
+pub struct Timings {
+    passes: Vec<PassTime>,
+}
+
+/// Wall clock and CPU clock, started together.
+#[derive(Debug, Clone, Copy)]
+pub struct Stopwatch {
+    wall: Instant,
+    cpu: ProcessTime,
+}
+
+impl Stopwatch {
+    /// Starts both.
+    pub fn start() -> Self {
+        Self {
+            wall: Instant::now(),
+            cpu: ProcessTime::now(),
+        }
+    }
+
+    /// Milliseconds since: of the wall, and of all threads of this process.
+    pub fn elapsed_ms(&self) -> (f64, f64) {
+        let ms = |d: Duration| d.as_secs_f64() * 1e3;
+        (ms(self.wall.elapsed()), ms(self.cpu.elapsed()))
+    }
+}
+
+impl Timings {
+    pub(in crate::gpu) fn clear(&mut self) {
+        self.passes.clear();
+    }
+
+    pub(in crate::gpu) fn push(&mut self, time: PassTime) {
+        self.passes.push(time);
+    }
+
+    /// Each pass.
+    pub fn passes(&self) -> &[PassTime] {
+        &self.passes
+    }
+}
+
+const MAX_PASSES: u32 = 128;
+
+/// Timestamp queries of one frame.
+pub(in crate::gpu) struct Queries {
+    context: Arc<Context>,
+    pool: vk::QueryPool,
+    names: Vec<&'static str>,
+}
+
+impl Queries {
+    pub(in crate::gpu) fn new(context: &Arc<Context>) -> Result<Self> {
+        let info = vk::QueryPoolCreateInfo::default()
+            .query_type(vk::QueryType::TIMESTAMP)
+            .query_count(2 * MAX_PASSES);
+        // SAFETY: the info has no pointers.
+        let pool = unsafe { context.raw().create_query_pool(&info, None) }
+            .during("create timestamp queries")?;
+        Ok(Self {
+            context: context.clone(),
+            pool,
+            names: Vec::new(),
+        })
+    }
+
+    pub(in crate::gpu) fn reset(&mut self) {
+        self.names.clear();
+        // SAFETY: hostQueryReset is on and no submission that uses the pool is pending.
+        unsafe {
+            self.context
+                .raw()
+                .reset_query_pool(self.pool, 0, 2 * MAX_PASSES)
+        };
+    }
+
+    /// Index of the pass, while there is room.
+    pub(in crate::gpu) fn begin(
+        &mut self,
+        command: vk::CommandBuffer,
+        name: &'static str,
+    ) -> Option<u32> {
+        let index = u32::try_from(self.names.len())
+            .ok()
+            .filter(|i| *i < MAX_PASSES)?;
+        self.names.push(name);
+        self.write(command, 2 * index);
+        Some(index)
+    }
+
+    pub(in crate::gpu) fn end(&self, command: vk::CommandBuffer, index: u32) {
+        self.write(command, 2 * index + 1);
+    }
+
+    fn write(&self, command: vk::CommandBuffer, query: u32) {
+        // SAFETY: the command buffer is recording and the query was reset.
+        unsafe {
+            self.context.raw().cmd_write_timestamp2(
+                command,
+                vk::PipelineStageFlags2::ALL_COMMANDS,
+                self.pool,
+                query,
+            );
+        }
+    }
+
+    /// Reads the finished queries.
+    pub(in crate::gpu) fn collect(&self, into: &mut Timings) -> Result<()> {
+        let mut ticks = vec![0u64; 2 * self.names.len()];
+        if ticks.is_empty() {
+            return Ok(());
+        }
+        // SAFETY: the submission was waited for, so all queries are available.
+        unsafe {
+            self.context.raw().get_query_pool_results(
+                self.pool,
+                0,
+                &mut ticks,
+                vk::QueryResultFlags::TYPE_64,
+            )
+        }
+        .during("read timestamps")?;
+        let to_ms = f64::from(self.context.limits.timestamp_period) * 1e-6;
+        for (name, pair) in self.names.iter().zip(ticks.chunks_exact(2)) {
+            let ms = pair[1].saturating_sub(pair[0]) as f64 * to_ms;
+            into.push(PassTime {
+                name,
+                ms,
+                cpu_ms: f64::NAN,
+            });
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Queries {
+    fn drop(&mut self) {
+        // SAFETY: the recorder that owns this has waited for its work.
+        unsafe { self.context.raw().destroy_query_pool(self.pool, None) };
+    }
+}

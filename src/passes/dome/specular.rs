@@ -1,0 +1,190 @@
+//! Mirrors: which form their lobe has, and whether anything hides the sky from them.
+//!
+//! The lecture's illumination model mirrors the open sky, ρ_s L_sky(r); its rendering equation has a visibility there,
+//! ρ_s V(x, r) L_sky(r). The pass tells V by the maps that [`crate::passes::dome::gather`] draws: the share of the sky's light in the lobe
+//! around r that is not hidden, over all directions so far.
+
+use std::sync::Arc;
+
+use clap::ValueEnum;
+use glam::Vec2;
+
+use crate::daylight::sampling;
+use crate::gpu::{
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
+};
+use crate::gpu_struct;
+
+use crate::passes::dome::block::DomeBlock;
+use crate::passes::dome::gather::{DomeSettings, Gathered};
+use crate::passes::light::lighting::{LightingSettings, Show};
+use crate::passes::view::View;
+use crate::passes::{fullscreen, fullscreen_at};
+
+/// The lobe of a mirror.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Phong {
+    /// The lecture's: (r·l)^p of the sun, and the sky as in a perfect mirror.
+    #[default]
+    Lecture,
+    /// A reflectance that keeps the balance of energy, ρ_s (p + 2)/(2π) (r·l)^p cos θ: of sun and sky alike.
+    Normalized,
+}
+
+/// What hides the sky from mirrors.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Reflections {
+    /// Nothing, as in the lecture's illumination model.
+    #[default]
+    Open,
+    /// What hides it from other surfaces, as in the lecture's rendering equation (--visibility dome).
+    Hidden,
+}
+
+/// How surfaces mirror.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Mirrors {
+    /// Their lobe.
+    pub phong: Phong,
+    /// What hides the sky from them.
+    pub reflections: Reflections,
+}
+
+gpu_struct! {
+    /// This frame among the others.
+    pub struct Push {
+        shift: Vec2,
+        share: f32,
+        specular_scale: f32,
+    }
+}
+
+const FORMATS: [Format; 2] = [Format::R32G32B32A32_SFLOAT, Format::R32_SFLOAT];
+
+/// The pass and its means.
+pub(in crate::passes) struct Mirror {
+    lighting: LightingSettings,
+    gather: Pipeline,
+    resolve: Pipeline,
+    /// Alternating means: the open mirror with the light that is not hidden, and all light of the lobe.
+    means: [[Image; 2]; 2],
+    radiance: Image,
+}
+
+impl Mirror {
+    /// Nothing where no mirror with hidden sky is shown.
+    pub fn new(
+        context: &Arc<Context>,
+        size: [u32; 2],
+        dome: DomeSettings,
+        lighting: LightingSettings,
+    ) -> Result<Option<Self>> {
+        let is_shown = matches!(
+            lighting.show,
+            Show::Beauty | Show::Luminance | Show::SkySpecular
+        );
+        let hidden = lighting.mirrors.reflections == Reflections::Hidden;
+        if !(is_shown && hidden && lighting.specular_scale > 0.0) {
+            return Ok(None);
+        }
+        let image = |name, format| Image::new(context, &ImageDesc::flat(name, format, size));
+        let pair = || -> Result<[Image; 2]> {
+            Ok([image("mirror", FORMATS[0])?, image("lobe", FORMATS[1])?])
+        };
+        let name = "dome: resolve mirrors";
+        let resolve = &shaders::DOME_MIRROR_RESOLVE_FRAG;
+        Ok(Some(Self {
+            lighting,
+            gather: gather_pipeline(context, dome, lighting)?,
+            resolve: fullscreen(context, name, resolve, FORMATS[0], &[])?,
+            means: [pair()?, pair()?],
+            radiance: image("radiance with mirrors", FORMATS[0])?,
+        }))
+    }
+
+    /// Adds the mirrors of frame number `index` to the means, and those to `picture`.
+    #[allow(clippy::too_many_arguments)]
+    pub fn record(
+        &mut self,
+        recorder: &mut Recorder,
+        gathered: &Gathered<'_>,
+        view: &View,
+        (maps, block): (&Image, &DomeBlock),
+        picture: &Image,
+        index: u32,
+    ) {
+        self.means.swap(0, 1);
+        let [[mirror, lobe], [old_mirror, old_lobe]] = &self.means;
+        let (surfaces, materials) = (gathered.surfaces, gathered.materials);
+        let albedo = surfaces.albedo.as_ref().unwrap_or(materials);
+        recorder
+            .pass("dome: mirrors", &self.gather)
+            .sample("depth", &surfaces.depth, Sampler::Nearest)
+            .sample("words", &surfaces.words, Sampler::Nearest)
+            .sample("albedo", albedo, Sampler::Nearest)
+            .sample("previous_mirror", old_mirror, Sampler::Nearest)
+            .sample("previous_lobe", old_lobe, Sampler::Nearest)
+            .sample("maps", maps, Sampler::Nearest)
+            .sample("sky_radiance", gathered.sky_radiance, Sampler::Linear)
+            .sample("materials", materials, Sampler::Nearest)
+            .uniform("view", &view.block())
+            .uniform("dome", block)
+            .push(&Push {
+                shift: sampling::r2(index).as_vec2(),
+                share: 1.0 / (index + 1) as f32,
+                specular_scale: self.lighting.specular_scale,
+            })
+            .color(mirror, Load::Discard)
+            .color(lobe, Load::Discard)
+            .draw();
+        recorder
+            .pass("dome: resolve mirrors", &self.resolve)
+            .sample("picture", picture, Sampler::Nearest)
+            .sample("mirror", mirror, Sampler::Nearest)
+            .sample("lobe", lobe, Sampler::Nearest)
+            .color(&self.radiance, Load::Discard)
+            .draw();
+    }
+
+    /// The picture with its mirrors, kcd/m².
+    pub fn image(&self) -> &Image {
+        &self.radiance
+    }
+}
+
+fn gather_pipeline(
+    context: &Arc<Context>,
+    dome: DomeSettings,
+    lighting: LightingSettings,
+) -> Result<Pipeline> {
+    let normalized = lighting.mirrors.phong == Phong::Normalized;
+    fullscreen_at(
+        context,
+        "dome: mirrors",
+        &shaders::DOME_MIRROR_FRAG,
+        &FORMATS,
+        Depth::Off,
+        &[
+            ("DIRECTIONS", dome.directions),
+            ("FRESNEL", lighting.fresnel.into()),
+            ("NORMALIZED", normalized.into()),
+            ("ALBEDO_IMAGE", lighting.has_albedo.into()),
+        ],
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{GpuStruct, check_layout};
+
+    #[test]
+    fn host_and_shader_agree() {
+        let stage = &shaders::DOME_MIRROR_FRAG;
+        let push = stage.push.expect("push");
+        assert_eq!(check_layout(Push::FIELDS, push), Ok(()));
+        let binding = stage.bindings.iter().find(|b| b.name == "dome");
+        let fields = binding.expect("dome").fields;
+        assert_eq!(check_layout(DomeBlock::FIELDS, fields), Ok(()));
+    }
+}

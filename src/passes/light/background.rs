@@ -1,0 +1,162 @@
+//! The background: the sky cube along each pixel's ray where no surface is, and the sun's disc.
+
+use std::sync::Arc;
+
+use glam::{Vec2, Vec3};
+
+use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
+use crate::gpu::{
+    Context, Depth, Format, Image, Load, Pipeline, Recorder, Result, Sampler, shaders,
+};
+use crate::gpu_struct;
+
+use crate::passes::light::lighting::{Light, LightingSettings, Show};
+use crate::passes::view::View;
+use crate::passes::{fullscreen_at, kilo};
+
+gpu_struct! {
+    /// The sun's disc.
+    pub struct Push {
+        size: Vec2,
+        direction: Vec3,
+        luminance: Vec3,
+        sin_radius: f32,
+        limb: f32,
+        max_radiance: f32,
+    }
+}
+
+/// The pass; it completes the picture of [`crate::passes::light::lighting::Lighting`].
+pub struct Background {
+    settings: LightingSettings,
+    /// For the many views that do not see the sun.
+    without_disc: Pipeline,
+    with_disc: Pipeline,
+}
+
+/// Whether the sky is drawn, and otherwise what stands for "nothing".
+fn content(show: Show) -> (bool, f32) {
+    match show {
+        Show::Beauty | Show::Luminance | Show::Background => (true, 0.0),
+        // Nothing hides the sun or the sky from the sky.
+        Show::Visibility | Show::Occlusion => (false, 1.0),
+        _ => (false, 0.0),
+    }
+}
+
+impl Background {
+    /// # Errors
+    /// When the device refuses.
+    pub fn new(context: &Arc<Context>, settings: LightingSettings) -> Result<Self> {
+        let (sky, empty) = content(settings.show);
+        let pipeline = |disc: bool| {
+            fullscreen_at(
+                context,
+                "background",
+                &shaders::BACKGROUND_FRAG,
+                &[settings.precision.format()],
+                Depth::Background(Format::D32_SFLOAT),
+                &[
+                    ("SKY", sky.into()),
+                    ("EMPTY", empty.to_bits()),
+                    ("DISC", disc.into()),
+                ],
+            )
+        };
+        Ok(Self {
+            settings,
+            without_disc: pipeline(false)?,
+            with_disc: pipeline(true)?,
+        })
+    }
+
+    /// Fills what no surface covers.
+    pub fn record(
+        &self,
+        recorder: &mut Recorder,
+        depth: &Image,
+        light: &Light<'_>,
+        view: &View,
+        radiance: &Image,
+    ) {
+        let limb = self.settings.limb_darkening;
+        let push = Push {
+            size: view.size.as_vec2(),
+            direction: light.daylight.sun_direction.as_vec3(),
+            // The mean over the disc stays: that of 1 - u (1 - mu) is 1 - u/3.
+            luminance: kilo(light.daylight.sun_luminance) / (1.0 - limb / 3.0),
+            sin_radius: SUN_ANGULAR_RADIUS.sin() as f32,
+            limb,
+            max_radiance: self.settings.precision.max_radiance(),
+        };
+        let pipeline = if sees(view, push.direction) {
+            &self.with_disc
+        } else {
+            &self.without_disc
+        };
+        recorder
+            .pass("background", pipeline)
+            .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
+            .uniform("view", &view.block())
+            .push(&push)
+            .color(radiance, Load::Keep)
+            .depth_test(depth)
+            .draw();
+    }
+}
+
+/// Whether the sun's disc may be in the picture: within the cone around the line of sight that holds its corners.
+fn sees(view: &View, direction: Vec3) -> bool {
+    let block = view.block();
+    let corner = block.ray_scale.abs() + block.ray_offset.abs();
+    let widest = corner.length().atan() + 2.0 * SUN_ANGULAR_RADIUS as f32;
+    view.camera.forward().angle_between(direction) <= widest
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::UVec2;
+
+    use super::*;
+    use crate::scene::Camera;
+
+    #[test]
+    fn the_disc_is_drawn_where_the_eye_may_see_it() {
+        let camera = Camera {
+            eye: Vec3::ZERO,
+            target: Vec3::NEG_Z,
+            fov_deg: 40.0,
+            near: 0.1,
+        };
+        let view = View {
+            camera,
+            size: UVec2::new(640, 360),
+            jitter: Vec2::ZERO,
+            sharpen: 0.0,
+            window: None,
+        };
+        // The corner of the picture lies 36.6 degrees off its centre.
+        let off =
+            |degrees: f32| Vec3::new(degrees.to_radians().sin(), 0.0, -degrees.to_radians().cos());
+        assert!(sees(&view, off(0.0)) && sees(&view, off(36.0)) && sees(&view, off(37.0)));
+        assert!(!sees(&view, off(38.0)) && !sees(&view, off(180.0)));
+    }
+
+    use crate::gpu::{GpuStruct, check_layout};
+
+    #[test]
+    fn host_and_shader_agree() {
+        let push = shaders::BACKGROUND_FRAG.push.expect("push");
+        assert_eq!(check_layout(Push::FIELDS, push), Ok(()));
+    }
+
+    #[test]
+    fn only_whole_pictures_have_a_sky() {
+        let drawn: Vec<Show> = [Show::ADDENDS.as_slice(), &Show::INPUTS]
+            .concat()
+            .into_iter()
+            .filter(|s| content(*s).0)
+            .collect();
+        assert_eq!(drawn, [Show::Background]);
+    }
+}

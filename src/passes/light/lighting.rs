@@ -1,0 +1,390 @@
+//! Lighting: the lecture's illumination model for each pixel, or one of its addends, or one of its inputs.
+//!
+//! L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r))
+
+use std::sync::Arc;
+
+use clap::ValueEnum;
+use glam::{IVec2, Vec3};
+use serde::Deserialize;
+
+use crate::daylight::false_colour::Quantity;
+use crate::daylight::sky::Daylight;
+use crate::gpu::{
+    Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, Recorder, Result, Sampler,
+    shaders,
+};
+use crate::gpu_struct;
+
+use crate::passes::dome::gather::BIAS_TEXELS;
+use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
+pub use crate::passes::light::precision::Precision;
+pub use crate::passes::sun_shadow::cascades::Shadows;
+use crate::passes::sun_shadow::cascades::SunViews;
+use crate::passes::surfaces::gbuffer::Surfaces;
+use crate::passes::view::View;
+use crate::passes::{fullscreen_at, kilo};
+
+gpu_struct! {
+    /// The sun and its shadow map.
+    pub struct SunBlock {
+        shadow_from_world: [[f32; 4]; 4],
+        direction: Vec3,
+        illuminance: Vec3,
+        normal_offset: f32,
+        max_radiance: f32,
+        specular_scale: f32,
+        planes: [[f32; 4]; 4],
+        occlusion_from: IVec2,
+    }
+}
+
+/// What is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, ValueEnum, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Show {
+    /// The whole picture, cd/m².
+    #[default]
+    Beauty,
+    /// ρ_d/π (n·l) V E_sun, cd/m².
+    Sun,
+    /// ρ_d/π A E_sky(n), cd/m².
+    Sky,
+    /// ρ_s (r·l)^p V E_sun, cd/m².
+    SunSpecular,
+    /// ρ_s L_sky(r), cd/m².
+    SkySpecular,
+    /// Sky, ground and the sun's disc where no surface is, cd/m².
+    Background,
+    /// V, 0..1.
+    Visibility,
+    /// A, 0..1.
+    Occlusion,
+    /// (n·l) V E_sun + A E_sky(n), lux.
+    Irradiance,
+    /// ρ_d, 0..1.
+    Albedo,
+    /// World normal on the viewer's side, −1..1.
+    Normal,
+    /// Distance along the view axis, metres; 0 is background.
+    Depth,
+    /// Luminance of the whole picture, cd/m², as grey.
+    Luminance,
+}
+
+impl Show {
+    /// The addends of the picture: they sum to [`Show::Beauty`].
+    pub const ADDENDS: [Self; 5] = [
+        Self::Sun,
+        Self::Sky,
+        Self::SunSpecular,
+        Self::SkySpecular,
+        Self::Background,
+    ];
+
+    /// The inputs of the equation, in the order in which files list them.
+    pub const INPUTS: [Self; 6] = [
+        Self::Visibility,
+        Self::Occlusion,
+        Self::Irradiance,
+        Self::Albedo,
+        Self::Normal,
+        Self::Depth,
+    ];
+
+    /// Name on the command line and of layers.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Beauty => "beauty",
+            Self::Sun => "sun",
+            Self::Sky => "sky",
+            Self::SunSpecular => "sun-specular",
+            Self::SkySpecular => "sky-specular",
+            Self::Background => "background",
+            Self::Visibility => "visibility",
+            Self::Occlusion => "occlusion",
+            Self::Irradiance => "irradiance",
+            Self::Albedo => "albedo",
+            Self::Normal => "normal",
+            Self::Depth => "depth",
+            Self::Luminance => "luminance",
+        }
+    }
+
+    /// Factor from the device's unit to the file's: kcd/m² and klx to cd/m² and lux.
+    pub fn file_unit(self) -> f32 {
+        match self {
+            Self::Visibility | Self::Occlusion | Self::Albedo | Self::Normal | Self::Depth => 1.0,
+            _ => 1000.0,
+        }
+    }
+
+    /// Whether `quantity` can be read off it.
+    pub fn holds(self, quantity: Quantity) -> bool {
+        match quantity {
+            Quantity::Luminance => self.file_unit() != 1.0 && self != Self::Irradiance,
+            Quantity::Illuminance => self == Self::Irradiance,
+        }
+    }
+
+    fn constants(self, specular: bool) -> [(&'static str, u32); 10] {
+        let whole = matches!(self, Self::Beauty | Self::Luminance);
+        let on = |shown: Self| u32::from(self == shown);
+        let addend = |shown: Self| u32::from(whole || self == shown);
+        [
+            ("SUN", addend(Self::Sun)),
+            ("SKY", addend(Self::Sky)),
+            (
+                "SUN_SPECULAR",
+                u32::from(specular) & addend(Self::SunSpecular),
+            ),
+            (
+                "SKY_SPECULAR",
+                u32::from(specular) & addend(Self::SkySpecular),
+            ),
+            ("SHOW_VISIBILITY", on(Self::Visibility)),
+            ("SHOW_OCCLUSION", on(Self::Occlusion)),
+            ("SHOW_IRRADIANCE", on(Self::Irradiance)),
+            ("SHOW_ALBEDO", on(Self::Albedo)),
+            ("SHOW_NORMAL", on(Self::Normal)),
+            ("SHOW_DEPTH", on(Self::Depth)),
+        ]
+    }
+}
+
+/// How surfaces are lit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LightingSettings {
+    /// What is shown.
+    pub show: Show,
+    /// Precision of the result.
+    pub precision: Precision,
+    /// Factor on every ρ_s; 0 leaves the lookups out, which [`crate::frame::Frame`] does for scenes without any ρ_s.
+    pub specular_scale: f32,
+    /// Darkens the sun's limb (u of I = I₀ (1 − u (1 − cos θ))); 0: a uniform disc.
+    pub limb_darkening: f32,
+    /// Pixels to a texel of A, each way: [`crate::passes::occlusion::ssao::SsaoSettings::pixels_per_texel`].
+    pub occlusion_downscale: u32,
+    /// Whether ρ_d of each pixel is in an image, which [`crate::frame::Frame`] sets: scenes without maps have none.
+    pub has_albedo: bool,
+    /// Whether ρ_s grows toward grazing angles (Schlick's approximation of Fresnel's equations).
+    pub fresnel: bool,
+    /// How the sun's shadow is looked up.
+    pub shadows: Shadows,
+    /// How surfaces mirror.
+    pub mirrors: Mirrors,
+}
+
+/// What light there is: images and numbers of the moment.
+#[derive(Clone, Copy)]
+pub struct Light<'a> {
+    /// The moment.
+    pub daylight: &'a Daylight,
+    /// Unit vector toward the point of the sun's disc that this frame samples.
+    pub sun_direction: Vec3,
+    /// The sun's views.
+    pub sun_views: &'a SunViews,
+    /// Their depth.
+    pub shadow_map: &'a Image,
+    /// E, klx.
+    pub sky_irradiance: &'a Image,
+    /// L, kcd/m².
+    pub sky_radiance: &'a Image,
+}
+
+/// Texels by which receivers are lifted off their surface, along the normal, at grazing light.
+const NORMAL_OFFSET_TEXELS: f32 = 1.5;
+
+/// The pass and its picture.
+pub struct Lighting {
+    settings: LightingSettings,
+    is_converging: bool,
+    pipeline: Pipeline,
+    radiance: Image,
+}
+
+impl Lighting {
+    /// A picture of `size` pixels.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn new(context: &Arc<Context>, size: [u32; 2], settings: LightingSettings) -> Result<Self> {
+        Self::with(context, size, settings, false)
+    }
+
+    /// For frames whose mean converges: without the diffuse light of the sky (A = 0), which [`crate::passes::dome::gather::Dome`] adds, and
+    /// with hard shadows of the map of [`crate::passes::sun_shadow::map::Shadow::unbiased`].
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn converging(
+        context: &Arc<Context>,
+        size: [u32; 2],
+        settings: LightingSettings,
+    ) -> Result<Self> {
+        Self::with(context, size, settings, true)
+    }
+
+    fn with(
+        context: &Arc<Context>,
+        size: [u32; 2],
+        settings: LightingSettings,
+        is_converging: bool,
+    ) -> Result<Self> {
+        let format = settings.precision.format();
+        let mut constants = settings
+            .show
+            .constants(settings.specular_scale > 0.0)
+            .to_vec();
+        constants.push(("OCCLUSION_DOWNSCALE", settings.occlusion_downscale));
+        let Mirrors { phong, reflections } = settings.mirrors;
+        if is_converging && reflections == Reflections::Hidden {
+            constants.retain(|constant| constant.0 != "SKY_SPECULAR");
+            constants.push(("SKY_SPECULAR", 0));
+        }
+        constants.push(("NORMALIZED", (phong == Phong::Normalized).into()));
+        constants.push(("FRESNEL", settings.fresnel.into()));
+        constants.push(("ALBEDO_IMAGE", settings.has_albedo.into()));
+        constants.push(("AMBIENT", (!is_converging).into()));
+        constants.push(("PLANE_SHADOW", is_converging.into()));
+        constants.push(("CASCADES", settings.shadows.cascades.max(1)));
+        constants.push(("PCSS", settings.shadows.penumbrae.into()));
+        let pipeline = fullscreen_at(
+            context,
+            "lighting",
+            &shaders::LIGHTING_FRAG,
+            &[format],
+            Depth::Surface(Format::D32_SFLOAT),
+            &constants,
+        )?;
+        let radiance = Image::new(context, &ImageDesc::flat("radiance", format, size))?;
+        Ok(Self {
+            settings,
+            is_converging,
+            pipeline,
+            radiance,
+        })
+    }
+
+    /// Lights the surfaces; other pixels are left to [`crate::passes::light::background::Background`].
+    pub fn record(
+        &mut self,
+        recorder: &mut Recorder,
+        surfaces: &Surfaces,
+        materials: &Image,
+        occlusion: &Image,
+        light: &Light<'_>,
+        view: &View,
+    ) -> &Image {
+        self.describe(recorder, surfaces, materials, occlusion, light, view)
+            .draw();
+        &self.radiance
+    }
+
+    /// Lights one pixel.
+    #[allow(clippy::too_many_arguments)]
+    pub fn record_pixel(
+        &mut self,
+        recorder: &mut Recorder,
+        surfaces: &Surfaces,
+        materials: &Image,
+        occlusion: &Image,
+        light: &Light<'_>,
+        view: &View,
+        pixel: [u32; 2],
+    ) {
+        self.describe(recorder, surfaces, materials, occlusion, light, view)
+            .only(pixel)
+            .draw();
+    }
+
+    fn describe<'r>(
+        &'r self,
+        recorder: &'r mut Recorder,
+        surfaces: &'r Surfaces,
+        materials: &'r Image,
+        occlusion: &'r Image,
+        light: &Light<'r>,
+        view: &View,
+    ) -> Pass<'r> {
+        // A scene without maps has no such image, and a pipeline that reads none.
+        let albedo = surfaces.albedo.as_ref().unwrap_or(materials);
+        recorder
+            .pass("lighting", &self.pipeline)
+            .sample("depth", &surfaces.depth, Sampler::Nearest)
+            .sample("words", &surfaces.words, Sampler::Nearest)
+            .sample("albedo", albedo, Sampler::Nearest)
+            .sample("occlusion", occlusion, Sampler::Nearest)
+            .sample("shadow_map", light.shadow_map, Sampler::Nearest)
+            .sample("sky_irradiance", light.sky_irradiance, Sampler::Linear)
+            .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
+            .sample("materials", materials, Sampler::Nearest)
+            .uniform("view", &view.block())
+            .uniform("sun", &self.sun_block(light, view))
+            .uniform("cascades", &light.sun_views.block())
+            .color(&self.radiance, Load::Discard)
+            .depth_test(&surfaces.depth)
+    }
+
+    fn sun_block(&self, light: &Light<'_>, view: &View) -> SunBlock {
+        let shadow = light.sun_views.first();
+        let normal_offset = if self.is_converging {
+            BIAS_TEXELS * shadow.texel_depth
+        } else {
+            NORMAL_OFFSET_TEXELS * shadow.texel
+        };
+        SunBlock {
+            shadow_from_world: shadow.shadow_from_world.to_cols_array_2d(),
+            direction: light.sun_direction,
+            illuminance: kilo(light.daylight.sun_illuminance),
+            normal_offset,
+            max_radiance: self.settings.precision.max_radiance(),
+            specular_scale: self.settings.specular_scale,
+            planes: shadow.planes().to_cols_array_2d(),
+            // Parts of a picture share the occlusion of the whole.
+            occlusion_from: view.window.map_or(IVec2::ZERO, |w| w.origin.as_ivec2()),
+        }
+    }
+
+    /// The picture, kcd/m².
+    pub fn image(&self) -> &Image {
+        &self.radiance
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{GpuStruct, check_layout};
+
+    #[test]
+    fn host_and_shader_agree() {
+        let binding = shaders::LIGHTING_FRAG
+            .bindings
+            .iter()
+            .find(|b| b.name == "sun");
+        assert_eq!(
+            check_layout(SunBlock::FIELDS, binding.expect("sun").fields),
+            Ok(())
+        );
+    }
+
+    #[test]
+    fn names_are_those_of_the_command_line() {
+        for show in Show::value_variants() {
+            let value = show.to_possible_value().expect("a value");
+            assert_eq!(value.get_name(), show.name());
+        }
+    }
+
+    #[test]
+    fn each_addend_is_in_the_picture_once() {
+        let beauty = Show::Beauty.constants(true);
+        for (i, addend) in Show::ADDENDS.iter().take(4).enumerate() {
+            let constants = addend.constants(true);
+            assert_eq!(beauty[i].1, 1);
+            assert_eq!(constants[i].1, 1, "{addend:?}");
+            assert_eq!(constants.iter().map(|c| c.1).sum::<u32>(), 1, "{addend:?}");
+        }
+    }
+}

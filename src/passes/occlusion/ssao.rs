@@ -1,0 +1,201 @@
+//! Screen-space ambient occlusion: the share A of the sky that surfaces within a radius leave visible.
+
+use std::sync::Arc;
+
+use crate::gpu::{
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
+};
+use crate::gpu_struct;
+
+use crate::passes::occlusion::height_map::Cover;
+use crate::passes::surfaces::gbuffer::Surfaces;
+use crate::passes::view::View;
+use crate::passes::{fullscreen, fullscreen_at};
+
+gpu_struct! {
+    /// Of the occluders.
+    pub struct PackPush {
+        near: f32,
+    }
+}
+
+gpu_struct! {
+    /// Radius and noise.
+    pub struct Push {
+        radius: f32,
+        phase: f32,
+    }
+}
+
+/// How the occlusion is computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SsaoSettings {
+    /// Metres; 0 turns it off (A = 1).
+    pub radius: f32,
+    /// Pixels of the picture to an occluder, each way; A is computed at every second one.
+    pub downscale: u32,
+    /// Samples on each side of the slice.
+    pub steps: u32,
+}
+
+/// Occluders to a point at which A is computed, each way.
+const SPACING: u32 = 2;
+
+impl SsaoSettings {
+    /// Pixels of the picture to a texel of A, each way.
+    pub fn pixels_per_texel(&self) -> u32 {
+        self.downscale * SPACING
+    }
+}
+
+impl Default for SsaoSettings {
+    fn default() -> Self {
+        Self {
+            radius: 5.0,
+            downscale: 2,
+            steps: 12,
+        }
+    }
+}
+
+/// The passes and their images.
+pub struct Ssao {
+    settings: SsaoSettings,
+    pack: Pipeline,
+    select: Pipeline,
+    trace: Pipeline,
+    blur: Pipeline,
+    occluders: Image,
+    /// Depth at the points at which A is computed; 0 is background.
+    points: Image,
+    noisy: Image,
+    smooth: Image,
+}
+
+/// Two numbers to a word, see `include/occluder.glsl`.
+const FORMAT: Format = Format::R32_UINT;
+const DEPTH: Format = Format::D32_SFLOAT;
+/// A word of 0 is A = 1 at no distance.
+const OPEN: [f32; 4] = [0.0; 4];
+
+impl Ssao {
+    /// For pictures of `size` pixels.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn new(context: &Arc<Context>, size: [u32; 2], settings: SsaoSettings) -> Result<Self> {
+        let constants = [("STEPS", settings.steps), ("DOWNSCALE", settings.downscale)];
+        let [width, height] = size.map(|edge| edge.div_ceil(settings.downscale));
+        let image = |name, size| Image::new(context, &ImageDesc::flat(name, FORMAT, size));
+        let points = [width, height].map(|edge| edge.div_ceil(SPACING));
+        let writes = Depth::Write {
+            format: DEPTH,
+            slope_bias: 0.0,
+        };
+        let on_points = |name, fragment, constants: &[_]| {
+            let tests = Depth::Surface(DEPTH);
+            fullscreen_at(context, name, fragment, &[FORMAT], tests, constants)
+        };
+        Ok(Self {
+            settings,
+            select: fullscreen_at(
+                context,
+                "SSAO points",
+                &shaders::SSAO_POINTS_FRAG,
+                &[],
+                writes,
+                &[("DOWNSCALE", settings.downscale)],
+            )?,
+            trace: on_points("SSAO", &shaders::SSAO_FRAG, &constants)?,
+            blur: on_points("SSAO blur", &shaders::SSAO_BLUR_FRAG, &[])?,
+            pack: fullscreen(
+                context,
+                "SSAO occluders",
+                &shaders::SSAO_OCCLUDERS_FRAG,
+                FORMAT,
+                &[("DOWNSCALE", settings.downscale)],
+            )?,
+            occluders: image("occluders", [width, height])?,
+            points: Image::new(context, &ImageDesc::flat("points", DEPTH, points))?,
+            noisy: image("occlusion, noisy", points)?,
+            smooth: image("occlusion", points)?,
+        })
+    }
+
+    /// A as it was last computed, to be kept when the passes are not.
+    pub fn into_image(self) -> Image {
+        self.smooth
+    }
+
+    /// A as it was last computed.
+    pub fn image(&self) -> &Image {
+        &self.smooth
+    }
+
+    /// Computes A for the surfaces in view. `phase` (0..1) turns the noise from frame to frame.
+    pub fn record(
+        &mut self,
+        recorder: &mut Recorder,
+        surfaces: &Surfaces,
+        view: &View,
+        cover: &Cover,
+        phase: f32,
+    ) -> &Image {
+        if self.settings.radius <= 0.0 {
+            // Nothing occludes (the distance only steers filters, which find no edges).
+            recorder.clear(&self.smooth, OPEN);
+            return &self.smooth;
+        }
+        recorder
+            .pass("SSAO occluders", &self.pack)
+            .sample("depth", &surfaces.depth, Sampler::Nearest)
+            .sample("words", &surfaces.words, Sampler::Nearest)
+            .push(&PackPush {
+                near: view.camera.near,
+            })
+            .color(&self.occluders, Load::Discard)
+            .draw();
+        recorder
+            .pass("SSAO points", &self.select)
+            .sample("depth", &surfaces.depth, Sampler::Nearest)
+            .depth(&self.points, Load::Clear([0.0; 4]))
+            .draw();
+        recorder
+            .pass("SSAO", &self.trace)
+            .sample("occluders", &self.occluders, Sampler::Nearest)
+            .sample("words", &surfaces.words, Sampler::Nearest)
+            .sample("depth", &surfaces.depth, Sampler::Nearest)
+            .uniform("view", &view.block())
+            .sample("cover", cover.image(), Sampler::Nearest)
+            .uniform("zenith", &cover.block(view, self.settings.radius))
+            .push(&Push {
+                radius: self.settings.radius,
+                phase,
+            })
+            .color(&self.noisy, Load::Clear(OPEN))
+            .depth_test(&self.points)
+            .draw();
+        recorder
+            .pass("SSAO blur", &self.blur)
+            .sample("noisy_occlusion", &self.noisy, Sampler::Nearest)
+            .sample("occluders", &self.occluders, Sampler::Nearest)
+            .color(&self.smooth, Load::Clear(OPEN))
+            .depth_test(&self.points)
+            .draw();
+        &self.smooth
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{GpuStruct, check_layout};
+
+    #[test]
+    fn host_and_shader_agree() {
+        let push = shaders::SSAO_FRAG.push.expect("push");
+        assert_eq!(check_layout(Push::FIELDS, push), Ok(()));
+        let push = shaders::SSAO_OCCLUDERS_FRAG.push.expect("push");
+        assert_eq!(check_layout(PackPush::FIELDS, push), Ok(()));
+    }
+}

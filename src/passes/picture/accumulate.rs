@@ -1,0 +1,77 @@
+//! The mean of many frames, in 32-bit floats: anti-aliasing, a soft sun, less noise.
+
+use std::sync::Arc;
+
+use crate::gpu::{
+    Context, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
+};
+use crate::gpu_struct;
+
+use crate::passes::fullscreen;
+
+gpu_struct! {
+    /// How many frames there are.
+    pub struct Push {
+        count: u32,
+    }
+}
+
+/// The pass and its alternating means.
+pub struct Accumulate {
+    pipeline: Pipeline,
+    means: [Image; 2],
+}
+
+impl Accumulate {
+    /// For pictures of `size` pixels.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn new(context: &Arc<Context>, size: [u32; 2]) -> Result<Self> {
+        let format = Format::R32G32B32A32_SFLOAT;
+        let pipeline = fullscreen(
+            context,
+            "accumulate",
+            &shaders::ACCUMULATE_FRAG,
+            format,
+            &[],
+        )?;
+        let image = |name| Image::new(context, &ImageDesc::flat(name, format, size));
+        Ok(Self {
+            pipeline,
+            means: [image("mean 0")?, image("mean 1")?],
+        })
+    }
+
+    /// Adds frame number `index` of the picture; 0 starts a new mean.
+    pub fn record(&mut self, recorder: &mut Recorder, frame: &Image, index: u32) -> &Image {
+        let count = index + 1;
+        self.means.swap(0, 1);
+        let [new, old] = &self.means;
+        recorder
+            .pass("accumulate", &self.pipeline)
+            .sample("frame", frame, Sampler::Nearest)
+            .sample("previous_mean", old, Sampler::Nearest)
+            .push(&Push { count })
+            .color(new, Load::Discard)
+            .draw();
+        new
+    }
+
+    /// The newest mean.
+    pub fn image(&self) -> &Image {
+        &self.means[0]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{GpuStruct, check_layout};
+
+    #[test]
+    fn host_and_shader_agree() {
+        let push = shaders::ACCUMULATE_FRAG.push.expect("push");
+        assert_eq!(check_layout(Push::FIELDS, push), Ok(()));
+    }
+}

@@ -1,0 +1,114 @@
+//! From the picture of what moved to the one that converges at rest, without a jump.
+//!
+//! The two differ wherever ambient occlusion is not the sky's true visibility, and in the first frames by the noise of few
+//! directions. So the newest preview is kept beside the means, and gives way to them along a smooth step.
+
+use std::sync::Arc;
+
+use crate::gpu::{
+    Context, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
+};
+use crate::gpu_struct;
+
+use crate::passes::fullscreen;
+
+/// Most frames that it takes.
+const LONGEST: u32 = 64;
+
+gpu_struct! {
+    /// What is left of the preview.
+    pub struct Push {
+        share: f32,
+    }
+}
+
+/// The pass and its image.
+pub struct Fade {
+    pipeline: Pipeline,
+    image: Image,
+    /// Frames that it takes.
+    frames: u32,
+    has_preview: bool,
+}
+
+impl Fade {
+    /// For pictures of `size` pixels that average `samples` frames: the last of them has nothing left of the preview.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn new(context: &Arc<Context>, size: [u32; 2], samples: u32) -> Result<Self> {
+        let format = Format::R32G32B32A32_SFLOAT;
+        Ok(Self {
+            pipeline: fullscreen(context, "fade", &shaders::FADE_FRAG, format, &[])?,
+            image: Image::new(context, &ImageDesc::flat("fading picture", format, size))?,
+            frames: samples.min(LONGEST),
+            has_preview: false,
+        })
+    }
+
+    /// Draws the picture of frame number `index` of an average; before the first there may have been a preview.
+    pub fn record(
+        &mut self,
+        recorder: &mut Recorder,
+        preview: &Image,
+        converging: &Image,
+        index: u32,
+        is_previewed: bool,
+    ) -> &Image {
+        if index == 0 {
+            self.has_preview = is_previewed;
+        }
+        let share = if self.has_preview {
+            share(index, self.frames)
+        } else {
+            0.0
+        };
+        recorder
+            .pass("fade", &self.pipeline)
+            .sample("preview", preview, Sampler::Nearest)
+            .sample("converging", converging, Sampler::Nearest)
+            .push(&Push { share })
+            .color(&self.image, Load::Discard)
+            .draw();
+        &self.image
+    }
+
+    /// The newest picture.
+    pub fn image(&self) -> &Image {
+        &self.image
+    }
+}
+
+/// What is left of the preview after frame number `index`: a smooth step from 1 before the first to 0 at the last.
+fn share(index: u32, frames: u32) -> f32 {
+    let t = ((index + 1) as f32 / frames.max(1) as f32).min(1.0);
+    1.0 - t * t * (3.0 - 2.0 * t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{GpuStruct, check_layout};
+
+    #[test]
+    fn host_and_shader_agree() {
+        let push = shaders::FADE_FRAG.push.expect("push");
+        assert_eq!(check_layout(Push::FIELDS, push), Ok(()));
+    }
+
+    #[test]
+    fn the_preview_fades_in_small_steps_and_is_gone_at_the_last_frame() {
+        for frames in [1, 16, LONGEST] {
+            let shares: Vec<f32> = (0..frames).map(|k| share(k, frames)).collect();
+            let before = std::iter::once(1.0).chain(shares.iter().copied());
+            let steps: Vec<f32> = before.zip(&shares).map(|(a, b)| a - b).collect();
+            assert_eq!(shares.last(), Some(&0.0));
+            assert!(
+                steps
+                    .iter()
+                    .all(|s| *s >= 0.0 && *s <= 1.51 / frames as f32)
+            );
+        }
+        assert_eq!(share(1000, LONGEST), 0.0);
+    }
+}

@@ -1,0 +1,88 @@
+//! The picture into the window, with a user interface over it.
+
+use std::sync::Arc;
+
+use glam::Vec2;
+
+use crate::gpu::{
+    Context, Format, Image, Load, Overlay, Pipeline, Recorder, Result, Sampler, UiFrame, shaders,
+};
+use crate::gpu_struct;
+
+use crate::passes::fullscreen;
+
+gpu_struct! {
+    /// Size of the window.
+    pub struct Push {
+        size: Vec2,
+    }
+}
+
+/// The pass.
+pub struct Present {
+    /// By whether the picture is encoded already.
+    pipelines: [Pipeline; 2],
+}
+
+impl Present {
+    /// For windows of an sRGB `format`.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn new(context: &Arc<Context>, format: Format) -> Result<Self> {
+        let pipeline = |encoded: u32| {
+            let constants = [("ENCODED", encoded)];
+            fullscreen(
+                context,
+                "present",
+                &shaders::PRESENT_FRAG,
+                format,
+                &constants,
+            )
+        };
+        Ok(Self {
+            pipelines: [pipeline(0)?, pipeline(1)?],
+        })
+    }
+
+    /// Draws display values and, over them, the user interface.
+    ///
+    /// # Errors
+    /// When memory for the interface is out.
+    pub fn record(
+        &self,
+        recorder: &mut Recorder,
+        display: &Image,
+        overlay: &mut Overlay,
+        ui: &UiFrame,
+        window: &Image,
+    ) -> Result<()> {
+        let encoded = display.format() == Format::R8G8B8A8_UNORM;
+        let [width, height] = window.size();
+        let mut drawn = Ok(());
+        recorder
+            .pass("present", &self.pipelines[usize::from(encoded)])
+            .sample("display", display, Sampler::Nearest)
+            .push(&Push {
+                size: Vec2::new(width as f32, height as f32),
+            })
+            .color(window, Load::Discard)
+            .draws(|draws| {
+                draws.triangle();
+                drawn = overlay.draw(draws, ui);
+            });
+        drawn
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{GpuStruct, check_layout};
+
+    #[test]
+    fn host_and_shader_agree() {
+        let push = shaders::PRESENT_FRAG.push.expect("push");
+        assert_eq!(check_layout(Push::FIELDS, push), Ok(()));
+    }
+}

@@ -1,0 +1,185 @@
+//! Radiance to display values: exposure, tone curve, and the encoding exactly once.
+//!
+//! Without a gamma the target has an sRGB format and the device encodes; with one (the lecture's (s R)^(1/γ)) the
+//! shader applies the power and the target is plain.
+
+use std::sync::Arc;
+
+use crate::daylight::false_colour::Range;
+use crate::daylight::tone_curve::ToneCurve;
+use crate::gpu::{
+    Context, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
+};
+use crate::gpu_struct;
+
+use crate::passes::fullscreen;
+use crate::passes::light::lighting::Show;
+
+gpu_struct! {
+    /// Numbers of the mapping.
+    pub struct Push {
+        exposure: f32,
+        offset: f32,
+        white: f32,
+        inverse_gamma: f32,
+    }
+}
+
+/// How much light makes the display's white.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Scale {
+    /// Display value of 1 cd/m².
+    Fixed(f64),
+    /// Display value of the picture's log-average luminance.
+    Average(f64),
+}
+
+/// How radiance becomes display values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ToneSettings {
+    /// What is shown: quantities that are no light are shown as they are.
+    pub show: Show,
+    /// The curve.
+    pub curve: ToneCurve,
+    /// Exposure.
+    pub scale: Scale,
+    /// Luminance that Reinhard's curve maps to white, display units before the curve.
+    pub white: f64,
+    /// Power instead of the sRGB encoding.
+    pub gamma: Option<f64>,
+    /// Metres at which a shown depth is mid-grey.
+    pub depth_scale: f64,
+    /// False colours of the luminance, cd/m² (lux of an irradiance), instead of all that: sRGB, whatever the gamma.
+    pub false_colour: Option<Range>,
+}
+
+/// The pass and its picture.
+pub struct ToneMap {
+    settings: ToneSettings,
+    pipeline: Pipeline,
+    display: Image,
+}
+
+/// Whether a quantity is light, to be exposed and bent by a curve.
+fn is_light(show: Show) -> bool {
+    show.file_unit() != 1.0
+}
+
+/// Factor and offset of the share of a range, for log2 of thousands of its unit.
+fn kilo_range(range: Range) -> (f64, f64) {
+    let (scale, offset) = range.log2_scale();
+    (scale, offset + scale * 1e3f64.log2())
+}
+
+impl ToneMap {
+    /// A picture of `size` pixels.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn new(context: &Arc<Context>, size: [u32; 2], settings: ToneSettings) -> Result<Self> {
+        let false_colour = settings.false_colour.is_some();
+        let light = is_light(settings.show) && !false_colour;
+        let curve = |c: ToneCurve| u32::from(light && settings.curve == c);
+        let average = light && matches!(settings.scale, Scale::Average(_));
+        let gamma = settings.gamma.is_some() && !false_colour;
+        let format = if gamma {
+            Format::R8G8B8A8_UNORM
+        } else {
+            Format::R8G8B8A8_SRGB
+        };
+        let pipeline = fullscreen(
+            context,
+            "tone map",
+            &shaders::TONE_MAP_FRAG,
+            format,
+            &[
+                ("EXPONENTIAL", curve(ToneCurve::Exponential)),
+                (
+                    "EXPONENTIAL_LUMINANCE",
+                    curve(ToneCurve::ExponentialLuminance),
+                ),
+                ("REINHARD", curve(ToneCurve::Reinhard)),
+                ("AGX", curve(ToneCurve::Agx)),
+                ("NEUTRAL", curve(ToneCurve::Neutral)),
+                ("ACES", curve(ToneCurve::Aces)),
+                ("GAMMA", gamma.into()),
+                ("AUTO", average.into()),
+                ("GREY", (settings.show == Show::Luminance).into()),
+                ("FALSE_COLOUR", false_colour.into()),
+            ],
+        )?;
+        let display = Image::new(context, &ImageDesc::flat("display", format, size))?;
+        Ok(Self {
+            settings,
+            pipeline,
+            display,
+        })
+    }
+
+    /// Maps a picture. `average_luminance` is one texel, read only for an automatic exposure.
+    pub fn record(
+        &mut self,
+        recorder: &mut Recorder,
+        radiance: &Image,
+        average_luminance: &Image,
+    ) -> &Image {
+        recorder
+            .pass("tone map", &self.pipeline)
+            .sample("radiance", radiance, Sampler::Nearest)
+            .sample("average_luminance", average_luminance, Sampler::Nearest)
+            .push(&self.push())
+            .color(&self.display, Load::Discard)
+            .draw();
+        &self.display
+    }
+
+    fn push(&self) -> Push {
+        let s = &self.settings;
+        let (exposure, offset) = s.false_colour.map_or_else(|| self.exposure(), kilo_range);
+        Push {
+            exposure: exposure as f32,
+            offset: offset as f32,
+            white: s.white as f32,
+            inverse_gamma: s.gamma.map_or(1.0, f64::recip) as f32,
+        }
+    }
+
+    /// Factor and offset before the curve.
+    fn exposure(&self) -> (f64, f64) {
+        let s = &self.settings;
+        match s.show {
+            Show::Normal => (0.5, 0.5),
+            Show::Depth => (0.5 / s.depth_scale, 0.0),
+            Show::Visibility | Show::Occlusion | Show::Albedo => (1.0, 0.0),
+            shown => {
+                // An irradiance is shown as the radiance of white paper under it.
+                let paper = if shown == Show::Irradiance {
+                    std::f64::consts::FRAC_1_PI
+                } else {
+                    1.0
+                };
+                match s.scale {
+                    Scale::Fixed(per_candela) => (paper * per_candela * 1e3, 0.0),
+                    Scale::Average(key) => (key, 0.0),
+                }
+            }
+        }
+    }
+
+    /// The picture.
+    pub fn image(&self) -> &Image {
+        &self.display
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{GpuStruct, check_layout};
+
+    #[test]
+    fn host_and_shader_agree() {
+        let push = shaders::TONE_MAP_FRAG.push.expect("push");
+        assert_eq!(check_layout(Push::FIELDS, push), Ok(()));
+    }
+}

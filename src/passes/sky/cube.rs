@@ -1,0 +1,226 @@
+//! The sky as a cube map: 6 faces of radiance in kcd/m², without the sun's disc, ground below the horizon.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::daylight::hosek::Hosek;
+use crate::daylight::preetham::PerezSky;
+use crate::daylight::sky::{Daylight, Sky};
+use crate::gpu::{Context, Format, Image, ImageDesc, Recorder, Result, shaders};
+use crate::gpu_struct;
+
+use crate::passes::kilo;
+use crate::passes::sky::route::{CubePipeline, CubeRoute, CubeShaders};
+
+gpu_struct! {
+    /// The guard around a model, see [`crate::daylight::sky`].
+    pub struct Push {
+        sun_direction: Vec3,
+        scale: f32,
+        night: Vec3,
+        ground: Vec3,
+    }
+}
+
+gpu_struct! {
+    /// Perez coefficients of Y, x and y.
+    pub struct PreethamModel {
+        luminance: [f32; 5],
+        chromaticity_x: [f32; 5],
+        chromaticity_y: [f32; 5],
+        zenith_over_f: Vec3,
+    }
+}
+
+gpu_struct! {
+    /// Coefficients of R, G and B.
+    pub struct HosekModel {
+        coefficients: [f32; 27],
+        mean_radiance: Vec3,
+    }
+}
+
+gpu_struct! {
+    /// The overcast sky needs one number.
+    pub struct OvercastModel {
+        zenith_luminance: f32,
+    }
+}
+
+/// Edge of the coarse cube, texels: what the exact sum of the irradiance runs over.
+pub const COARSE_EDGE: u32 = 32;
+
+/// Edge of the smooth cube, texels: its mip levels are what filtered samples of the irradiance look up.
+pub const SMOOTH_EDGE: u32 = 128;
+
+/// What the pass leaves behind.
+#[derive(Clone, Copy)]
+pub struct SkyImages<'s> {
+    /// The sky that is seen and mirrored, kcd/m², half floats.
+    pub radiance: &'s Image,
+    /// The same at [`SMOOTH_EDGE`] with mip levels, 32-bit floats: a device may cut numbers short when it stores half
+    /// floats, and five levels of that would darken the sky by a fifth of a percent.
+    pub smooth: &'s Image,
+    /// The same at [`COARSE_EDGE`], 32-bit floats.
+    pub coarse: &'s Image,
+    /// Whether they were drawn in this frame.
+    pub is_new: bool,
+}
+
+/// The pipelines of the models, for targets of one format.
+struct Painter {
+    preetham: CubePipeline,
+    hosek: CubePipeline,
+    overcast: CubePipeline,
+}
+
+const PREETHAM: CubeShaders = CubeShaders {
+    fragment: &shaders::SKY_PREETHAM_FRAG,
+    compute: &shaders::SKY_PREETHAM_COMP,
+};
+const HOSEK: CubeShaders = CubeShaders {
+    fragment: &shaders::SKY_HOSEK_FRAG,
+    compute: &shaders::SKY_HOSEK_COMP,
+};
+const OVERCAST: CubeShaders = CubeShaders {
+    fragment: &shaders::SKY_OVERCAST_FRAG,
+    compute: &shaders::SKY_OVERCAST_COMP,
+};
+
+impl Painter {
+    fn new(context: &Arc<Context>, format: Format) -> Result<Self> {
+        let route = CubeRoute::of(context);
+        let pipeline =
+            |name, shaders| CubePipeline::new(context, route, name, shaders, &[format], &[]);
+        Ok(Self {
+            preetham: pipeline("sky: Preetham", PREETHAM)?,
+            hosek: pipeline("sky: Hosek", HOSEK)?,
+            overcast: pipeline("sky: overcast", OVERCAST)?,
+        })
+    }
+
+    fn paint(&self, recorder: &mut Recorder, daylight: &Daylight, target: &Image) {
+        let push = Push {
+            sun_direction: daylight.guard.sun_direction.as_vec3(),
+            scale: daylight.guard.scale as f32,
+            night: kilo(daylight.guard.night),
+            ground: kilo(daylight.ground_luminance),
+        };
+        let pipeline = match &daylight.sky {
+            Sky::Preetham(_) | Sky::CieClear(_) => &self.preetham,
+            Sky::Hosek(_) => &self.hosek,
+            Sky::Overcast(_) => &self.overcast,
+        };
+        let pass = pipeline.pass(recorder, "sky cube");
+        let pass = match &daylight.sky {
+            Sky::Preetham(sky) => pass.uniform("model", &preetham_model(&sky.perez())),
+            Sky::CieClear(sky) => pass.uniform("model", &preetham_model(&sky.perez())),
+            Sky::Hosek(sky) => pass.uniform("model", &hosek_model(sky)),
+            Sky::Overcast(sky) => {
+                let zenith_luminance = (sky.zenith_luminance * 1e-3) as f32;
+                pass.uniform("model", &OvercastModel { zenith_luminance })
+            }
+        };
+        pipeline.fill(pass.push(&push), &[("sky_radiance", target)]);
+    }
+}
+
+/// The pass and its cubes.
+pub struct SkyCube {
+    half: Painter,
+    float: Painter,
+    radiance: Image,
+    smooth: Image,
+    coarse: Image,
+    drawn: Option<Daylight>,
+}
+
+impl SkyCube {
+    /// A cube with faces of `edge` texels, and what the irradiance needs besides.
+    ///
+    /// # Errors
+    /// When the device refuses.
+    pub fn new(context: &Arc<Context>, edge: u32) -> Result<Self> {
+        let (half, float) = (Format::R16G16B16A16_SFLOAT, Format::R32G32B32A32_SFLOAT);
+        let smooth = ImageDesc::cube("sky radiance, smooth", float, SMOOTH_EDGE).mipmapped();
+        let coarse = ImageDesc::cube("sky radiance, coarse", float, COARSE_EDGE);
+        Ok(Self {
+            half: Painter::new(context, half)?,
+            float: Painter::new(context, float)?,
+            radiance: Image::new(context, &ImageDesc::cube("sky radiance", half, edge))?,
+            smooth: Image::new(context, &smooth)?,
+            coarse: Image::new(context, &coarse)?,
+            drawn: None,
+        })
+    }
+
+    /// Draws the sky if it changed.
+    pub fn record(&mut self, recorder: &mut Recorder, daylight: &Daylight) -> SkyImages<'_> {
+        let is_new = self.drawn.as_ref() != Some(daylight);
+        if is_new {
+            self.half.paint(recorder, daylight, &self.radiance);
+            self.float.paint(recorder, daylight, &self.smooth);
+            recorder.mipmap("sky mips", &self.smooth);
+            self.float.paint(recorder, daylight, &self.coarse);
+            self.drawn = Some(daylight.clone());
+        }
+        SkyImages {
+            radiance: &self.radiance,
+            smooth: &self.smooth,
+            coarse: &self.coarse,
+            is_new,
+        }
+    }
+
+    /// Forgets what was drawn, so that the next frame draws it again.
+    pub fn invalidate(&mut self) {
+        self.drawn = None;
+    }
+
+    /// The cube, kcd/m².
+    pub fn image(&self) -> &Image {
+        &self.radiance
+    }
+}
+
+fn hosek_model(sky: &Hosek) -> HosekModel {
+    HosekModel {
+        coefficients: std::array::from_fn(|i| sky.coefficients[i / 9][i % 9] as f32),
+        mean_radiance: kilo(sky.mean_radiance),
+    }
+}
+
+fn preetham_model(perez: &PerezSky) -> PreethamModel {
+    let [luminance, chromaticity_x, chromaticity_y] =
+        perez.coefficients.map(|row| row.map(|c| c as f32));
+    let [y_zenith, x, y] = perez.zenith_over_f;
+    PreethamModel {
+        luminance,
+        chromaticity_x,
+        chromaticity_y,
+        zenith_over_f: Vec3::new((y_zenith * 1e-3) as f32, x as f32, y as f32),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{GpuStruct, Shader, check_layout};
+
+    #[test]
+    fn host_and_shader_agree() {
+        let model = |stage: &Shader| stage.bindings[0].fields;
+        for (host, stages) in [
+            (PreethamModel::FIELDS, PREETHAM),
+            (HosekModel::FIELDS, HOSEK),
+            (OvercastModel::FIELDS, OVERCAST),
+        ] {
+            for stage in [stages.fragment, stages.compute] {
+                let push = stage.push.expect("push");
+                assert_eq!(check_layout(Push::FIELDS, push), Ok(()), "{}", stage.name);
+                assert_eq!(check_layout(host, model(stage)), Ok(()), "{}", stage.name);
+            }
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Two ways to write all texels of a cube: the lecture's layered rendering by a geometry shader, and compute for devices
+//! without geometry shaders.
+
+use std::sync::Arc;
+
+use crate::gpu::{
+    Context, Depth, Format, Image, Load, Optional, Pass, Pipeline, PipelineDesc, Recorder, Result,
+    Shader, shaders,
+};
+
+/// How the texels of a cube are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CubeRoute {
+    /// A geometry shader emits one triangle to the six faces (`gl_Layer`); the lecture's way.
+    Geometry,
+    /// A compute shader, one invocation for each texel.
+    Compute,
+}
+
+impl CubeRoute {
+    /// The lecture's way where the device can go it.
+    pub fn of(context: &Context) -> Self {
+        if context.summary().has(Optional::GeometryShader) {
+            Self::Geometry
+        } else {
+            Self::Compute
+        }
+    }
+}
+
+/// What a cube is filled with: the same function in two stages.
+#[derive(Clone, Copy)]
+pub(in crate::passes) struct CubeShaders {
+    /// For [`CubeRoute::Geometry`].
+    pub(in crate::passes) fragment: &'static Shader,
+    /// For [`CubeRoute::Compute`]: stores to images called as the outputs of the fragment shader.
+    pub(in crate::passes) compute: &'static Shader,
+}
+
+/// A pipeline that writes all texels of cubes.
+pub(in crate::passes) struct CubePipeline {
+    route: CubeRoute,
+    pipeline: Pipeline,
+}
+
+impl CubePipeline {
+    /// For cubes of these formats.
+    pub(in crate::passes) fn new(
+        context: &Arc<Context>,
+        route: CubeRoute,
+        name: &str,
+        shaders: CubeShaders,
+        formats: &[Format],
+        constants: &[(&str, u32)],
+    ) -> Result<Self> {
+        let layered = [
+            &shaders::FULLSCREEN_VERT,
+            &shaders::CUBE_FACES_GEOM,
+            shaders.fragment,
+        ];
+        let (stages, colors): (&[&'static Shader], _) = match route {
+            CubeRoute::Geometry => (&layered, formats),
+            CubeRoute::Compute => (&[shaders.compute], &[][..]),
+        };
+        let desc = PipelineDesc {
+            name,
+            stages,
+            vertex: &[],
+            colors,
+            depth: Depth::Off,
+            constants,
+        };
+        Ok(Self {
+            route,
+            pipeline: Pipeline::new(context, &desc)?,
+        })
+    }
+
+    /// Starts the pass: bind what the shader declares, then [`CubePipeline::fill`].
+    pub(in crate::passes) fn pass<'r>(
+        &'r self,
+        recorder: &'r mut Recorder,
+        name: &'static str,
+    ) -> Pass<'r> {
+        recorder.pass(name, &self.pipeline)
+    }
+
+    /// Ends the pass: writes every texel of the cubes, in the order of the fragment shader's outputs, by name.
+    pub(in crate::passes) fn fill<'r>(&self, pass: Pass<'r>, cubes: &[(&str, &'r Image)]) {
+        match self.route {
+            CubeRoute::Geometry => cubes
+                .iter()
+                .fold(pass, |pass, (_, cube)| pass.color(cube, Load::Discard))
+                .draw(),
+            CubeRoute::Compute => cubes
+                .iter()
+                .fold(pass, |pass, (name, cube)| pass.store(name, cube))
+                .dispatch(),
+        }
+    }
+}

@@ -1,0 +1,397 @@
+//! The scene on the device: one arena of vertices and indices, textures, a table of materials.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use glam::Vec3;
+
+use crate::gpu::{Buffer, BufferKind, Draws, Image, Recorder, Result, upload_buffer};
+use crate::scene::{self, Bounds, Cluster, Layout, Scene};
+
+use crate::passes::surfaces::culling::Cull;
+use crate::passes::surfaces::draw_runs::Runs;
+use crate::passes::surfaces::upload::{
+    normals_and_thickness, surface, upload, upload_details, upload_materials, white,
+};
+use crate::passes::view::View;
+
+/// What is drawn with one material.
+#[derive(Debug, Clone)]
+pub struct Part {
+    /// Numbers of its clusters.
+    pub clusters: Range<usize>,
+    /// Number of the material.
+    pub material: u32,
+    /// How it is drawn.
+    pub kind: Kind,
+    /// Whether the shadow map needs it.
+    pub casts: bool,
+}
+
+/// What the shaders of a part must do besides the plain minimum; each kind has a pipeline of its own.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Kind {
+    /// Read colours at its vertices.
+    pub colours: bool,
+    /// Read a normal map.
+    pub normal_map: bool,
+    /// Leave holes.
+    pub cut_out: bool,
+    /// Read a map of ρ_d.
+    pub diffuse_map: bool,
+    /// Read a map of the factor on ρ_s.
+    pub specular_map: bool,
+}
+
+impl Kind {
+    /// Whether it needs more than maps of ρ_d and ρ_s.
+    pub fn is_detailed(&self) -> bool {
+        self.colours || self.normal_map || self.cut_out
+    }
+
+    /// Whether nothing of it varies over a material.
+    fn is_bare(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// A material as draws need it.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::passes) struct Surface {
+    pub diffuse: Vec3,
+    pub diffuse_map: Option<usize>,
+    pub specular_map: Option<usize>,
+    pub normal_map: Option<usize>,
+    pub normal_scale: f32,
+    pub mirrors: bool,
+    pub cutoff: Option<f32>,
+}
+
+/// What a draw binds: a material with its maps.
+#[derive(Clone, Copy)]
+pub struct Bound<'g> {
+    /// How it is drawn.
+    pub kind: Kind,
+    /// Number of the material.
+    pub material: u32,
+    /// ρ_d, multiplies its map.
+    pub diffuse: Vec3,
+    /// Map of ρ_d.
+    pub diffuse_map: Option<&'g Image>,
+    /// Map of the factor on ρ_s.
+    pub specular_map: Option<&'g Image>,
+    /// Normal map.
+    pub normal_map: Option<&'g Image>,
+    /// Factor on its slopes.
+    pub normal_scale: f32,
+    /// Whether it has a ρ_s.
+    pub mirrors: bool,
+    /// Alpha of the map of ρ_d below which there is a hole; 0 without holes.
+    pub cutoff: f32,
+    /// Stands for a map that is not there.
+    pub white: &'g Image,
+}
+
+/// The uploaded scene.
+pub struct Geometry {
+    positions: Buffer,
+    /// Normal, and how thick the body is behind the surface, metres.
+    normals: Buffer,
+    texcoords: Buffer,
+    indices: Buffer,
+    /// In the order of their indices.
+    clusters: Vec<Cluster>,
+    /// Colours and tangents, if any part is detailed.
+    details: Option<[Buffer; 2]>,
+    /// Sorted by kind.
+    parts: Vec<Part>,
+    /// Clusters of what casts a shadow and has no holes, in the order of their indices.
+    casting: Vec<Range<usize>>,
+    surfaces: Vec<Surface>,
+    textures: Vec<Image>,
+    white: Image,
+    has_plain: bool,
+    is_specular: bool,
+    materials: Image,
+    bounds: Bounds,
+    casters: Bounds,
+}
+
+impl Geometry {
+    /// Uploads a scene; `recorder` must be recording.
+    ///
+    /// # Errors
+    /// When the device has no memory left.
+    pub fn new(recorder: &mut Recorder, scene: &Scene) -> Result<Self> {
+        let (indices, layout) = arranged(scene);
+        let vertex = |recorder: &mut Recorder, name, bytes| {
+            upload_buffer(recorder, name, BufferKind::Vertex, bytes)
+        };
+        let normals = normals_and_thickness(scene, &layout);
+        let surfaces: Vec<Surface> = scene.materials.iter().map(surface).collect();
+        let textures: Result<Vec<Image>> = scene
+            .textures
+            .iter()
+            .map(|texture| upload(recorder, texture))
+            .collect();
+        let parts = parts(scene, &layout, &surfaces);
+        let clusters = layout.into_owned().clusters;
+        let has_plain = parts.iter().any(|p| {
+            let clusters = &clusters[p.clusters.clone()];
+            clusters.iter().any(|c| is_plain(p, c))
+        });
+        let details = if parts.iter().any(|p| p.kind.is_detailed()) {
+            Some(upload_details(recorder, scene)?)
+        } else {
+            None
+        };
+        Ok(Self {
+            positions: vertex(
+                recorder,
+                "positions",
+                bytemuck::cast_slice(&scene.positions),
+            )?,
+            normals: vertex(recorder, "normals", bytemuck::cast_slice(&normals))?,
+            texcoords: vertex(
+                recorder,
+                "texcoords",
+                bytemuck::cast_slice(&scene.texcoords),
+            )?,
+            indices: upload_buffer(
+                recorder,
+                "indices",
+                BufferKind::Index,
+                bytemuck::cast_slice(&indices),
+            )?,
+            clusters,
+            details,
+            casting: casting(&parts),
+            parts,
+            has_plain,
+            is_specular: surfaces.iter().any(|s| s.mirrors),
+            surfaces,
+            textures: textures?,
+            white: upload(recorder, &white())?,
+            materials: upload_materials(recorder, &scene.materials)?,
+            bounds: scene.bounds,
+            casters: scene.casters(),
+        })
+    }
+
+    /// The box around everything.
+    pub fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    /// The box around everything that may cast a shadow.
+    pub fn casters(&self) -> &Bounds {
+        &self.casters
+    }
+
+    /// Clusters of the whole picture of which this view is a part.
+    pub fn seen(&self, view: &View) -> impl Iterator<Item = &Cluster> {
+        let cull = Cull::camera(&view.whole());
+        self.clusters.iter().filter(move |c| cull.sees(c))
+    }
+
+    /// Those that lie within the pyramid of a view, whichever way they face.
+    pub fn around(&self, view: &View) -> impl Iterator<Item = &Cluster> {
+        let cull = Cull::camera(&view.whole());
+        self.clusters.iter().filter(move |c| cull.holds(c))
+    }
+
+    /// ρ_d, ρ_s and p of every material, see `include/materials.glsl`.
+    pub fn materials(&self) -> &Image {
+        &self.materials
+    }
+
+    /// ρ_d of a material, without its map.
+    pub fn diffuse(&self, material: u32) -> Vec3 {
+        self.surfaces
+            .get(material as usize)
+            .map_or(Vec3::ZERO, |s| s.diffuse)
+    }
+
+    /// Whether ρ_d and the factor on ρ_s vary over any material.
+    pub fn has_albedo(&self) -> bool {
+        let varies = |k: Kind| k.diffuse_map || k.specular_map || k.colours;
+        self.kinds().any(varies)
+    }
+
+    /// Whether [`Self::draw_plain`] has anything to draw.
+    pub fn has_plain(&self) -> bool {
+        self.has_plain
+    }
+
+    /// Draws everything that casts a shadow into what `cull` sees and has no holes, positions only.
+    pub fn draw_positions(&self, draws: &mut Draws<'_, '_>, cull: &Cull) {
+        if self.clusters.is_empty() {
+            return;
+        }
+        draws.geometry(&[&self.positions], &self.indices);
+        let casting = self.casting.iter();
+        let clusters = casting.flat_map(|range| &self.clusters[range.clone()]);
+        for run in Runs::new(clusters, cull) {
+            run.draw(draws);
+        }
+    }
+
+    /// The kinds of its parts, in the order in which they are drawn.
+    pub fn kinds(&self) -> impl Iterator<Item = Kind> {
+        let mut kinds: Vec<Kind> = self.parts.iter().map(|p| p.kind).collect();
+        kinds.dedup();
+        kinds.into_iter()
+    }
+
+    /// Whether any material has a ρ_s.
+    pub fn is_specular(&self) -> bool {
+        self.is_specular
+    }
+
+    /// Draws surfaces without maps whose front faces are on the side of their normals; `bind` is called with each new material.
+    pub fn draw_lean<'g, 'r>(
+        &'g self,
+        draws: &mut Draws<'_, 'r>,
+        cull: &Cull,
+        bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
+    ) {
+        draws.geometry(&[&self.positions, &self.normals], &self.indices);
+        self.draw_parts(draws, is_lean, cull, bind);
+    }
+
+    /// Draws the other parts that are not detailed; `bind` is called with each new material.
+    pub fn draw_plain<'g, 'r>(
+        &'g self,
+        draws: &mut Draws<'_, 'r>,
+        cull: &Cull,
+        bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
+    ) {
+        draws.geometry(
+            &[&self.positions, &self.normals, &self.texcoords],
+            &self.indices,
+        );
+        self.draw_parts(draws, is_plain, cull, bind);
+    }
+
+    /// Draws the detailed parts; `bind` is called with each new material.
+    pub fn draw_detailed<'g, 'r>(
+        &'g self,
+        draws: &mut Draws<'_, 'r>,
+        cull: &Cull,
+        bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
+    ) {
+        let Some([colours, tangents]) = &self.details else {
+            return;
+        };
+        let plain = [&self.positions, &self.normals, &self.texcoords];
+        let streams = [plain[0], plain[1], plain[2], colours, tangents];
+        draws.geometry(&streams, &self.indices);
+        self.draw_parts(draws, |part, _| part.kind.is_detailed(), cull, bind);
+    }
+
+    /// Draws positions and texture coordinates of the parts with holes; `bind` is called with each new material.
+    pub fn draw_cut_outs<'g, 'r>(
+        &'g self,
+        draws: &mut Draws<'_, 'r>,
+        cull: &Cull,
+        bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
+    ) {
+        draws.geometry(&[&self.positions, &self.texcoords], &self.indices);
+        let cut_out = |p: &Part, _: &Cluster| p.casts && p.kind.cut_out;
+        self.draw_parts(draws, cut_out, cull, bind);
+    }
+
+    fn draw_parts<'g, 'r>(
+        &'g self,
+        draws: &mut Draws<'_, 'r>,
+        wanted: impl Fn(&Part, &Cluster) -> bool,
+        cull: &Cull,
+        mut bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
+    ) {
+        let mut current = None;
+        for part in &self.parts {
+            let clusters = self.clusters[part.clusters.clone()].iter();
+            for run in Runs::new(clusters.filter(|c| wanted(part, c)), cull) {
+                if current != Some((part.kind, part.material)) {
+                    bind(draws, &self.bound(part));
+                    current = Some((part.kind, part.material));
+                }
+                run.draw(draws);
+            }
+        }
+    }
+
+    fn bound(&self, part: &Part) -> Bound<'_> {
+        let s = &self.surfaces[part.material as usize];
+        let map = |index: Option<usize>| index.map(|i| &self.textures[i]);
+        Bound {
+            kind: part.kind,
+            material: part.material,
+            diffuse: s.diffuse,
+            diffuse_map: map(s.diffuse_map),
+            specular_map: map(s.specular_map),
+            normal_map: map(s.normal_map),
+            normal_scale: s.normal_scale,
+            mirrors: s.mirrors,
+            cutoff: s.cutoff.unwrap_or(0.0),
+            white: &self.white,
+        }
+    }
+}
+
+/// Whether the pipeline with the fewest vertex attributes can draw a cluster.
+fn is_lean(part: &Part, cluster: &Cluster) -> bool {
+    part.kind.is_bare() && cluster.is_wound
+}
+
+/// Whether it takes the one with texture coordinates, which finds out which side is the front.
+fn is_plain(part: &Part, cluster: &Cluster) -> bool {
+    !part.kind.is_detailed() && !is_lean(part, cluster)
+}
+
+/// A scene's indices and layout: loading has found them, a scene that was made has none yet.
+fn arranged(scene: &Scene) -> (Cow<'_, [u32]>, Cow<'_, Layout>) {
+    match &scene.layout {
+        Some(layout) => (Cow::Borrowed(&scene.indices), Cow::Borrowed(layout)),
+        None => {
+            let (indices, layout) = Layout::of(scene);
+            (Cow::Owned(indices), Cow::Owned(layout))
+        }
+    }
+}
+
+/// The parts of a scene in the order in which they are drawn.
+fn parts(scene: &Scene, layout: &Layout, surfaces: &[Surface]) -> Vec<Part> {
+    let casting = scene.casting();
+    let all = scene.parts.iter().zip(&layout.of_part).zip(casting);
+    let part = |((part, clusters), casts): ((&scene::Part, &Range<usize>), bool)| Part {
+        clusters: clusters.clone(),
+        material: part.material,
+        kind: surfaces[part.material as usize].kind(part.has_colours),
+        casts,
+    };
+    let mut parts: Vec<Part> = all.map(part).collect();
+    // Parts of one kind share a pipeline: as few changes as possible.
+    parts.sort_by_key(|part| (part.kind, part.material));
+    parts
+}
+
+/// Clusters of what casts a shadow and has no holes, in the order of their indices: runs go on from part to part.
+fn casting(parts: &[Part]) -> Vec<Range<usize>> {
+    let solid = parts.iter().filter(|p| p.casts && !p.kind.cut_out);
+    let mut ranges: Vec<Range<usize>> = solid.map(|p| p.clusters.clone()).collect();
+    ranges.sort_by_key(|range| range.start);
+    ranges
+}
+
+impl Surface {
+    fn kind(&self, colours: bool) -> Kind {
+        Kind {
+            colours,
+            normal_map: self.normal_map.is_some(),
+            cut_out: self.cutoff.is_some(),
+            diffuse_map: self.diffuse_map.is_some(),
+            specular_map: self.specular_map.is_some(),
+        }
+    }
+}

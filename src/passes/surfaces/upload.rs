@@ -1,0 +1,106 @@
+//! A scene's vertices, textures and materials as the device has them.
+
+use crate::gpu::{
+    Buffer, BufferKind, Format, Image, ImageDesc, ImageKind, Recorder, Result, upload_buffer,
+    upload_texture,
+};
+use crate::scene::{Encoding, Layout, Material, Scene, Texture};
+
+use crate::passes::surfaces::geometry::Surface;
+
+/// Colours and tangents for every vertex: white and none where the scene has none.
+pub(in crate::passes) fn upload_details(
+    recorder: &mut Recorder,
+    scene: &Scene,
+) -> Result<[Buffer; 2]> {
+    let vertices = scene.positions.len();
+    let (white, none) = (vec![[u16::MAX; 4]; vertices], vec![[0i16; 4]; vertices]);
+    let given = |length: usize| length == vertices;
+    let colours = if given(scene.colours.len()) {
+        &scene.colours
+    } else {
+        &white
+    };
+    let tangents = if given(scene.tangents.len()) {
+        &scene.tangents
+    } else {
+        &none
+    };
+    let colours = bytemuck::cast_slice(colours);
+    let tangents = bytemuck::cast_slice(tangents);
+    Ok([
+        upload_buffer(recorder, "colours", BufferKind::Vertex, colours)?,
+        upload_buffer(recorder, "tangents", BufferKind::Vertex, tangents)?,
+    ])
+}
+
+pub(in crate::passes) fn normals_and_thickness(scene: &Scene, layout: &Layout) -> Vec<[f32; 4]> {
+    let vertices = scene.normals.iter().zip(&layout.thickness);
+    vertices
+        .map(|([x, y, z], thickness)| [*x, *y, *z, *thickness])
+        .collect()
+}
+
+/// Materials in a row of the table of materials.
+const MATERIAL_COLUMNS: usize = 1024;
+
+/// The table of `include/materials.glsl`.
+pub(in crate::passes) fn upload_materials(
+    recorder: &mut Recorder,
+    materials: &[Material],
+) -> Result<Image> {
+    let rows = 2 * materials.len().div_ceil(MATERIAL_COLUMNS).max(1);
+    let mut table = vec![[0.0f32; 4]; rows * MATERIAL_COLUMNS];
+    for (i, material) in materials.iter().enumerate() {
+        let at = i / MATERIAL_COLUMNS * 2 * MATERIAL_COLUMNS + i % MATERIAL_COLUMNS;
+        let ([r, g, b], [x, y, z]) = (material.diffuse, material.specular);
+        table[at] = [r, g, b, 0.0];
+        table[at + MATERIAL_COLUMNS] = [x, y, z, material.shininess];
+    }
+    let size = [MATERIAL_COLUMNS as u32, rows as u32];
+    let desc = ImageDesc::flat("materials", Format::R32G32B32A32_SFLOAT, size);
+    upload_texture(recorder, &desc, &[bytemuck::cast_slice(&table)])
+}
+
+pub(in crate::passes) fn surface(material: &Material) -> Surface {
+    Surface {
+        diffuse: material.diffuse.into(),
+        diffuse_map: material.diffuse_texture,
+        specular_map: material.specular_texture,
+        normal_map: material.normal_texture,
+        normal_scale: material.normal_scale,
+        mirrors: material.specular != [0.0; 3],
+        // The opacity of the material multiplies that of the map: the same test with one factor less.
+        cutoff: material
+            .alpha_cutoff
+            .map(|c| c / material.dissolve.max(1e-6)),
+    }
+}
+
+pub(in crate::passes) fn white() -> Texture {
+    Texture {
+        name: "white".into(),
+        width: 1,
+        height: 1,
+        rgba8: vec![255; 4],
+        encoding: Encoding::Srgb,
+    }
+}
+
+pub(in crate::passes) fn upload(recorder: &mut Recorder, texture: &Texture) -> Result<Image> {
+    let smaller = texture.mip_levels();
+    let levels: Vec<&[u8]> = std::iter::once(texture.rgba8.as_slice())
+        .chain(smaller.iter().map(|t| t.rgba8.as_slice()))
+        .collect();
+    let desc = ImageDesc {
+        name: &texture.name,
+        format: match texture.encoding {
+            Encoding::Srgb => Format::R8G8B8A8_SRGB,
+            Encoding::Linear => Format::R8G8B8A8_UNORM,
+        },
+        size: [texture.width, texture.height],
+        kind: ImageKind::Flat,
+        levels: levels.len() as u32,
+    };
+    upload_texture(recorder, &desc, &levels)
+}

@@ -1,0 +1,281 @@
+//! The connected surfaces of a scene: how thick they are, and whether they are closed.
+
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
+
+use glam::{DVec3, Vec3};
+
+use crate::scene::{Bounds, Scene};
+
+/// A connected surface: triangles that share vertices at the same place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Body {
+    /// Around its triangles, metres.
+    pub bounds: Bounds,
+    /// Length of the mean straight way through it, metres: 4 volume / area (Cauchy), of an open surface that of the cone
+    /// over it from the middle of its box. A thin wall is crossed in twice its thickness.
+    pub mean_chord: f32,
+    /// Whether it is the whole surface of a solid, its triangles counter-clockwise seen from outside. From outside, none
+    /// of its back faces can be seen.
+    pub is_solid: bool,
+}
+
+impl Body {
+    /// How far matter reaches behind its surface, metres: [`Body::mean_chord`], of a solid (of which all is known) less
+    /// than that. What lies behind a sheet is not known: it hides as much as its smaller side is long.
+    pub fn thickness(&self) -> f32 {
+        let mut extents = self.bounds.extent().to_array();
+        extents.sort_by(f32::total_cmp);
+        let [_, middle, large] = extents;
+        if self.mean_chord > FLAT * large {
+            self.mean_chord * if self.is_solid { SOLID } else { 1.0 }
+        } else {
+            middle
+        }
+    }
+}
+
+/// Share of the mean chord that counts of a solid. The occlusion doubles it: a little over a sphere's diameter, which is 1.5.
+const SOLID: f32 = 0.8;
+
+/// Mean chord over largest extent below which a body is a sheet.
+const FLAT: f32 = 1e-3;
+
+/// The bodies of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bodies {
+    /// Each body.
+    pub list: Vec<Body>,
+    /// Number of the body that each vertex belongs to.
+    pub of_vertex: Vec<u32>,
+}
+
+impl Bodies {
+    /// Finds the bodies. Vertices are joined where their positions are equal to the bit.
+    pub fn of(scene: &Scene) -> Self {
+        let points = weld(&scene.positions);
+        let mut sets = Sets::new(points.len());
+        let triangles = || {
+            let corners = scene.indices.chunks_exact(3);
+            corners.map(|c| [0, 1, 2].map(|i| points[c[i] as usize]))
+        };
+        for [a, b, c] in triangles() {
+            sets.join(a, b);
+            sets.join(a, c);
+        }
+        let mut numbers = HashMap::new();
+        let of_vertex: Vec<u32> = points
+            .iter()
+            .map(|p| {
+                let next = numbers.len() as u32;
+                *numbers.entry(sets.root(*p)).or_insert(next)
+            })
+            .collect();
+        let mut sums = vec![Sums::default(); numbers.len()];
+        for corners in scene.indices.chunks_exact(3) {
+            let vertices = [0, 1, 2].map(|i| corners[i] as usize);
+            let positions = vertices.map(|v| Vec3::from(scene.positions[v]));
+            sums[of_vertex[vertices[0]] as usize].add(vertices.map(|v| points[v]), positions);
+        }
+        Self {
+            list: sums.iter().map(Sums::body).collect(),
+            of_vertex,
+        }
+    }
+}
+
+/// The first vertex at the place of each.
+fn weld(positions: &[[f32; 3]]) -> Vec<u32> {
+    let mut first: HashMap<[u32; 3], u32, BuildHasherDefault<Mix>> = HashMap::default();
+    first.reserve(positions.len());
+    let numbered = positions.iter().enumerate();
+    numbered
+        // Adding 0 makes -0 and 0 one place.
+        .map(|(i, p)| {
+            *first
+                .entry(p.map(|x| (x + 0.0).to_bits()))
+                .or_insert(i as u32)
+        })
+        .collect()
+}
+
+/// Multiplies and folds: positions are no enemies, and there are many of them.
+#[derive(Default)]
+struct Mix(u64);
+
+impl Hasher for Mix {
+    fn write(&mut self, bytes: &[u8]) {
+        for chunk in bytes.chunks(4) {
+            let mut word = [0; 4];
+            word[..chunk.len()].copy_from_slice(chunk);
+            self.0 = mixed(self.0 ^ u64::from(u32::from_le_bytes(word)));
+        }
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
+}
+
+/// SplitMix64 (Steele et al. 2014).
+fn mixed(mut x: u64) -> u64 {
+    x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}
+
+/// Disjoint sets (Galler and Fischer 1964), paths halved.
+struct Sets(Vec<u32>);
+
+impl Sets {
+    fn new(count: usize) -> Self {
+        Self((0..count as u32).collect())
+    }
+
+    fn root(&mut self, mut x: u32) -> u32 {
+        while self.0[x as usize] != x {
+            let up = self.0[self.0[x as usize] as usize];
+            self.0[x as usize] = up;
+            x = up;
+        }
+        x
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+}
+
+/// What is added up over the triangles of a body.
+#[derive(Clone, Copy)]
+struct Sums {
+    bounds: Bounds,
+    /// Corner from which volumes are counted: near, so that they keep their digits.
+    origin: Option<DVec3>,
+    six_volumes: f64,
+    /// Sum of the triangles' vectors, each twice its area long: 0 when closed.
+    two_areas: DVec3,
+    two_area: f64,
+    /// Each directed edge adds a random number of its own, the opposite edge takes it away: 0 when all are paired.
+    unpaired: u64,
+}
+
+impl Default for Sums {
+    fn default() -> Self {
+        Self {
+            bounds: Bounds::EMPTY,
+            origin: None,
+            six_volumes: 0.0,
+            two_areas: DVec3::ZERO,
+            two_area: 0.0,
+            unpaired: 0,
+        }
+    }
+}
+
+impl Sums {
+    fn add(&mut self, points: [u32; 3], positions: [Vec3; 3]) {
+        for i in 0..3 {
+            let (a, b) = (points[i], points[(i + 1) % 3]);
+            let edge = mixed(u64::from(a.min(b)) << 32 | u64::from(a.max(b)));
+            let signed = if a < b { edge } else { edge.wrapping_neg() };
+            self.unpaired = self.unpaired.wrapping_add(signed);
+            self.bounds = self.bounds.with(positions[i]);
+        }
+        let origin = *self.origin.get_or_insert(positions[0].as_dvec3());
+        let [a, b, c] = positions.map(|p| p.as_dvec3() - origin);
+        self.six_volumes += a.dot(b.cross(c));
+        let two_area = (b - a).cross(c - a);
+        self.two_areas += two_area;
+        self.two_area += two_area.length();
+    }
+
+    fn body(&self) -> Body {
+        let origin = self.origin.unwrap_or_default();
+        let centre = self.bounds.centre().as_dvec3() - origin;
+        let volume = (self.six_volumes - centre.dot(self.two_areas)) / 6.0;
+        Body {
+            bounds: self.bounds,
+            mean_chord: (4.0 * volume.abs() / (0.5 * self.two_area).max(1e-12)) as f32,
+            is_solid: self.unpaired == 0 && self.six_volumes > 0.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A box of twelve triangles, each face with vertices of its own.
+    fn cuboid(scene: &mut Scene, corner: Vec3, size: Vec3, faces: usize, inward: bool) {
+        let order = if inward {
+            [0, 2, 1, 0, 3, 2]
+        } else {
+            [0, 1, 2, 0, 2, 3]
+        };
+        for face in 0..faces {
+            let (axis, side) = (face / 2, face % 2);
+            let [u, v] = if side == 1 {
+                [(axis + 1) % 3, (axis + 2) % 3]
+            } else {
+                [(axis + 2) % 3, (axis + 1) % 3]
+            };
+            let first = scene.positions.len() as u32;
+            for (s, t) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
+                let mut unit = [0.0; 3];
+                (unit[axis], unit[u], unit[v]) = (side as f32, s, t);
+                let p = corner + Vec3::from(unit) * size;
+                scene.positions.push(p.into());
+            }
+            scene.indices.extend(order.map(|i| first + i));
+        }
+    }
+
+    fn bodies(build: impl FnOnce(&mut Scene)) -> Vec<Body> {
+        let mut scene = Scene::default();
+        build(&mut scene);
+        Bodies::of(&scene).list
+    }
+
+    #[test]
+    fn boxes_apart_are_two_bodies_and_boxes_that_touch_are_one() {
+        let size = Vec3::new(0.1, 2.0, 0.5);
+        let apart = bodies(|s| {
+            cuboid(s, Vec3::ZERO, size, 6, false);
+            cuboid(s, Vec3::new(3.0, 0.0, 0.0), size, 6, false);
+        });
+        assert_eq!(apart.len(), 2);
+        // 4 volume / area.
+        let chord = SOLID * 4.0 * 0.1 / 2.5;
+        let near = |b: &Body| (b.thickness() - chord).abs() < 1e-6;
+        assert!(apart.iter().all(|b| b.is_solid && near(b)));
+        assert_eq!(apart[0].bounds.max, size);
+        let touching = bodies(|s| {
+            cuboid(s, Vec3::ZERO, size, 6, false);
+            cuboid(s, Vec3::new(0.1, 0.0, 0.0), size, 6, false);
+        });
+        assert_eq!(touching.len(), 1);
+        assert_eq!(touching[0].bounds.max.x, 0.2);
+    }
+
+    #[test]
+    fn only_a_closed_surface_that_faces_outward_is_solid() {
+        let at = Vec3::new(100.0, 50.0, -20.0);
+        let solid = |faces, inward| bodies(|s| cuboid(s, at, Vec3::ONE, faces, inward))[0].is_solid;
+        assert!(solid(6, false));
+        assert!(!solid(6, true), "a room");
+        assert!(!solid(5, false), "a box without a lid");
+        let mut scene = Scene::default();
+        cuboid(&mut scene, at, Vec3::ONE, 6, false);
+        scene.indices.swap(0, 1);
+        assert!(!Bodies::of(&scene).list[0].is_solid, "one triangle turned");
+    }
+
+    #[test]
+    fn a_sheet_hides_as_much_as_its_smaller_side_is_long() {
+        let sheet = bodies(|s| cuboid(s, Vec3::ZERO, Vec3::new(0.0, 3.0, 8.0), 1, false));
+        assert_eq!(sheet[0].thickness(), 3.0);
+    }
+}

@@ -1,0 +1,356 @@
+//! Small groups of triangles that lie together, so that what a view cannot see need not be drawn.
+
+use std::ops::Range;
+use std::thread;
+
+use glam::Vec3;
+
+use crate::scene::{Bodies, Bounds, Scene};
+
+/// Most triangles of a cluster.
+const MOST: usize = 128;
+/// Triangles from which halves are worth a thread of their own.
+const LARGE: usize = 1 << 15;
+
+/// Triangles that lie together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cluster {
+    /// First index.
+    pub first: u32,
+    /// Number of indices.
+    pub count: u32,
+    /// Around the triangles, metres.
+    pub bounds: Bounds,
+    /// Where the triangles are part of solids.
+    pub solid: Option<Solid>,
+    /// Whether at every triangle all three stored normals are on the side from which it winds counter-clockwise.
+    pub is_wound: bool,
+}
+
+/// What is known of triangles of solids: from outside, none of their back faces can be seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Solid {
+    /// Around all of the solids that the triangles belong to, metres.
+    pub bodies: Bounds,
+    /// Axis of a cone that holds the normals of all the triangles, unit.
+    pub axis: Vec3,
+    /// Sine of the angle between the axis and the normal farthest from it; 1 for a right angle and more.
+    pub sine: f32,
+}
+
+/// Indices in another order, and the clusters that they form.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Clusters {
+    /// Those of the scene, the ones of each run in the order of its clusters.
+    pub indices: Vec<u32>,
+    /// The clusters, run after run, in the order of their indices.
+    pub list: Vec<Cluster>,
+    /// The clusters of each run.
+    pub of_run: Vec<Range<usize>>,
+}
+
+impl Clusters {
+    /// Splits runs of a scene's indices (first and count) by halves at the median of the longest side, down to clusters.
+    /// Within a cluster triangles keep their order, which is mostly one that shares vertices.
+    pub fn of(scene: &Scene, bodies: &Bodies, runs: &[(u32, u32)]) -> Self {
+        let mut made = Self {
+            indices: scene.indices.clone(),
+            ..Self::default()
+        };
+        let splitter = Splitter { scene, bodies };
+        for &(first, count) in runs {
+            let start = made.list.len();
+            let mut of_kind: [Vec<Item>; 4] = Default::default();
+            for triangle in first / 3..(first + count) / 3 {
+                of_kind[splitter.kind(triangle).rank()].push(splitter.item(triangle));
+            }
+            let mut first = first;
+            for (kind, mut items) in Kind::ALL.into_iter().zip(of_kind) {
+                let end = first + 3 * items.len() as u32;
+                let run = Run {
+                    first,
+                    kind,
+                    indices: &mut made.indices[first as usize..end as usize],
+                };
+                made.list.extend(splitter.split(&mut items, run));
+                first = end;
+            }
+            made.of_run.push(start..made.list.len());
+        }
+        made
+    }
+}
+
+/// What the triangles of a cluster have in common.
+#[derive(Clone, Copy)]
+struct Kind {
+    /// Whether they are part of solids.
+    is_solid: bool,
+    /// [`Cluster::is_wound`].
+    is_wound: bool,
+}
+
+impl Kind {
+    /// In the order of their clusters.
+    const ALL: [Self; 4] = [
+        Self::new(true, true),
+        Self::new(true, false),
+        Self::new(false, true),
+        Self::new(false, false),
+    ];
+
+    const fn new(is_solid: bool, is_wound: bool) -> Self {
+        Self { is_solid, is_wound }
+    }
+
+    /// Its place among all.
+    fn rank(self) -> usize {
+        2 * usize::from(!self.is_solid) + usize::from(!self.is_wound)
+    }
+}
+
+/// A triangle on its way to its cluster.
+#[derive(Clone, Copy)]
+struct Item {
+    /// Three times its centroid.
+    place: Vec3,
+    triangle: u32,
+}
+
+/// Where the indices of some triangles go.
+struct Run<'i> {
+    /// Number of the first one.
+    first: u32,
+    kind: Kind,
+    indices: &'i mut [u32],
+}
+
+impl Run<'_> {
+    /// The first `triangles` and the rest.
+    fn halves(&mut self, triangles: usize) -> (Run<'_>, Run<'_>) {
+        let (low, high) = self.indices.split_at_mut(3 * triangles);
+        let of = |first, indices| Run {
+            first,
+            kind: self.kind,
+            indices,
+        };
+        (
+            of(self.first, low),
+            of(self.first + 3 * triangles as u32, high),
+        )
+    }
+}
+
+struct Splitter<'s> {
+    scene: &'s Scene,
+    bodies: &'s Bodies,
+}
+
+impl Splitter<'_> {
+    fn corners(&self, triangle: u32) -> [u32; 3] {
+        [0, 1, 2].map(|i| self.scene.indices[3 * triangle as usize + i])
+    }
+
+    fn positions(&self, triangle: u32) -> [Vec3; 3] {
+        self.corners(triangle)
+            .map(|v| self.scene.positions[v as usize].into())
+    }
+
+    fn body(&self, triangle: u32) -> &crate::scene::Body {
+        let vertex = self.scene.indices[3 * triangle as usize] as usize;
+        &self.bodies.list[self.bodies.of_vertex[vertex] as usize]
+    }
+
+    fn kind(&self, triangle: u32) -> Kind {
+        let [a, b, c] = self.positions(triangle);
+        let face = (b - a).cross(c - a);
+        let normals = &self.scene.normals;
+        let agrees = |v: u32| {
+            let normal = normals.get(v as usize);
+            normal.is_some_and(|n| face.dot((*n).into()) > 0.0)
+        };
+        let is_wound = self.corners(triangle).into_iter().all(agrees);
+        Kind::new(self.body(triangle).is_solid, is_wound)
+    }
+
+    fn item(&self, triangle: u32) -> Item {
+        Item {
+            place: self.positions(triangle).iter().sum(),
+            triangle,
+        }
+    }
+
+    /// Clusters of at most [`MOST`] triangles.
+    fn split(&self, items: &mut [Item], mut run: Run<'_>) -> Vec<Cluster> {
+        if items.is_empty() {
+            return Vec::new();
+        }
+        if items.len() <= MOST {
+            return vec![self.cluster(items, run)];
+        }
+        let middle = items.len() / 2;
+        let is_large = items.len() >= LARGE;
+        halve(items, middle);
+        let (low, high) = items.split_at_mut(middle);
+        let (low_run, high_run) = run.halves(middle);
+        let (mut clusters, rest) = if is_large {
+            thread::scope(|scope| {
+                let rest = scope.spawn(|| self.split(high, high_run));
+                let clusters = self.split(low, low_run);
+                let rest = rest.join();
+                // A fault of this program is one on this thread too.
+                (
+                    clusters,
+                    rest.unwrap_or_else(|fault| std::panic::resume_unwind(fault)),
+                )
+            })
+        } else {
+            (self.split(low, low_run), self.split(high, high_run))
+        };
+        clusters.extend(rest);
+        clusters
+    }
+
+    fn cluster(&self, items: &mut [Item], run: Run<'_>) -> Cluster {
+        items.sort_unstable_by_key(|item| item.triangle);
+        let mut bounds = Bounds::EMPTY;
+        for (item, indices) in items.iter().zip(run.indices.chunks_exact_mut(3)) {
+            indices.copy_from_slice(&self.corners(item.triangle));
+            bounds = self
+                .positions(item.triangle)
+                .into_iter()
+                .fold(bounds, Bounds::with);
+        }
+        Cluster {
+            first: run.first,
+            count: run.indices.len() as u32,
+            bounds,
+            solid: run.kind.is_solid.then(|| self.solid(items)),
+            is_wound: run.kind.is_wound,
+        }
+    }
+
+    fn solid(&self, items: &[Item]) -> Solid {
+        let bodies = items.iter().map(|item| self.body(item.triangle).bounds);
+        let normals = || {
+            items.iter().map(|item| {
+                let [a, b, c] = self.positions(item.triangle);
+                (b - a).cross(c - a).normalize_or_zero()
+            })
+        };
+        let axis = normals().sum::<Vec3>().normalize_or_zero();
+        // A triangle without area faces nowhere, and is seen from nowhere.
+        let cosine = normals()
+            .filter(|n| *n != Vec3::ZERO)
+            .map(|n| n.dot(axis))
+            .fold(1.0, f32::min);
+        Solid {
+            bodies: bodies.fold(Bounds::EMPTY, Bounds::union),
+            axis,
+            sine: if cosine > 0.0 {
+                (1.0 - cosine * cosine).max(0.0).sqrt()
+            } else {
+                1.0
+            },
+        }
+    }
+}
+
+/// Brings the triangles that lie lower on the longest axis before the middle.
+fn halve(items: &mut [Item], middle: usize) {
+    let extent = Bounds::of(items.iter().map(|item| item.place)).extent();
+    let axis = extent.max_position();
+    let order = |a: &Item, b: &Item| {
+        let by_place = a.place[axis].total_cmp(&b.place[axis]);
+        by_place.then(a.triangle.cmp(&b.triangle))
+    };
+    items.select_nth_unstable_by(middle, order);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sheet of `n` x `n` quads in the plane y = 0, facing up, in the order of its rows.
+    fn sheet(n: u32) -> Scene {
+        let mut scene = Scene::default();
+        for row in 0..=n {
+            for column in 0..=n {
+                scene.positions.push([column as f32, 0.0, row as f32]);
+            }
+        }
+        for row in 0..n {
+            for column in 0..n {
+                let a = row * (n + 1) + column;
+                let (b, c, d) = (a + 1, a + n + 1, a + n + 2);
+                scene.indices.extend([a, c, b, b, c, d]);
+            }
+        }
+        scene
+    }
+
+    fn triangles(indices: &[u32]) -> Vec<[u32; 3]> {
+        let mut all: Vec<[u32; 3]> = indices
+            .chunks_exact(3)
+            .map(|t| [t[0], t[1], t[2]])
+            .collect();
+        all.sort_unstable();
+        all
+    }
+
+    #[test]
+    fn every_triangle_is_in_one_cluster_and_lies_in_its_box() {
+        let scene = sheet(150);
+        let count = scene.indices.len() as u32;
+        let runs = [(0, 300), (300, count - 300)];
+        let clusters = Clusters::of(&scene, &Bodies::of(&scene), &runs);
+        assert_eq!(triangles(&clusters.indices), triangles(&scene.indices));
+        assert_eq!(clusters.of_run[0], 0..1);
+        assert_eq!(clusters.of_run[1], 1..clusters.list.len());
+        let mut next = 0;
+        for cluster in &clusters.list {
+            assert_eq!(cluster.first, next);
+            assert!(cluster.count as usize <= 3 * MOST && cluster.count > 0);
+            assert!(cluster.solid.is_none(), "a sheet has two sides");
+            next += cluster.count;
+            let range = cluster.first as usize..next as usize;
+            for vertex in &clusters.indices[range] {
+                let p = Vec3::from(scene.positions[*vertex as usize]);
+                assert!(cluster.bounds.min.cmple(p).all() && cluster.bounds.max.cmpge(p).all());
+            }
+        }
+        assert_eq!(next, count);
+    }
+
+    #[test]
+    fn clusters_are_compact() {
+        let scene = sheet(64);
+        let count = scene.indices.len() as u32;
+        let clusters = Clusters::of(&scene, &Bodies::of(&scene), &[(0, count)]);
+        // 8192 triangles in 64 clusters of 128: patches of 8 x 8 quads, not rows of 64.
+        assert_eq!(clusters.list.len(), 64);
+        for cluster in &clusters.list {
+            assert!(cluster.bounds.extent().max_element() <= 10.0, "{cluster:?}");
+        }
+    }
+
+    #[test]
+    fn the_cone_holds_all_normals() {
+        let mut scene = Scene {
+            positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            // A tetrahedron, counter-clockwise seen from outside.
+            indices: vec![0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3],
+            ..Scene::default()
+        };
+        let whole = Clusters::of(&scene, &Bodies::of(&scene), &[(0, 12)]);
+        let solid = whole.list[0].solid.expect("a solid");
+        assert_eq!(solid.sine, 1.0, "faces on all sides");
+        assert_eq!(solid.bodies.max, Vec3::ONE);
+        let face = Clusters::of(&scene, &Bodies::of(&scene), &[(9, 3)]);
+        let solid = face.list[0].solid.expect("a part of a solid");
+        assert!(solid.sine < 1e-3 && solid.axis.dot(Vec3::ONE.normalize()) > 0.9999);
+        scene.indices.truncate(9);
+        let open = Clusters::of(&scene, &Bodies::of(&scene), &[(0, 9)]);
+        assert_eq!(open.list[0].solid, None);
+    }
+}

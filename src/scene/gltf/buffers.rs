@@ -1,0 +1,280 @@
+//! The buffers of a glTF file, and the numbers that accessors name in them. Every range is checked before anything is
+//! allocated.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::rc::Rc;
+
+use base64::Engine;
+use gltf::accessor::{Accessor, DataType, Dimensions};
+use percent_encoding::percent_decode_str;
+
+use crate::scene::builder::Builder;
+use crate::scene::files::Place;
+use crate::scene::texture::picture::Inner;
+
+/// The bytes of all buffers.
+#[derive(Debug)]
+pub(in crate::scene) struct Buffers(Vec<Rc<Vec<u8>>>);
+
+/// Where bytes that a URI names come from.
+pub(in crate::scene) enum Uri {
+    /// The URI held them itself.
+    Data(Vec<u8>),
+    /// This file.
+    File(Place),
+}
+
+/// Reads a URI of a model at `path`.
+pub(in crate::scene) fn resolve(builder: &Builder, path: &Path, uri: &str) -> Result<Uri, String> {
+    if let Some(data) = uri.strip_prefix("data:") {
+        let (kind, text) = data.split_once(',').ok_or("a data URI without a comma")?;
+        if !kind.ends_with(";base64") {
+            return Err("a data URI that is not base64".to_owned());
+        }
+        let bytes = base64::engine::general_purpose::STANDARD.decode(text);
+        return bytes.map(Uri::Data).map_err(|_| "broken base64".to_owned());
+    }
+    let name = percent_decode_str(uri).decode_utf8_lossy();
+    let folder = path.parent().unwrap_or(Path::new(""));
+    Ok(Uri::File(builder.files.find(folder, &name)))
+}
+
+impl Buffers {
+    pub fn read<'a>(builder: &Builder, path: &Path, gltf: &'a gltf::Gltf) -> Result<Self, String> {
+        // A thousand buffers may be the same bytes.
+        let mut known: HashMap<Option<&str>, Rc<Vec<u8>>> = HashMap::new();
+        let blob = gltf.blob.clone().map(|blob| (None, Rc::new(blob)));
+        known.extend(blob);
+        let mut read = |buffer: gltf::Buffer<'a>| {
+            let uri = match buffer.source() {
+                gltf::buffer::Source::Bin => None,
+                gltf::buffer::Source::Uri(uri) => Some(uri),
+            };
+            let bytes = match (known.get(&uri), uri) {
+                (Some(bytes), _) => bytes.clone(),
+                (None, None) => return Err("no binary chunk".to_owned()),
+                (None, Some(text)) => Rc::new(read_uri(builder, path, text)?),
+            };
+            known.insert(uri, bytes.clone());
+            if bytes.len() < buffer.length() {
+                return Err(format!("buffer {} is cut short", buffer.index()));
+            }
+            Ok(bytes)
+        };
+        gltf.buffers()
+            .map(&mut read)
+            .collect::<Result<_, _>>()
+            .map(Self)
+    }
+
+    /// The bytes of a view, and the buffer that they are part of.
+    pub fn part(&self, view: &gltf::buffer::View<'_>) -> Result<Inner, String> {
+        let length = self.view(view)?.len();
+        Ok(Inner {
+            bytes: self.0[view.buffer().index()].clone(),
+            range: view.offset()..view.offset() + length,
+        })
+    }
+
+    /// The bytes of a view.
+    pub fn view(&self, view: &gltf::buffer::View<'_>) -> Result<&[u8], String> {
+        let end = view.offset().checked_add(view.length());
+        let bytes = self.0.get(view.buffer().index());
+        end.and_then(|end| bytes?.get(view.offset()..end))
+            .ok_or_else(|| format!("buffer view {} leaves its buffer", view.index()))
+    }
+
+    /// Tuples of `N` numbers; missing components are 0, normalised integers become 0..1 or −1..1. `limit`: most tuples.
+    pub fn floats<const N: usize>(
+        &self,
+        accessor: &Accessor<'_>,
+        limit: usize,
+    ) -> Result<Vec<[f32; N]>, String> {
+        let layout = Layout::of(accessor, limit)?;
+        let read = |bytes: &[u8]| {
+            let number = |i: usize| {
+                let at = i * layout.size;
+                number(
+                    &bytes[at..at + layout.size],
+                    layout.kind,
+                    accessor.normalized(),
+                )
+            };
+            std::array::from_fn(|i| if i < layout.width { number(i) } else { 0.0 })
+        };
+        let mut values = match accessor.view() {
+            Some(view) => {
+                let bytes = self.elements(&view, accessor.offset(), &layout)?;
+                bytes.map(read).collect()
+            }
+            None => vec![[0.0; N]; layout.count],
+        };
+        self.replace_sparse(accessor, &layout, &mut values, read)?;
+        Ok(values)
+    }
+
+    /// Indices; `limit`: most of them.
+    pub fn indices(&self, accessor: &Accessor<'_>, limit: usize) -> Result<Vec<u32>, String> {
+        let layout = Layout::of(accessor, limit)?;
+        let kind = layout.kind;
+        let view = accessor.view();
+        let (1, Some(view), None) = (layout.width, view, accessor.sparse()) else {
+            return Err("indices of an unknown kind".to_owned());
+        };
+        let elements = self.elements(&view, accessor.offset(), &layout)?;
+        Ok(elements.map(|bytes| index(bytes, kind)).collect())
+    }
+
+    fn replace_sparse<const N: usize>(
+        &self,
+        accessor: &Accessor<'_>,
+        layout: &Layout,
+        values: &mut [[f32; N]],
+        read: impl Fn(&[u8]) -> [f32; N],
+    ) -> Result<(), String> {
+        let Some(sparse) = accessor.sparse() else {
+            return Ok(());
+        };
+        let count = sparse.count();
+        if count > layout.count {
+            return Err(format!("accessor {} is not sparse", accessor.index()));
+        }
+        let (kind, places) = (sparse.indices().index_type(), sparse.indices());
+        let (kind, size) = match kind {
+            gltf::accessor::sparse::IndexType::U8 => (DataType::U8, 1),
+            gltf::accessor::sparse::IndexType::U16 => (DataType::U16, 2),
+            gltf::accessor::sparse::IndexType::U32 => (DataType::U32, 4),
+        };
+        let where_to = Layout {
+            count,
+            kind,
+            size,
+            width: 1,
+        };
+        let what = Layout { count, ..*layout };
+        let places = self.elements(&places.view(), places.offset(), &where_to)?;
+        let news = self.elements(&sparse.values().view(), sparse.values().offset(), &what)?;
+        for (place, new) in places.zip(news) {
+            let value = values.get_mut(index(place, kind) as usize);
+            *value.ok_or_else(|| format!("accessor {} is out of range", accessor.index()))? =
+                read(new);
+        }
+        Ok(())
+    }
+
+    /// The bytes of each element.
+    fn elements<'b>(
+        &'b self,
+        view: &gltf::buffer::View<'_>,
+        offset: usize,
+        layout: &Layout,
+    ) -> Result<impl Iterator<Item = &'b [u8]> + use<'b>, String> {
+        let element = layout.size * layout.width;
+        let stride = view.stride().unwrap_or(element).max(1);
+        let needed = (layout.count.max(1) - 1)
+            .checked_mul(stride)
+            .and_then(|n| n.checked_add(element));
+        let bytes = self.view(view)?;
+        let bytes = bytes.get(offset..).unwrap_or_default();
+        if needed.is_none_or(|needed| needed > bytes.len()) || stride < element {
+            return Err(format!("an accessor leaves buffer view {}", view.index()));
+        }
+        let count = layout.count;
+        Ok((0..count).map(move |i| &bytes[i * stride..i * stride + element]))
+    }
+}
+
+/// Reads the whole of what a URI names.
+fn read_uri(builder: &Builder, path: &Path, uri: &str) -> Result<Vec<u8>, String> {
+    match resolve(builder, path, uri)? {
+        Uri::Data(bytes) => Ok(bytes),
+        Uri::File(Place::Found(file)) => builder.files.read(&file).map_err(|e| e.to_string()),
+        Uri::File(Place::Missing(file)) => Err(format!("{} is missing", file.display())),
+        Uri::File(Place::Outside(file)) => Err(format!(
+            "{} lies outside of the model's folder; allow it with --allow-outside",
+            file.display()
+        )),
+    }
+}
+
+/// How the elements of an accessor lie.
+#[derive(Debug, Clone, Copy)]
+struct Layout {
+    count: usize,
+    kind: DataType,
+    /// Bytes of a number.
+    size: usize,
+    /// Numbers in an element.
+    width: usize,
+}
+
+impl Layout {
+    fn of(accessor: &Accessor<'_>, limit: usize) -> Result<Self, String> {
+        let count = accessor.count();
+        if count > limit {
+            let index = accessor.index();
+            return Err(format!(
+                "accessor {index} has {count} elements, the limit is {limit}"
+            ));
+        }
+        let width = match accessor.dimensions() {
+            Dimensions::Scalar => 1,
+            Dimensions::Vec2 => 2,
+            Dimensions::Vec3 => 3,
+            Dimensions::Vec4 => 4,
+            _ => return Err(format!("accessor {} holds matrices", accessor.index())),
+        };
+        Ok(Self {
+            count,
+            kind: accessor.data_type(),
+            size: accessor.data_type().size(),
+            width,
+        })
+    }
+}
+
+fn index(bytes: &[u8], kind: DataType) -> u32 {
+    match (kind, bytes) {
+        (DataType::U8, [a]) => u32::from(*a),
+        (DataType::U16, [a, b]) => u32::from(u16::from_le_bytes([*a, *b])),
+        (DataType::U32, [a, b, c, d]) => u32::from_le_bytes([*a, *b, *c, *d]),
+        // No vertex has this number: the triangle is refused.
+        _ => u32::MAX,
+    }
+}
+
+/// glTF 2.0, section 3.11: normalised integers.
+fn number(bytes: &[u8], kind: DataType, normalised: bool) -> f32 {
+    let (value, largest) = match (kind, bytes) {
+        (DataType::F32, [a, b, c, d]) => return f32::from_le_bytes([*a, *b, *c, *d]),
+        (DataType::I8, [a]) => (f32::from(*a as i8), 127.0),
+        (DataType::I16, [a, b]) => (f32::from(i16::from_le_bytes([*a, *b])), 32_767.0),
+        (DataType::U8, _) => (index(bytes, kind) as f32, 255.0),
+        (DataType::U16, _) => (index(bytes, kind) as f32, 65_535.0),
+        _ => (index(bytes, kind) as f32, 4_294_967_295.0),
+    };
+    if normalised {
+        (value / largest).max(-1.0)
+    } else {
+        value
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_every_kind() {
+        assert_eq!(number(&1.5f32.to_le_bytes(), DataType::F32, false), 1.5);
+        assert_eq!(number(&[255], DataType::U8, true), 1.0);
+        assert_eq!(number(&[0x81], DataType::I8, true), -1.0);
+        assert_eq!(number(&[0x80], DataType::I8, true), -1.0, "−128 is clamped");
+        assert_eq!(number(&[0xff, 0xff], DataType::U16, true), 1.0);
+        assert_eq!(number(&[0x01, 0x80], DataType::I16, true), -1.0);
+        assert_eq!(number(&[7, 0], DataType::U16, false), 7.0);
+        assert_eq!(index(&[1, 2], DataType::U16), 0x0201);
+        assert_eq!(index(&[1, 2], DataType::U8), u32::MAX);
+    }
+}

@@ -1,0 +1,219 @@
+//! Materials of glTF files, by [`phong_of`] as the lecture's ρ_d, ρ_s and p.
+
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use glam::{Affine2, Vec2};
+use gltf::material::AlphaMode;
+
+use crate::scene::builder::Builder;
+use crate::scene::files::Place;
+use crate::scene::gltf::buffers::{Buffers, Uri, resolve};
+use crate::scene::material::{MTL_DEFAULT, Material, MetallicRoughness, phong_of};
+use crate::scene::mesh::soup::NONE;
+use crate::scene::texture::picture::{Inner, Wanted};
+
+/// A material as meshes use it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::scene) struct Surface {
+    /// Its number in the scene, or [`NONE`] if it is not drawn.
+    pub number: u32,
+    /// Number of the set of texture coordinates.
+    pub texcoords: u32,
+    /// From that set to those of the pictures (v downward).
+    pub texture_from_mesh: Affine2,
+    /// Whether it has a normal map.
+    pub tangents: bool,
+}
+
+/// The materials of one file.
+#[derive(Debug)]
+pub(in crate::scene) struct Materials {
+    surfaces: Vec<Surface>,
+    /// Of what names no material.
+    default: Surface,
+}
+
+impl Materials {
+    pub fn read(
+        builder: &mut Builder,
+        path: &Path,
+        gltf: &gltf::Document,
+        buffers: &Buffers,
+    ) -> Self {
+        let mut reader = Reader {
+            builder,
+            path,
+            buffers,
+        };
+        let surfaces = gltf.materials().map(|m| reader.surface(&m)).collect();
+        let grey = reader.builder.add_material(MTL_DEFAULT);
+        Self {
+            surfaces,
+            default: Surface {
+                number: grey,
+                texcoords: 0,
+                texture_from_mesh: Affine2::IDENTITY,
+                tangents: false,
+            },
+        }
+    }
+
+    pub fn of(&self, material: &gltf::Material<'_>) -> Surface {
+        let known = material.index().and_then(|i| self.surfaces.get(i));
+        known.copied().unwrap_or(self.default)
+    }
+}
+
+struct Reader<'r, 'p> {
+    builder: &'r mut Builder<'p>,
+    path: &'r Path,
+    buffers: &'r Buffers,
+}
+
+impl Reader<'_, '_> {
+    fn surface(&mut self, source: &gltf::Material<'_>) -> Surface {
+        let pbr = source.pbr_metallic_roughness();
+        let colour = pbr.base_color_texture();
+        let normal = source.normal_texture();
+        let material = self.material(source);
+        let (texcoords, texture_from_mesh) = match (&colour, &normal) {
+            (Some(info), _) => placing(info),
+            (None, Some(info)) => (info.tex_coord(), Affine2::IDENTITY),
+            (None, None) => (0, Affine2::IDENTITY),
+        };
+        if normal.is_some_and(|n| n.tex_coord() != texcoords) {
+            let what =
+                "a normal map has texture coordinates of its own; it takes those of the colour";
+            self.builder.warn(self.path, what);
+        }
+        Surface {
+            tangents: material.normal_texture.is_some(),
+            number: if material.is_drawn() {
+                self.builder.add_material(material)
+            } else {
+                NONE
+            },
+            texcoords,
+            texture_from_mesh,
+        }
+    }
+
+    fn material(&mut self, source: &gltf::Material<'_>) -> Material {
+        let pbr = source.pbr_metallic_roughness();
+        let [r, g, b, alpha] = pbr.base_color_factor();
+        let cutoff = match source.alpha_mode() {
+            AlphaMode::Opaque => None,
+            AlphaMode::Mask => Some(source.alpha_cutoff().unwrap_or(0.5)),
+            AlphaMode::Blend => Some(0.5),
+        };
+        let colour = pbr.base_color_texture();
+        let diffuse_texture = colour.and_then(|info| self.colour(&info.texture(), cutoff));
+        let normal = source.normal_texture();
+        let normal_texture = normal.as_ref().and_then(|info| {
+            let picture = self.picture(&info.texture().source())?;
+            let wanted = Wanted::Normals(picture, 1f32.to_bits());
+            self.builder.texture(self.path, wanted)
+        });
+        let surface = self.metallic_roughness(source, [r, g, b]);
+        let (diffuse, specular, shininess) = phong_of(&surface);
+        let finite = |v: f32| if v.is_finite() { v } else { 1.0 };
+        Material {
+            name: source.name().unwrap_or_default().to_owned(),
+            diffuse,
+            specular,
+            shininess,
+            dissolve: if cutoff.is_some() {
+                finite(alpha).clamp(0.0, 1.0)
+            } else {
+                1.0
+            },
+            alpha_cutoff: cutoff.map(|c| finite(c).clamp(0.0, 1.0)),
+            diffuse_texture,
+            specular_texture: None,
+            normal_texture,
+            normal_scale: finite(normal.map_or(1.0, |n| n.scale())),
+        }
+    }
+
+    /// Textures of roughness and metalness count by their means: p is one number for a material.
+    fn metallic_roughness(
+        &mut self,
+        source: &gltf::Material<'_>,
+        base: [f32; 3],
+    ) -> MetallicRoughness {
+        let pbr = source.pbr_metallic_roughness();
+        let map = pbr.metallic_roughness_texture();
+        let picture = map.and_then(|info| self.picture(&info.texture().source()));
+        let [_, roughness, metallic] =
+            picture.map_or([1.0; 3], |path| self.builder.mean(self.path, &path));
+        let specular = source.specular();
+        let factor = specular.as_ref().map_or(1.0, |s| s.specular_factor());
+        let colour = specular.map_or([1.0; 3], |s| s.specular_color_factor());
+        MetallicRoughness {
+            base,
+            metallic: pbr.metallic_factor() * metallic,
+            roughness: pbr.roughness_factor() * roughness,
+            ior: source.ior().unwrap_or(1.5),
+            specular: colour.map(|c| c * factor),
+        }
+    }
+
+    fn colour(&mut self, texture: &gltf::Texture<'_>, cutoff: Option<f32>) -> Option<usize> {
+        let picture = self.picture(&texture.source())?;
+        let wanted = if cutoff.is_some() {
+            Wanted::ColourAndAlpha(picture)
+        } else {
+            Wanted::Colour(picture)
+        };
+        self.builder.texture(self.path, wanted)
+    }
+
+    /// The path of an image; those inside of the model get one of their own.
+    fn picture(&mut self, image: &gltf::Image<'_>) -> Option<PathBuf> {
+        let mut inner = self.path.as_os_str().to_owned();
+        inner.push(format!(" image {}", image.index()));
+        let inner = PathBuf::from(inner);
+        let bytes = match image.source() {
+            gltf::image::Source::View { view, .. } => self.buffers.part(&view).map(Some),
+            gltf::image::Source::Uri { uri, .. } => match resolve(self.builder, self.path, uri) {
+                Ok(Uri::File(Place::Found(path) | Place::Missing(path))) => return Some(path),
+                Ok(Uri::File(Place::Outside(path))) => {
+                    self.builder.warn_outside(self.path, &path);
+                    Ok(None)
+                }
+                Ok(Uri::Data(bytes)) => Ok(Some(Inner {
+                    range: 0..bytes.len(),
+                    bytes: Rc::new(bytes),
+                })),
+                Err(what) => Err(what),
+            },
+        };
+        match bytes {
+            Ok(bytes) => {
+                self.builder.textures.insert(inner.clone(), bytes?);
+                Some(inner)
+            }
+            Err(what) => {
+                let what = format!("image {}: {what}", image.index());
+                self.builder.warn(self.path, &what);
+                None
+            }
+        }
+    }
+}
+
+/// KHR_texture_transform: scale, then rotation, then offset.
+fn placing(info: &gltf::texture::Info<'_>) -> (u32, Affine2) {
+    let Some(transform) = info.texture_transform() else {
+        return (info.tex_coord(), Affine2::IDENTITY);
+    };
+    let set = transform.tex_coord().unwrap_or(info.tex_coord());
+    // Counter-clockwise as seen, where v runs downward: a turn by minus the angle in these coordinates.
+    let placed = Affine2::from_scale_angle_translation(
+        Vec2::from(transform.scale()),
+        -transform.rotation(),
+        Vec2::from(transform.offset()),
+    );
+    (set, placed)
+}

@@ -1,0 +1,242 @@
+//! Primitives of glTF meshes: triangles, strips and fans with what their vertices hold.
+
+use glam::{Affine2, Vec2, Vec3};
+use gltf::Semantic;
+use gltf::mesh::Mode;
+
+use crate::scene::Scene;
+use crate::scene::gltf::buffers::Buffers;
+use crate::scene::gltf::material::Surface;
+use crate::scene::mesh::arena::append_soup;
+use crate::scene::mesh::instance::Mesh;
+use crate::scene::mesh::soup;
+use crate::scene::mesh::soup::{Corner, Dropped, NONE, Soup, Triangle, Use, sound_face};
+use crate::scene::texture::normal_map::sound_tangent;
+
+/// What a primitive holds, sizes agreeing and indices in range.
+#[derive(Debug, Default)]
+pub(in crate::scene) struct Faces {
+    positions: Vec<[f32; 3]>,
+    normals: Option<Vec<[f32; 3]>>,
+    /// Of the pictures, v downward; empty is (0, 0) everywhere.
+    texcoords: Vec<[f32; 2]>,
+    colours: Option<Vec<[f32; 4]>>,
+    tangents: Option<Vec<[f32; 4]>>,
+    pub indices: Vec<u32>,
+}
+
+/// Reads a primitive; none for points and lines. `limit`: most corners.
+pub(in crate::scene) fn read_faces(
+    buffers: &Buffers,
+    primitive: &gltf::Primitive<'_>,
+    surface: Surface,
+    limit: usize,
+) -> Result<Option<Faces>, String> {
+    let mode = primitive.mode();
+    if !matches!(
+        mode,
+        Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
+    ) {
+        return Ok(None);
+    }
+    let positions = primitive.get(&Semantic::Positions).ok_or("no positions")?;
+    let positions = buffers.floats::<3>(&positions, limit)?;
+    let count = positions.len();
+    let indices = match primitive.indices() {
+        Some(accessor) => buffers.indices(&accessor, limit)?,
+        None => (0..count as u32).collect(),
+    };
+    if indices.iter().any(|i| *i as usize >= count) {
+        return Err(format!("an index is beyond the {count} vertices"));
+    }
+    let mut faces = Faces {
+        indices: as_triangles(indices, mode),
+        positions,
+        normals: read(buffers, primitive, &Semantic::Normals, count)?,
+        tangents: None,
+        texcoords: Vec::new(),
+        colours: read_colours(buffers, primitive, count)?,
+    };
+    if surface.tangents {
+        faces.tangents = read(buffers, primitive, &Semantic::Tangents, count)?;
+    }
+    let set = Semantic::TexCoords(surface.texcoords);
+    faces.texcoords = read(buffers, primitive, &set, count)?.unwrap_or_default();
+    for uv in &mut faces.texcoords {
+        let placed = surface.texture_from_mesh.transform_point2(Vec2::from(*uv));
+        *uv = if placed.is_finite() {
+            placed.into()
+        } else {
+            [0.0; 2]
+        };
+    }
+    Ok(Some(faces))
+}
+
+fn read<const N: usize>(
+    buffers: &Buffers,
+    primitive: &gltf::Primitive<'_>,
+    what: &Semantic,
+    count: usize,
+) -> Result<Option<Vec<[f32; N]>>, String> {
+    let Some(accessor) = primitive.get(what) else {
+        return Ok(None);
+    };
+    if accessor.count() != count {
+        return Err("its vertices do not have as many of everything".to_owned());
+    }
+    buffers.floats::<N>(&accessor, count).map(Some)
+}
+
+/// Linear RGBA; files may leave alpha out.
+fn read_colours(
+    buffers: &Buffers,
+    primitive: &gltf::Primitive<'_>,
+    count: usize,
+) -> Result<Option<Vec<[f32; 4]>>, String> {
+    let what = Semantic::Colors(0);
+    let colours = read::<4>(buffers, primitive, &what, count)?;
+    let has_alpha = primitive
+        .get(&what)
+        .is_some_and(|a| a.dimensions() == gltf::accessor::Dimensions::Vec4);
+    Ok(colours.map(|mut colours| {
+        for [r, g, b, a] in &mut colours {
+            *a = if has_alpha { *a } else { 1.0 };
+            for v in [r, g, b, a] {
+                *v = if v.is_finite() { *v } else { 1.0 };
+            }
+        }
+        colours
+    }))
+}
+
+fn as_triangles(indices: Vec<u32>, mode: Mode) -> Vec<u32> {
+    match mode {
+        Mode::TriangleStrip => indices
+            .windows(3)
+            .enumerate()
+            // Every second one is wound the other way.
+            .flat_map(|(i, w)| {
+                if i % 2 == 0 {
+                    [w[0], w[1], w[2]]
+                } else {
+                    [w[1], w[0], w[2]]
+                }
+            })
+            .collect(),
+        Mode::TriangleFan => match indices.split_first() {
+            Some((hub, rim)) => rim.windows(2).flat_map(|w| [*hub, w[0], w[1]]).collect(),
+            None => indices,
+        },
+        _ => {
+            let mut indices = indices;
+            indices.truncate(indices.len() / 3 * 3);
+            indices
+        }
+    }
+}
+
+impl Faces {
+    /// A mesh with everything that the renderer needs: normals (flat, or smooth below a crease angle, where the file has
+    /// none) and tangents.
+    pub fn into_mesh(mut self, surface: Surface, smooth_deg: Option<f32>) -> (Mesh, Dropped) {
+        let whole = self.has_sound_normals() && (!surface.tangents || self.tangents.is_some());
+        if !whole {
+            return self.rebuild(surface, smooth_deg);
+        }
+        let mut dropped = Dropped::default();
+        let at = |i: u32| Vec3::from(self.positions[i as usize]);
+        let mut kept = Vec::with_capacity(self.indices.len());
+        for t in self.indices.chunks_exact(3) {
+            if sound_face([at(t[0]), at(t[1]), at(t[2])], &mut dropped).is_some() {
+                kept.extend_from_slice(t);
+            }
+        }
+        self.indices = kept;
+        (self.finish(surface.number), dropped)
+    }
+
+    fn has_sound_normals(&self) -> bool {
+        let sound = |n: &[f32; 3]| {
+            let length = Vec3::from(*n).length_squared();
+            (0.25..4.0).contains(&length)
+        };
+        self.normals.as_ref().is_some_and(|n| n.iter().all(sound))
+    }
+
+    fn finish(self, material: u32) -> Mesh {
+        let count = self.positions.len();
+        let normals: Vec<Vec3> = self
+            .normals
+            .into_iter()
+            .flatten()
+            .map(|n| Vec3::from(n).normalize())
+            .collect();
+        let tangents = self.tangents.map(|tangents| {
+            let both = tangents.into_iter().zip(&normals);
+            both.map(|(t, n)| sound_tangent(t, *n)).collect()
+        });
+        let mut texcoords = self.texcoords;
+        texcoords.resize(count, [0.0; 2]);
+        Mesh {
+            positions: self.positions.into_iter().map(Vec3::from).collect(),
+            normals,
+            texcoords,
+            colours: self.colours,
+            tangents,
+            indices: self.indices,
+            material,
+        }
+    }
+
+    /// By way of a soup, which computes what is missing.
+    fn rebuild(self, surface: Surface, smooth_deg: Option<f32>) -> (Mesh, Dropped) {
+        let has_texcoords = !self.texcoords.is_empty();
+        let has_normals = self.normals.is_some();
+        let pick = |i: u32, there: bool| if there { i } else { NONE };
+        let corner = |i: u32| Corner {
+            position: i,
+            texcoord: pick(i, has_texcoords),
+            normal: pick(i, has_normals),
+        };
+        let triangle = |t: &[u32]| Triangle {
+            corners: [corner(t[0]), corner(t[1]), corner(t[2])],
+            material: 0,
+            smoothing: 0,
+        };
+        // A soup counts v upward.
+        let turned = |uv: [f32; 2]| Vec2::new(uv[0], 1.0 - uv[1]);
+        let mut soup = Soup {
+            positions: self.positions.into_iter().map(Vec3::from).collect(),
+            colours: self.colours.unwrap_or_default(),
+            texcoords: self.texcoords.into_iter().map(turned).collect(),
+            normals: self.normals.into_iter().flatten().map(Vec3::from).collect(),
+            triangles: self.indices.chunks_exact(3).map(triangle).collect(),
+            polygons: soup::Polygons::default(),
+        };
+        let (dropped, faces) = soup.sweep();
+        let of = Use {
+            number: 0,
+            texture_from_mesh: Affine2::IDENTITY,
+            tangents: surface.tangents,
+        };
+        let mut scene = Scene::default();
+        append_soup(&mut scene, &soup, &faces, &[of], smooth_deg);
+        (Mesh::of(scene, surface.number), dropped)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strips_and_fans_keep_their_winding() {
+        let strip = as_triangles(vec![0, 1, 2, 3, 4], Mode::TriangleStrip);
+        assert_eq!(strip, [0, 1, 2, 2, 1, 3, 2, 3, 4]);
+        let fan = as_triangles(vec![9, 1, 2, 3], Mode::TriangleFan);
+        assert_eq!(fan, [9, 1, 2, 9, 2, 3]);
+        assert!(as_triangles(vec![], Mode::TriangleFan).is_empty());
+        assert_eq!(as_triangles(vec![0, 1, 2, 3], Mode::Triangles), [0, 1, 2]);
+    }
+}

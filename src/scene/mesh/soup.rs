@@ -1,0 +1,308 @@
+//! Triangles of one mesh between the file and the arena: separate numbers for position, texture and normal.
+
+use glam::{Affine2, Affine3A, Mat3, Vec2, Vec3};
+
+use crate::scene::mesh::triangulate::Triangulator;
+
+/// "No such number" of a [`Corner`].
+pub(in crate::scene) const NONE: u32 = u32::MAX;
+
+/// Coordinates beyond this are dropped like infinities, metres: squares and sums of larger ones leave `f32`.
+const MAX_COORDINATE: f32 = 1e9;
+
+/// One corner of a triangle: numbers into the lists of [`Soup`], or [`NONE`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::scene) struct Corner {
+    pub position: u32,
+    pub texcoord: u32,
+    pub normal: u32,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::scene) struct Triangle {
+    pub corners: [Corner; 3],
+    /// Number of the material in the mesh.
+    pub material: u32,
+    /// The smoothing group; 0 is none.
+    pub smoothing: u32,
+}
+
+/// More than three corners in a plane, or nearly so.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::scene) struct Polygon {
+    /// Where its corners end in [`Polygons::corners`]; they start where those of the one before end.
+    end: usize,
+    material: u32,
+    smoothing: u32,
+}
+
+#[derive(Debug, Default, Clone, PartialEq)]
+pub(in crate::scene) struct Polygons {
+    corners: Vec<Corner>,
+    list: Vec<Polygon>,
+}
+
+/// A material of the scene as a mesh uses it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::scene) struct Use {
+    /// Its number in the scene.
+    pub number: u32,
+    /// From the texture coordinates of the mesh (v upward) to those of the pictures.
+    pub texture_from_mesh: Affine2,
+    /// Whether it has a normal map.
+    pub tangents: bool,
+}
+
+impl Use {
+    /// A material that takes texture coordinates as they are and has no normal map.
+    #[cfg(test)]
+    pub fn plain(number: u32) -> Self {
+        Self {
+            number,
+            texture_from_mesh: Affine2::IDENTITY,
+            tangents: false,
+        }
+    }
+}
+
+/// The triangles of one mesh.
+#[derive(Debug, Default)]
+pub(in crate::scene) struct Soup {
+    pub positions: Vec<Vec3>,
+    /// RGBA that multiplies ρ_d and the opacity, one for each position; positions beyond its end have none (white).
+    pub colours: Vec<[f32; 4]>,
+    pub texcoords: Vec<Vec2>,
+    pub normals: Vec<Vec3>,
+    pub triangles: Vec<Triangle>,
+    /// Until [`Soup::triangulate`].
+    pub polygons: Polygons,
+}
+
+/// How many triangles [`Soup::sweep`] dropped.
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+pub(in crate::scene) struct Dropped {
+    pub not_finite: usize,
+    pub degenerate: usize,
+}
+
+impl Soup {
+    pub fn position(&self, corner: Corner) -> Vec3 {
+        self.positions[corner.position as usize]
+    }
+
+    /// The file's normal of a corner if it has a sound one.
+    pub fn normal(&self, corner: Corner) -> Option<Vec3> {
+        let normal = self.normals.get(corner.normal as usize)?;
+        normal.is_finite().then(|| normal.try_normalize()).flatten()
+    }
+
+    /// The file's texture coordinate of a corner, (0, 0) without a sound one.
+    pub fn texcoord(&self, corner: Corner) -> Vec2 {
+        let texcoord = self.texcoords.get(corner.texcoord as usize).copied();
+        texcoord.filter(|t| t.is_finite()).unwrap_or(Vec2::ZERO)
+    }
+
+    /// The colour of a position; white without one.
+    pub fn colour_of(&self, position: u32) -> [f32; 4] {
+        let colour = self.colours.get(position as usize).copied();
+        colour.unwrap_or([1.0; 4])
+    }
+
+    /// Adds a face of more than three corners.
+    pub fn push_polygon(
+        &mut self,
+        corners: impl Iterator<Item = Corner>,
+        material: u32,
+        smoothing: u32,
+    ) {
+        self.polygons.corners.extend(corners);
+        self.polygons.list.push(Polygon {
+            end: self.polygons.corners.len(),
+            material,
+            smoothing,
+        });
+    }
+
+    /// Adds the triangles and polygons of the next stretch of the same file, with new numbers of materials. Numbers of
+    /// corners are those of the whole file already.
+    pub fn append(&mut self, mut next: Self, material: impl Fn(u32) -> u32) {
+        if !next.colours.is_empty() {
+            self.colours.resize(self.positions.len(), [1.0; 4]);
+            self.colours.append(&mut next.colours);
+        }
+        for m in next.triangles.iter_mut().map(|t| &mut t.material) {
+            *m = material(*m);
+        }
+        if self.positions.is_empty() && self.triangles.is_empty() {
+            // The first stretch needs no copy.
+            (self.positions, self.triangles) = (next.positions, next.triangles);
+            (self.texcoords, self.normals) = (next.texcoords, next.normals);
+        } else {
+            self.positions.append(&mut next.positions);
+            self.triangles.append(&mut next.triangles);
+            self.texcoords.append(&mut next.texcoords);
+            self.normals.append(&mut next.normals);
+        }
+        let before = self.polygons.corners.len();
+        self.polygons.corners.append(&mut next.polygons.corners);
+        let list = next.polygons.list.into_iter();
+        self.polygons.list.extend(list.map(|p| Polygon {
+            end: before + p.end,
+            material: material(p.material),
+            smoothing: p.smoothing,
+        }));
+    }
+
+    /// Triangles, with those that the polygons will become.
+    pub fn count(&self) -> usize {
+        let polygons = &self.polygons;
+        // Each has at least three corners.
+        self.triangles.len() + polygons.corners.len() - 2 * polygons.list.len()
+    }
+
+    /// Splits the polygons into triangles.
+    pub fn triangulate(&mut self) {
+        let polygons = std::mem::take(&mut self.polygons);
+        let mut triangulator = Triangulator::for_corners(polygons.corners.len());
+        let mut start = 0;
+        for polygon in &polygons.list {
+            let corners = &polygons.corners[start..polygon.end];
+            start = polygon.end;
+            let points: Vec<_> = corners
+                .iter()
+                .map(|c| self.position(*c).as_dvec3())
+                .collect();
+            let triangles = triangulator.triangulate(&points);
+            self.triangles
+                .extend(triangles.into_iter().map(|t| Triangle {
+                    corners: t.map(|i| corners[i]),
+                    material: polygon.material,
+                    smoothing: polygon.smoothing,
+                }));
+        }
+    }
+
+    /// Moves everything to world space. A mirroring transform also turns the triangles round, so that their winding and
+    /// their normals keep agreeing.
+    pub fn transform(&mut self, world_from_mesh: &Affine3A) {
+        if *world_from_mesh == Affine3A::IDENTITY {
+            return;
+        }
+        let linear = Mat3::from(world_from_mesh.matrix3);
+        let normals = linear.inverse().transpose();
+        for p in &mut self.positions {
+            *p = world_from_mesh.transform_point3(*p);
+        }
+        for n in &mut self.normals {
+            *n = (normals * *n).normalize_or_zero();
+        }
+        if linear.determinant() < 0.0 {
+            self.triangles.iter_mut().for_each(|t| t.corners.swap(1, 2));
+        }
+    }
+
+    /// Drops triangles with unusable positions or without area; the rest gets its unit face normals.
+    pub fn sweep(&mut self) -> (Dropped, Vec<Vec3>) {
+        let mut dropped = Dropped::default();
+        let mut faces = Vec::with_capacity(self.triangles.len());
+        let positions = &self.positions;
+        self.triangles.retain(|triangle| {
+            let corners = triangle.corners.map(|c| positions[c.position as usize]);
+            match sound_face(corners, &mut dropped) {
+                Some(face) => faces.push(face),
+                None => return false,
+            }
+            true
+        });
+        (dropped, faces)
+    }
+}
+
+/// The unit normal of a usable triangle; others are counted.
+pub(in crate::scene) fn sound_face(corners: [Vec3; 3], dropped: &mut Dropped) -> Option<Vec3> {
+    let usable = |p: Vec3| p.is_finite() && p.abs().max_element() <= MAX_COORDINATE;
+    if !corners.into_iter().all(usable) {
+        dropped.not_finite += 1;
+        return None;
+    }
+    let face = face_normal(corners);
+    dropped.degenerate += usize::from(face.is_none());
+    face
+}
+
+/// Unit normal of a counter-clockwise triangle, or none if it has no area to speak of.
+fn face_normal(corners: [Vec3; 3]) -> Option<Vec3> {
+    let [a, b, c] = corners.map(|p| p.as_dvec3());
+    let cross = (b - a).cross(c - a);
+    let longest = (b - a)
+        .length_squared()
+        .max((c - a).length_squared())
+        .max((c - b).length_squared());
+    // Positions have 24 bits: a height below 1e-10 of the longest edge is rounding.
+    (cross.length() > 1e-10 * longest).then(|| cross.normalize().as_vec3())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn one(points: [Vec3; 3], normal: Vec3) -> Soup {
+        let corner = |position| Corner {
+            position,
+            texcoord: NONE,
+            normal: 0,
+        };
+        Soup {
+            positions: points.to_vec(),
+            normals: vec![normal],
+            triangles: vec![Triangle {
+                corners: [0, 1, 2].map(corner),
+                material: 0,
+                smoothing: 0,
+            }],
+            ..Soup::default()
+        }
+    }
+
+    #[test]
+    fn mirrored_meshes_keep_winding_and_normals_together() {
+        let mut soup = one([Vec3::ZERO, Vec3::X, Vec3::Y], Vec3::Z);
+        soup.transform(&Affine3A::from_scale(Vec3::new(1.0, 1.0, -2.0)));
+        let (dropped, faces) = soup.sweep();
+        assert_eq!(dropped, Dropped::default());
+        assert_eq!(faces, [Vec3::NEG_Z]);
+        assert_eq!(soup.normal(soup.triangles[0].corners[0]), Some(Vec3::NEG_Z));
+    }
+
+    #[test]
+    fn normals_follow_the_inverse_transpose() {
+        let slope = Vec3::new(1.0, 1.0, 0.0).normalize();
+        let mut soup = one([Vec3::X, Vec3::Y, Vec3::new(0.5, 0.5, 1.0)], slope);
+        soup.transform(&Affine3A::from_scale(Vec3::new(4.0, 1.0, 1.0)));
+        let (_, faces) = soup.sweep();
+        let normal = soup.normal(soup.triangles[0].corners[0]).expect("a normal");
+        assert!(
+            normal.dot(faces[0]).abs() > 0.99999,
+            "{normal} {}",
+            faces[0]
+        );
+    }
+
+    #[test]
+    fn unusable_triangles_are_counted() {
+        for (points, expected) in [
+            ([Vec3::ZERO, Vec3::X, Vec3::NAN], (1, 0)),
+            ([Vec3::ZERO, Vec3::X, Vec3::splat(3e38)], (1, 0)),
+            ([Vec3::ZERO, Vec3::X, Vec3::X * 2.0], (0, 1)),
+            ([Vec3::ONE; 3], (0, 1)),
+            ([Vec3::ZERO, Vec3::X * 1e-6, Vec3::Y * 1e-6], (0, 0)),
+        ] {
+            let (dropped, _) = one(points, Vec3::Z).sweep();
+            assert_eq!(
+                (dropped.not_finite, dropped.degenerate),
+                expected,
+                "{points:?}"
+            );
+        }
+    }
+}

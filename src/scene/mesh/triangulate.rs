@@ -1,0 +1,201 @@
+//! Polygons to triangles: a fan where the polygon is convex, ear clipping in its own plane where it is not.
+
+use glam::{DVec2, DVec3};
+
+/// Beyond this many corners a polygon is fanned.
+const MAX_CLIPPED: usize = 512;
+/// Comparisons of ear clipping for each corner of a model: real outlines need a few hundred.
+const EFFORT: usize = 2_000;
+
+/// Splits polygons with bounded effort: ear clipping is cubic at worst, and no file may take for ever.
+#[derive(Debug)]
+pub(in crate::scene) struct Triangulator {
+    /// Comparisons left; then every polygon is fanned.
+    effort: usize,
+}
+
+impl Triangulator {
+    /// For the polygons of one model with this many corners together.
+    pub fn for_corners(corners: usize) -> Self {
+        let effort = corners.saturating_mul(EFFORT).max(10_000_000);
+        Self { effort }
+    }
+
+    /// Splits a polygon of `points` into triangles of point numbers with the same winding, `n - 2` of them.
+    ///
+    /// Fewer than three points give nothing. A polygon without a plane (all points on a line) gives degenerate triangles.
+    pub fn triangulate(&mut self, points: &[DVec3]) -> Vec<[usize; 3]> {
+        let n = points.len();
+        if n < 3 {
+            return Vec::new();
+        }
+        if n == 3 {
+            return vec![[0, 1, 2]];
+        }
+        let flat = project(points);
+        if n > MAX_CLIPPED || is_convex(&flat) {
+            return fan(&(0..n).collect::<Vec<_>>());
+        }
+        self.clip_ears(&flat)
+    }
+
+    fn clip_ears(&mut self, flat: &[DVec2]) -> Vec<[usize; 3]> {
+        let mut left: Vec<usize> = (0..flat.len()).collect();
+        let mut triangles = Vec::with_capacity(flat.len() - 2);
+        while left.len() > 3 {
+            let ear = (0..left.len()).find(|&i| {
+                self.effort = self.effort.saturating_sub(left.len());
+                self.effort == 0 || is_ear(flat, &left, i)
+            });
+            // The outline crosses itself: there is no right answer, and a fan keeps the corners.
+            let Some(ear) = ear.filter(|_| self.effort > 0) else {
+                break;
+            };
+            triangles.push(around(&left, ear));
+            left.remove(ear);
+        }
+        triangles.extend(fan(&left));
+        triangles
+    }
+}
+
+fn fan(corners: &[usize]) -> Vec<[usize; 3]> {
+    (1..corners.len() - 1)
+        .map(|i| [corners[0], corners[i], corners[i + 1]])
+        .collect()
+}
+
+/// Newell's normal: also right for polygons that are concave or not quite flat.
+fn newell_normal(points: &[DVec3]) -> DVec3 {
+    let next = points.iter().cycle().skip(1);
+    points
+        .iter()
+        .zip(next)
+        .map(|(a, b)| (*a - points[0]).cross(*b - points[0]))
+        .sum()
+}
+
+/// The polygon in its own plane, counter-clockwise.
+fn project(points: &[DVec3]) -> Vec<DVec2> {
+    let normal = newell_normal(points).normalize_or(DVec3::Y);
+    let (s, t) = normal.any_orthonormal_pair();
+    let origin = points[0];
+    points
+        .iter()
+        .map(|p| DVec2::new((*p - origin).dot(s), (*p - origin).dot(t)))
+        .collect()
+}
+
+/// Twice the signed area of a, b, c: positive when they turn left.
+fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    (b - a).perp_dot(c - a)
+}
+
+fn is_convex(flat: &[DVec2]) -> bool {
+    let n = flat.len();
+    (0..n).all(|i| turn(flat[i], flat[(i + 1) % n], flat[(i + 2) % n]) >= 0.0)
+        // A star that winds twice turns left everywhere too, but its fan folds back.
+        && (1..n - 1).all(|i| turn(flat[0], flat[i], flat[i + 1]) >= 0.0)
+}
+
+fn around(left: &[usize], i: usize) -> [usize; 3] {
+    let n = left.len();
+    [left[(i + n - 1) % n], left[i], left[(i + 1) % n]]
+}
+
+fn is_ear(flat: &[DVec2], left: &[usize], i: usize) -> bool {
+    let [a, b, c] = around(left, i).map(|k| flat[k]);
+    if turn(a, b, c) <= 0.0 {
+        return false;
+    }
+    let blocks = |p: DVec2| {
+        // Outlines with a slit to a hole visit the same point twice: a corner does not block itself.
+        p != a
+            && p != b
+            && p != c
+            && turn(a, b, p) >= 0.0
+            && turn(b, c, p) >= 0.0
+            && turn(c, a, p) >= 0.0
+    };
+    !left.iter().any(|&k| blocks(flat[k]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn triangulate(points: &[DVec3]) -> Vec<[usize; 3]> {
+        Triangulator::for_corners(points.len()).triangulate(points)
+    }
+
+    fn area(points: &[DVec3]) -> f64 {
+        triangulate(points)
+            .iter()
+            .map(|t| {
+                0.5 * (points[t[1]] - points[t[0]])
+                    .cross(points[t[2]] - points[t[0]])
+                    .length()
+            })
+            .sum()
+    }
+
+    fn flat(points: &[(f64, f64)]) -> Vec<DVec3> {
+        // On a tilted plane, so that the projection has something to do.
+        points
+            .iter()
+            .map(|(x, y)| DVec3::new(*x, 0.6 * y, 0.8 * y))
+            .collect()
+    }
+
+    #[test]
+    fn convex_polygons_are_fans() {
+        let square = flat(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]);
+        assert_eq!(triangulate(&square), [[0, 1, 2], [0, 2, 3]]);
+    }
+
+    #[test]
+    fn concave_polygons_keep_their_area() {
+        let arrow = flat(&[(0.0, 0.0), (2.0, 2.0), (0.0, 1.0), (-2.0, 2.0)]);
+        assert!((area(&arrow) - 2.0).abs() < 1e-12, "{}", area(&arrow));
+        let l_shape = flat(&[
+            (1.0, 1.0),
+            (1.0, 3.0),
+            (0.0, 3.0),
+            (0.0, 0.0),
+            (3.0, 0.0),
+            (3.0, 1.0),
+        ]);
+        assert!((area(&l_shape) - 5.0).abs() < 1e-12);
+        let clockwise: Vec<_> = l_shape.into_iter().rev().collect();
+        assert!(
+            (area(&clockwise) - 5.0).abs() < 1e-12,
+            "the other winding too"
+        );
+    }
+
+    #[test]
+    fn a_hole_on_a_slit_stays_open() {
+        let outer = [(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0), (0.0, 0.0)];
+        let hole = [(1.0, 1.0), (1.0, 2.0), (2.0, 2.0), (2.0, 1.0), (1.0, 1.0)];
+        let outline: Vec<_> = outer.into_iter().chain(hole).collect();
+        assert!(
+            (area(&flat(&outline)) - 8.0).abs() < 1e-12,
+            "{}",
+            area(&flat(&outline))
+        );
+    }
+
+    #[test]
+    fn nonsense_ends() {
+        assert!(triangulate(&[]).is_empty());
+        assert_eq!(triangulate(&[DVec3::ZERO; 7]).len(), 5);
+        let bow = flat(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)]);
+        assert_eq!(triangulate(&bow).len(), 2);
+        let comb: Vec<_> = (0..3000)
+            .map(|i| (f64::from(i), f64::from(i % 2)))
+            .collect();
+        assert_eq!(triangulate(&flat(&comb)).len(), 2998);
+        let broken = [DVec3::NAN, DVec3::X, DVec3::Y, DVec3::Z];
+        assert_eq!(triangulate(&broken).len(), 2);
+    }
+}

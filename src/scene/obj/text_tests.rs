@@ -1,0 +1,123 @@
+//! Tests of reading OBJ text.
+
+use glam::Vec3;
+
+use super::*;
+use crate::scene::mesh::soup::{Corner, NONE};
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+fn good(text: &str) -> ObjText {
+    read(text, 1).expect("good text")
+}
+
+fn positions(corners: &[Corner; 3]) -> [u32; 3] {
+    corners.map(|c| c.position)
+}
+
+#[test]
+fn lines_continue_behind_a_backslash() {
+    let out = good(&format!(
+        "# c\n{TRIANGLE}\nf 1 2 \\\n 3\nusemtl\tred stone\nf 1 2 3\n"
+    ));
+    assert_eq!(positions(&out.soup.triangles[0].corners), [0, 1, 2]);
+    assert_eq!(out.materials, ["", "red stone"]);
+    let error = read(&format!("{TRIANGLE}f 1 \\\n 2 \\\n3\nf 1 2 9"), 1).expect_err("no vertex 9");
+    assert_eq!(error.line, 7);
+}
+
+#[test]
+fn negative_numbers_count_back() {
+    let out = good(&format!("{TRIANGLE}f -3 -2 -1\nv 5 5 5\nf -4 -3 -1"));
+    let corners: Vec<_> = out
+        .soup
+        .triangles
+        .iter()
+        .map(|t| positions(&t.corners))
+        .collect();
+    assert_eq!(corners, [[0, 1, 2], [0, 1, 3]]);
+}
+
+#[test]
+fn groups_and_missing_normals_are_kept_per_face() {
+    let out = good(&format!(
+        "{TRIANGLE}vn 0 0 1\ns 3\nf 1//1 2//1 3//1\ns off\nf 1//1 2 3//1\nf 1//9 2//9 3//9\n"
+    ));
+    let kept = |t: &crate::scene::mesh::soup::Triangle| (t.smoothing, t.corners[0].normal != NONE);
+    let kept: Vec<_> = out.soup.triangles.iter().map(kept).collect();
+    assert_eq!(kept, [(3, true), (0, false), (0, false)]);
+    assert_eq!(out.dangling, 1, "only the last names what does not exist");
+}
+
+#[test]
+fn bad_faces_name_their_line() {
+    for (face, part) in [
+        ("f 1 2 9", "does not exist"),
+        ("f 0 1 2", "counts from 1"),
+        ("f 1 2 -4", "does not exist"),
+        ("f 1 2 99999999999999999999999", "not a corner"),
+        ("f -9223372036854775808 1 2", "does not exist"),
+        ("f 1 2 x", "not a corner"),
+        ("f 1 2 /3", "names no vertex"),
+        ("f 1/1/1/1 2 3", "more than three"),
+        ("v 1 2", "three numbers"),
+    ] {
+        let error = read(&format!("{TRIANGLE}{face}\n"), 1).expect_err(face);
+        assert_eq!(error.line, 4, "{face}");
+        assert!(error.what.contains(part), "{face}: {}", error.what);
+    }
+}
+
+#[test]
+fn points_and_lines_are_left_out() {
+    let out = good("v 0 0 0\nv 1 0 0 0.5\nv 1.#IND 1 0\nl 1 2\np 1\nf 1 2\nvt 0.5\n");
+    assert_eq!(out.not_faces, 3);
+    assert_eq!(out.soup.positions[1], Vec3::X);
+    assert!(out.soup.positions[2].x.is_nan());
+    assert_eq!(out.soup.texcoords[0], glam::Vec2::new(0.5, 0.0));
+}
+
+#[test]
+fn colours_follow_the_position() {
+    let out = good("v 0 0 0\nv 1 0 0 0.5 0.25 1\nv 0 1 0 1 0.1 0.2 0.3\nv 0 0 1 nan 0 0\n");
+    assert_eq!(
+        out.soup.colours,
+        [[1.0; 4], [0.5, 0.25, 1.0, 1.0], [0.1, 0.2, 0.3, 1.0]],
+        "the fourth has no sound colour; the list is filled up later"
+    );
+}
+
+/// The same file read in one and in many stretches.
+#[test]
+fn stretches_give_what_the_whole_gives() {
+    let mut text = String::new();
+    for i in 0..60_000 {
+        let colour = if i % 3 == 0 { " 0.5 0.5 0.5" } else { "" };
+        text += &format!("v {i} 0 0{colour}\nv {i} 1 0\nv {i} 0 1\nvn 0 1 0\nvt 0.5 {i}\n");
+        match i % 5 {
+            0 => text += "f -3/-1/-1 -2/-1/-1 \\\n-1/-1/-1\n",
+            1 => text += &format!("usemtl m{}\nf -3//-1 -2//-1 -1//-1 -3//-1\n", i % 7),
+            2 => text += "s 4\nf 1 2 3\n",
+            3 => text += "s off\n",
+            _ => text += "f -3/-1 -2/-1 -1/-1\nl 1 2\n",
+        }
+    }
+    assert!(text.len() > 3 * SHORTEST, "{}", text.len());
+    let (whole, parts) = (read(&text, 1).expect("good"), read(&text, 4).expect("good"));
+    assert_eq!(cut(&text, 4).len(), 4);
+    assert_eq!(whole.soup.triangles, parts.soup.triangles);
+    assert_eq!(whole.soup.positions, parts.soup.positions);
+    assert_eq!(whole.soup.normals, parts.soup.normals);
+    assert_eq!(whole.soup.texcoords, parts.soup.texcoords);
+    assert_eq!(whole.soup.polygons, parts.soup.polygons);
+    assert_eq!(whole.soup.colour_of(0), parts.soup.colour_of(0));
+    assert_eq!(whole.soup.colour_of(179_997), parts.soup.colour_of(179_997));
+    assert_eq!(whole.soup.colour_of(179_999), parts.soup.colour_of(179_999));
+    assert_eq!(whole.materials, parts.materials);
+    assert_eq!(
+        (whole.not_faces, whole.dangling),
+        (parts.not_faces, parts.dangling)
+    );
+    let broken = format!("{text}f 1 2 x\n");
+    assert_eq!(read(&broken, 1).map(|_| ()), read(&broken, 4).map(|_| ()));
+}

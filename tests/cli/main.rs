@@ -1,0 +1,10 @@
+//! The program itself: options, files, exit codes.
+
+mod bake;
+mod bench;
+mod compare;
+mod false_colour;
+mod mitsuba_bake;
+mod options;
+mod sky;
+mod tiles;

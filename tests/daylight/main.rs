@@ -1,0 +1,10 @@
+//! The physics against closed forms and reference values; no device.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod irradiance;
+mod reference;
+mod sampling;
+mod sun_position;
+mod tone_curves_and_frames;

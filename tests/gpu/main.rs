@@ -1,0 +1,28 @@
+//! What the device draws against the CPU, closed forms and itself, under validation.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/gpu.rs"]
+mod gpu;
+#[path = "../common/room.rs"]
+mod room;
+#[path = "../common/truth.rs"]
+mod truth;
+
+mod canary;
+mod convergence;
+mod culling;
+mod details;
+mod dome;
+mod furnace;
+mod golden;
+mod irradiance;
+mod lighting;
+mod penumbra;
+mod reflections;
+mod shadow;
+mod sky;
+mod ssao;
+mod steady_frame;
+mod timings;
+mod tone;

@@ -1,0 +1,222 @@
+//! The shadow map against closed forms: a floating square, an open plane, the foot of a wall, a sphere.
+
+use crate::common::Worst;
+use crate::gpu::{Device, Model, Picture, camera, clear_day, matt, on_ground, pixel_ray, settings};
+use glam::{DVec3, UVec2, Vec2};
+use skylight::daylight::sky::Daylight;
+use skylight::frame::FrameSettings;
+use skylight::passes::light::lighting::Show;
+use skylight::passes::sun_shadow::fit;
+use skylight::passes::view::View;
+use skylight::scene::{Camera, Scene};
+
+/// Texels around a shadow's edge that nothing is said about: 2 for the map, 1.5 for the half width of the 3x3 tent
+/// (four bilinear taps), which the normal offset of up to 1.5 texels moves about.
+const EDGE_TEXELS: f64 = 3.5;
+
+/// Texels (across the light) of ground at a wall's foot that may be lit by mistake: the normal offset lifts the receiver by
+/// up to 1.5 texels, the filter reaches 1.5 texels.
+const FOOT_TEXELS: f64 = 3.0;
+
+const SIZE: (u32, u32) = (240, 180);
+
+fn visibility_settings() -> FrameSettings {
+    crate::gpu::showing(Show::Visibility, settings(SIZE.0, SIZE.1))
+}
+
+/// V and the distance along the view axis.
+fn draw(device: &mut Device, scene: &Scene, day: &Daylight, camera: &Camera) -> (Picture, Picture) {
+    let mut frame = device.frame(scene, visibility_settings(), day, camera);
+    let visibility = device.picture_of(&frame);
+    frame.show(Show::Depth).expect("shown");
+    device.draw(&mut frame, day, camera);
+    (visibility, device.picture_of(&frame))
+}
+
+/// Edge of a texel of the map that the frame uses, metres.
+fn texel(scene: &Scene, day: &Daylight, camera: &Camera) -> f64 {
+    let set = visibility_settings();
+    let view = View {
+        camera: *camera,
+        size: UVec2::new(SIZE.0, SIZE.1),
+        jitter: Vec2::ZERO,
+        sharpen: 0.0,
+        window: None,
+    };
+    let sun = day.sun_direction.as_vec3();
+    f64::from(
+        fit::fit(
+            sun,
+            &scene.bounds,
+            &scene.casters(),
+            &view,
+            set.shadow_resolution,
+        )
+        .texel,
+    )
+}
+
+/// Points around p, moved across the light by `radius`; p first.
+fn around(p: DVec3, sun: DVec3, radius: f64) -> impl Iterator<Item = DVec3> {
+    let (right, up) = sun.any_orthonormal_pair();
+    let ring = (0..16).map(move |i| {
+        let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 16.0).sin_cos();
+        p + radius * (right * cos + up * sin)
+    });
+    std::iter::once(p).chain(ring)
+}
+
+/// Whether the square of half width 2 at height 3 is between p and the sun.
+fn under_square(p: DVec3, sun: DVec3) -> bool {
+    let at = p + sun * ((3.0 - p.y) / sun.y);
+    at.x.abs() <= 2.0 && at.z.abs() <= 2.0
+}
+
+/// The ground point of a pixel, where the ground is what is seen there.
+fn ground_point(camera: &Camera, depth: &Picture, pixel: [usize; 2]) -> Option<DVec3> {
+    let p = on_ground(camera, depth.size, pixel)?;
+    let along = (p - camera.eye.as_dvec3()).dot(camera.forward().as_dvec3());
+    let seen = depth.at(pixel[0], pixel[1]).x;
+    (seen > 0.0 && (seen / along - 1.0).abs() < 1e-3).then_some(p)
+}
+
+#[test]
+fn a_square_casts_its_shadow_where_geometry_says() {
+    let mut device = Device::new();
+    let grey = matt(0.5);
+    let scene = Model::default()
+        .ground(12.0, &grey)
+        .square([0.0, 3.0, 0.0], 2.0, &grey)
+        .build();
+    let camera = camera([7.0, 8.0, 14.0], [0.0, 0.0, 0.0]);
+    let mut worst = Worst::new("V against the analytic shadow of a square", 1e-6);
+    let (mut dark, mut skipped) = (0, 0);
+    for (azimuth, elevation) in [(180.0, 80.0), (100.0, 45.0), (250.0, 30.0), (20.0, 55.0)] {
+        let day = clear_day(azimuth, elevation);
+        let sun = day.sun_direction;
+        let margin = EDGE_TEXELS * texel(&scene, &day, &camera);
+        let (visibility, depth) = draw(&mut device, &scene, &day, &camera);
+        for (pixel, v) in visibility.pixels() {
+            let Some(p) = ground_point(&camera, &depth, pixel) else {
+                continue;
+            };
+            let shadow = under_square(p, sun);
+            if around(p, sun, margin).any(|q| under_square(q, sun) != shadow) {
+                skipped += 1;
+                continue;
+            }
+            dark += usize::from(shadow);
+            let expected = if shadow { 0.0 } else { 1.0 };
+            worst.see(v.x - expected, format!("{p}, sun {azimuth} {elevation}"));
+        }
+    }
+    worst.finish();
+    println!("{dark} of them dark, {skipped} skipped at edges");
+    assert!(dark > 2000 && skipped < dark, "{dark} {skipped}");
+}
+
+#[test]
+fn an_open_plane_has_no_acne() {
+    let mut device = Device::new();
+    let scene = Model::default().ground(20.0, &matt(0.5)).build();
+    let mut worst = Worst::new("V of an open plane against 1", 1e-6);
+    for elevation in [5.0, 8.0, 15.0, 30.0, 60.0, 85.0, 90.0] {
+        for (azimuth, eye) in [
+            (180.0, [0.0, 2.0, 18.0]),
+            (75.0, [5.0, 9.0, 9.0]),
+            (311.0, [-3.0, 0.5, -8.0]),
+        ] {
+            let day = clear_day(azimuth, elevation);
+            let camera = camera(eye, [0.0, 0.0, 0.0]);
+            let (visibility, depth) = draw(&mut device, &scene, &day, &camera);
+            for (pixel, v) in visibility.pixels() {
+                if depth.at(pixel[0], pixel[1]).x > 0.0 {
+                    let at = format!("{pixel:?}, sun {azimuth} {elevation}, eye {eye:?}");
+                    worst.see(v.x - 1.0, at);
+                }
+            }
+        }
+    }
+    worst.finish();
+}
+
+#[test]
+fn light_does_not_leak_under_a_wall() {
+    let mut device = Device::new();
+    let grey = matt(0.5);
+    // The wall stands at z = 0 and looks south; the sun is in the north, so the ground south of it is dark.
+    let scene = Model::default()
+        .ground(12.0, &grey)
+        .quad([-6.0, 0.0, 0.0], [12.0, 0.0, 0.0], [0.0, 4.0, 0.0], &grey)
+        .build();
+    let camera = camera([1.0, 3.0, 6.0], [0.0, 0.0, 0.5]);
+    let mut worst = Worst::new("V beyond the leak at a wall's foot", 1e-6);
+    for (azimuth, elevation) in [(0.0, 15.0), (0.0, 45.0), (20.0, 30.0), (340.0, 60.0)] {
+        let day = clear_day(azimuth, elevation);
+        let sun = day.sun_direction;
+        let texel = texel(&scene, &day, &camera);
+        let (visibility, depth) = draw(&mut device, &scene, &day, &camera);
+        let mut leak: f64 = 0.0;
+        for (pixel, v) in visibility.pixels() {
+            let Some(p) = ground_point(&camera, &depth, pixel) else {
+                continue;
+            };
+            // Where the wall meets the ray to the sun; well inside of the wall's other edges.
+            let at = p - sun * (p.z / sun.z);
+            if p.z <= 0.0 || at.x.abs() > 5.0 || at.y > 3.0 {
+                continue;
+            }
+            // Distance from the foot across the light, in texels.
+            let across = at.y * (sun.x * sun.x + sun.z * sun.z).sqrt() / texel;
+            if v.x > 1e-6 {
+                leak = leak.max(across);
+            }
+            if across > FOOT_TEXELS {
+                worst.see(v.x, format!("{p}, sun {azimuth} {elevation}"));
+            }
+        }
+        println!(
+            "sun {azimuth} {elevation}: light leaks {leak:.2} texels (of {texel:.4} m) under the wall"
+        );
+    }
+    worst.finish();
+}
+
+#[test]
+fn the_sunny_side_of_a_sphere_is_lit_and_the_other_dark() {
+    let mut device = Device::new();
+    let scene = Model::default()
+        .sphere([0.0; 3], 1.0, 96, &matt(0.5))
+        .build();
+    let mut worst = Worst::new("V of a sphere where n.l > 0.2 (1) and n.l < 0 (0)", 1e-6);
+    for (azimuth, elevation, eye) in [
+        (180.0, 45.0, [0.0, 1.0, 3.5]),
+        (90.0, 20.0, [1.0, 2.0, 2.5]),
+        (0.0, 70.0, [2.5, -1.0, 2.0]),
+    ] {
+        let day = clear_day(azimuth, elevation);
+        let camera = camera(eye, [0.0; 3]);
+        let (visibility, depth) = draw(&mut device, &scene, &day, &camera);
+        for (pixel, v) in visibility.pixels() {
+            let seen = depth.at(pixel[0], pixel[1]).x;
+            if seen <= 0.0 {
+                continue;
+            }
+            let ray = pixel_ray(&camera, depth.size, pixel);
+            let distance = seen / ray.dot(camera.forward().as_dvec3());
+            let normal = (camera.eye.as_dvec3() + ray * distance).normalize();
+            let n_dot_l = normal.dot(day.sun_direction);
+            // A facet's normal is within 1 degree of the sphere's: 0.02 around the terminator.
+            let expected = match n_dot_l {
+                x if x > 0.2 => 1.0,
+                x if x < -0.02 => 0.0,
+                _ => continue,
+            };
+            worst.see(
+                v.x - expected,
+                format!("n.l {n_dot_l:.3}, sun {azimuth} {elevation}"),
+            );
+        }
+    }
+    worst.finish();
+}

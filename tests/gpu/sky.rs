@@ -1,0 +1,147 @@
+//! The sky cube of the device against `Daylight::radiance` on the CPU, texel by texel.
+
+use crate::common::Worst;
+use crate::gpu::{Cube, Device, HALF_ROUNDOFF};
+use glam::DVec3;
+use skylight::daylight::sky::{Conditions, Daylight, SkyModel};
+use skylight::passes::sky::cube::SkyCube;
+
+const MODELS: [SkyModel; 4] = [
+    SkyModel::Preetham,
+    SkyModel::Hosek,
+    SkyModel::Overcast,
+    SkyModel::CieClear,
+];
+
+/// Smallest step of 16-bit floats, kcd/m²: what storing costs the dark sky of late twilight.
+const HALF_STEP: f64 = 1.0 / 16_777_216.0;
+
+/// Relative to the brightest channel of the texel, beyond the rounding to 16 bits: the shader evaluates in float32
+/// (2^-24), and the chain of exp, pow and XYZ to RGB (factors up to 3.2, differences of them) magnifies that.
+const EVALUATION: f64 = 1e-4;
+
+fn draw(device: &mut Device, cube: &mut SkyCube, daylight: &Daylight) -> Cube {
+    device.run(|rec| {
+        cube.record(rec, daylight);
+    });
+    device.read_cube(cube.image())
+}
+
+/// Error of a texel in units of what is allowed.
+fn error(found: DVec3, daylight: &Daylight, direction: DVec3) -> f64 {
+    let expected = daylight.radiance(direction) * 1e-3;
+    let allowed =
+        expected * HALF_ROUNDOFF + expected.max_element() * EVALUATION + DVec3::splat(HALF_STEP);
+    ((found - expected).abs() / allowed).max_element()
+}
+
+fn compare(cube: &Cube, daylight: &Daylight, what: &str, worst: &mut Worst) {
+    for (direction, found, texel) in cube.iter() {
+        assert!(
+            found.is_finite() && found.min_element() >= 0.0,
+            "{found} in {what}, {texel}"
+        );
+        worst.see(
+            error(found, daylight, direction),
+            format!("{what}, {texel}"),
+        );
+    }
+}
+
+fn conditions() -> Vec<Conditions> {
+    let mut all = Vec::new();
+    for model in MODELS {
+        for turbidity in [2.0, 3.0, 6.0, 10.0] {
+            for sun_elevation_deg in [85.0, 30.0, 0.5, -3.0, -10.0] {
+                for (ground_albedo, sun_azimuth_deg) in [(0.0, 200.0), (0.2, 75.0)] {
+                    all.push(Conditions {
+                        model,
+                        turbidity,
+                        ground_albedo,
+                        sun_azimuth_deg,
+                        sun_elevation_deg,
+                        horizontal_illuminance: None,
+                    });
+                }
+            }
+        }
+    }
+    all
+}
+
+#[test]
+fn every_texel_of_every_sky_is_the_cpus() {
+    let mut device = Device::new();
+    let mut cube = SkyCube::new(&device.context, 32).expect("a cube");
+    let mut worst = Worst::new("sky cubes, errors in units of what is allowed", 1.0);
+    for given in conditions() {
+        let daylight = Daylight::new(&given);
+        let drawn = draw(&mut device, &mut cube, &daylight);
+        compare(&drawn, &daylight, &format!("{given:?}"), &mut worst);
+    }
+    worst.finish();
+}
+
+#[test]
+fn a_cube_of_the_renderers_size_has_texels_near_horizon_and_sun() {
+    let mut device = Device::new();
+    let mut cube = SkyCube::new(&device.context, 256).expect("a cube");
+    let mut worst = Worst::new("sky cubes of 256 x 256 x 6", 1.0);
+    for model in MODELS {
+        let given = Conditions {
+            model,
+            sun_elevation_deg: 20.0,
+            ..Conditions::default()
+        };
+        let daylight = Daylight::new(&given);
+        let drawn = draw(&mut device, &mut cube, &daylight);
+        compare(&drawn, &daylight, &format!("{model:?}"), &mut worst);
+    }
+    worst.finish();
+}
+
+#[test]
+fn a_sky_is_drawn_again_only_when_it_changes() {
+    let mut device = Device::new();
+    let mut cube = SkyCube::new(&device.context, 16).expect("a cube");
+    let days = [
+        crate::gpu::clear_day(180.0, 40.0),
+        crate::gpu::clear_day(181.0, 40.0),
+    ];
+    let drawn: Vec<bool> = [0, 0, 1, 1, 0]
+        .iter()
+        .map(|&i| device.run(|rec| cube.record(rec, &days[i]).is_new))
+        .collect();
+    assert_eq!(drawn, [true, false, true, false, true]);
+}
+
+/// The guard holds on the device too: no input gives a texel that is not finite or negative.
+#[test]
+fn no_input_gives_a_bad_texel() {
+    let mut device = Device::new();
+    let mut cube = SkyCube::new(&device.context, 32).expect("a sky cube");
+    let mut values = 0u64;
+    for model in &MODELS {
+        for turbidity in [-5.0, 0.0, 1.0, 1.65, 2.0, 5.0, 10.0, 50.0] {
+            for elevation in (-18..=18).map(|step| f64::from(step) * 5.0) {
+                let daylight = Daylight::new(&Conditions {
+                    model: *model,
+                    turbidity,
+                    sun_elevation_deg: elevation,
+                    // Toward a texel of the row above the horizon, where the glow of a low sun leaves the gamut.
+                    sun_azimuth_deg: 1.79,
+                    ..Conditions::default()
+                });
+                for texel in draw(&mut device, &mut cube, &daylight).texels {
+                    assert!(
+                        texel.is_finite() && texel.min_element() >= 0.0,
+                        "{model:?} {turbidity} {elevation}: {texel}"
+                    );
+                    values += 3;
+                }
+            }
+        }
+    }
+    println!("{values} values are finite and not negative");
+    assert!(values > 1_000_000);
+}

@@ -1,0 +1,4 @@
+//! The structure of the crate: imports, `unsafe`, the map of the lecture.
+
+mod lecture;
+mod rooms;

@@ -1,0 +1,147 @@
+//! The picture that converges against a path tracer's, under exactly the same light (`../shared/truth`), edges included.
+//!
+//! 64 samples, unless SKYLIGHT_TRUTH_SAMPLES says otherwise. The truth has about 1 % of noise of its own in each pixel of sky
+//! light; means over many pixels have none of it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::truth::{Exr, VIEWS};
+use serde_json::Value;
+use skylight::compare::{Picture, Referred, Statistics, eroded, exposure_of, flip};
+
+const SAMPLES: u32 = 64;
+
+/// Bounds of every number of samples.
+const MEAN_RATIO: f64 = 0.01;
+const FLIP: f64 = 0.03;
+/// Bounds of 64 samples.
+const RMSE_OF_FEW: f64 = 0.03;
+const MEDIAN_OF_FEW: f64 = 0.015;
+/// Bounds of 256 samples. Of the median, 1.18 % are the truth's own under the low sun: that of 1 024 samples.
+const RMSE: f64 = 0.03;
+const MEDIAN: f64 = 0.012;
+
+fn samples() -> u32 {
+    match std::env::var("SKYLIGHT_TRUTH_SAMPLES") {
+        Ok(text) => text.parse().expect("SKYLIGHT_TRUTH_SAMPLES is a number"),
+        Err(_) => SAMPLES,
+    }
+}
+
+/// A view of the truth, and ours.
+struct Compared {
+    folder: PathBuf,
+    name: &'static str,
+    reference: Picture,
+    ours: Picture,
+    /// Geometry one pixel away from the background.
+    inside: Vec<bool>,
+}
+
+fn picture(exr: &Exr) -> Picture {
+    let [r, g, b] = ["R", "G", "B"].map(|name| exr.channel(name));
+    Picture {
+        size: exr.size,
+        rgb: (0..r.len()).map(|i| [r[i], g[i], b[i]]).collect(),
+        referred: Referred::Scene,
+    }
+}
+
+impl Compared {
+    fn new(shared: &Path, name: &'static str) -> Self {
+        let folder = shared.join("truth");
+        let read = |what: &str| Exr::read(&folder.join(format!("{name}_{what}.exr")));
+        let json = fs::read(folder.join(format!("{name}.json"))).expect("the view");
+        let view: Value = serde_json::from_slice(&json).expect("JSON");
+        let samples = samples().to_string();
+        let further = ["--visibility", "dome", "--samples", &samples];
+        let aov = read("aov");
+        let geometry: Vec<bool> = aov.channel("depth.T").iter().map(|d| *d > 0.0).collect();
+        Self {
+            name,
+            reference: picture(&read("direct")),
+            ours: picture(&crate::truth::render(shared, &view, &further)),
+            inside: eroded(aov.size, &geometry),
+            folder,
+        }
+    }
+
+    fn statistics(&self, mask: &[bool]) -> Statistics {
+        Statistics::new(&self.reference, &self.ours, mask).expect("figures")
+    }
+
+    /// FLIP of the tone-mapped pictures.
+    fn flip(&self) -> f64 {
+        let exposure = exposure_of(&self.reference, &self.inside);
+        let shown = |p: &Picture| p.masked(&self.inside).exposed(exposure);
+        let map = flip::ldr(&shown(&self.reference), &shown(&self.ours));
+        let kept = map.iter().zip(&self.inside).filter(|(_, kept)| **kept);
+        flip::mean(&kept.map(|(v, _)| *v).collect::<Vec<_>>())
+    }
+
+    /// Pixels whose visible share of the sky is of `range`, and which look up (or anywhere).
+    fn region(&self, range: std::ops::Range<f32>, up: bool) -> Vec<bool> {
+        let read = |what: &str| Exr::read(&self.folder.join(format!("{}_{what}.exr", self.name)));
+        let (share, aov) = (read("ao_inf"), read("aov"));
+        let (share, height) = (share.channel("Y"), aov.channel("normal.Y"));
+        let of = |i: usize| range.contains(&share[i]) && (!up || height[i] > 0.999);
+        eroded(aov.size, &(0..share.len()).map(of).collect::<Vec<_>>())
+    }
+}
+
+#[test]
+fn every_view_converges_to_the_path_tracers() {
+    let Some(shared) = crate::common::shared() else {
+        return;
+    };
+    let is_few = samples() < 256;
+    let (rmse, median) = if is_few {
+        (RMSE_OF_FEW, MEDIAN_OF_FEW)
+    } else {
+        (RMSE, MEDIAN)
+    };
+    let mut faults = Vec::new();
+    for name in VIEWS {
+        let compared = Compared::new(&shared, name);
+        let (s, flip) = (compared.statistics(&compared.inside), compared.flip());
+        println!(
+            "{name:10} {} samples: ratio {:.4} RMSE/mean {:.4} median {:.4} p95 {:.4} FLIP {flip:.4}",
+            samples(),
+            s.mean_ratio,
+            s.rmse_over_mean,
+            s.median,
+            s.p95
+        );
+        for (what, value, limit) in [
+            ("mean ratio - 1", (s.mean_ratio - 1.0).abs(), MEAN_RATIO),
+            ("RMSE/mean", s.rmse_over_mean, rmse),
+            ("median", s.median, median),
+            ("FLIP", flip, FLIP),
+        ] {
+            if value.is_nan() || value > limit {
+                faults.push(format!("{name}: {what} is {value:.4}, allowed {limit}"));
+            }
+        }
+        if name == "colonnade" {
+            // Floor and columns that see little of the sky, and ground that sees nearly all of it.
+            let under = compared.region(0.0..0.4, false);
+            let open = compared.region(0.97..1.1, true);
+            let of = |mask: &[bool]| {
+                (
+                    mask.iter().filter(|m| **m).count(),
+                    compared.statistics(mask).mean_ratio,
+                )
+            };
+            let [(n, a), (m, b)] = [of(&under), of(&open)];
+            println!("{name:10} under its roof {a:.4} of {n} pixels, open ground {b:.4} of {m}");
+            assert!(n > 1000 && m > 1000, "{n} {m}");
+            if (a - 1.0).abs() > 0.01 || (b - 1.0).abs() > 0.003 {
+                faults.push(format!(
+                    "{name}: bias under the roof {a}, on open ground {b}"
+                ));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{faults:#?}");
+}

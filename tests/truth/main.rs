@@ -1,0 +1,9 @@
+//! Pictures against path-traced ones.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/truth.rs"]
+mod truth;
+
+mod converged;
+mod preview;

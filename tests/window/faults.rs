@@ -1,0 +1,159 @@
+//! A driver that fails, made with `SKYLIGHT_FAULT`: the program says so in one line and ends, or its window goes on; a file
+//! that was there stays as it was.
+
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+use crate::running::{Running, difference, program};
+use crate::x::until;
+
+/// A small picture, quickly.
+const SMALL: [&str; 6] = [
+    "--size",
+    "64x36",
+    "--irradiance-samples",
+    "16",
+    "--samples",
+    "2",
+];
+
+fn render(folder: &Path, output: &str, fault: &str) -> Output {
+    program(folder)
+        .args(["render", "-o", output])
+        .args(SMALL)
+        .env("SKYLIGHT_FAULT", fault)
+        .output()
+        .expect("the program starts")
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("the folder");
+    let mut names: Vec<String> = entries
+        .map(|e| {
+            e.expect("an entry")
+                .file_name()
+                .to_string_lossy()
+                .into_owned()
+        })
+        .collect();
+    names.sort();
+    names
+}
+
+/// Numbers of calls to fail at: the first ones, then fewer and fewer.
+const NUMBERS: [u32; 8] = [1, 2, 3, 5, 9, 17, 33, 65];
+
+#[test]
+fn whatever_call_fails_render_says_so_and_loses_nothing() {
+    let cases = [
+        ("memory", "out-of-device-memory", "out of device memory"),
+        ("memory", "out-of-host-memory", "out of host memory"),
+        ("buffer", "out-of-host-memory", "out of host memory"),
+        ("image", "out-of-device-memory", "out of device memory"),
+        ("pipeline", "out-of-host-memory", "out of host memory"),
+        ("record", "out-of-device-memory", "out of device memory"),
+        ("submit", "device-lost", "the device was lost"),
+        ("wait", "device-lost", "the device was lost"),
+        ("wait", "out-of-host-memory", "out of host memory"),
+    ];
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    fs::write(folder.path().join("old.png"), "old").expect("written");
+    let mut struck = 0;
+    for (call, answer, said) in cases {
+        for number in NUMBERS {
+            let fault = format!("{call}@{number}={answer}");
+            let output = render(folder.path(), "old.png", &fault);
+            let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+            if output.status.success() {
+                // There are not so many calls of this kind.
+                assert!(number > 1, "{fault} did not strike");
+                fs::write(folder.path().join("old.png"), "old").expect("written");
+                break;
+            }
+            struck += 1;
+            assert_eq!(output.status.code(), Some(1), "{fault}: {stderr}");
+            assert_eq!(stderr.lines().count(), 1, "{fault}: {stderr}");
+            assert!(
+                stderr.starts_with("error: ") && stderr.contains(said),
+                "{fault}: {stderr}"
+            );
+            let remedy = ["try a smaller --size", "--device"];
+            assert!(remedy.iter().any(|r| stderr.contains(r)), "{stderr}");
+            assert!(output.stdout.is_empty(), "{fault}");
+            let old = fs::read(folder.path().join("old.png")).expect("the old file");
+            assert_eq!(
+                (names(folder.path()).len(), old),
+                (1, b"old".to_vec()),
+                "{fault}"
+            );
+        }
+    }
+    println!("{struck} faults, each one line and exit code 1");
+    assert!(struck >= 35, "only {struck} faults struck");
+}
+
+#[test]
+fn a_failing_device_of_an_exr_leaves_no_file() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let output = render(folder.path(), "new.exr", "submit@4=device-lost");
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(names(folder.path()), Vec::<String>::new());
+}
+
+#[test]
+fn a_fault_that_is_none_is_refused() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let output = render(folder.path(), "new.png", "submit@x=device-lost");
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{stderr}");
+    assert!(stderr.contains("CALL@NUMBER=ANSWER"), "{stderr}");
+}
+
+#[test]
+fn a_window_lives_on_without_its_surface() {
+    let view = ["--size", "320x180", "--samples", "2", "--validate"];
+    let sound = Running::bare(&view);
+    let expected = sound.picture();
+    sound.close_well();
+    for fault in [
+        "surface@1=surface-lost",
+        "acquire@3=surface-lost",
+        "present@3=surface-lost",
+        "acquire@4=out-of-date",
+        "present@4=out-of-date",
+    ] {
+        let variables = [("SKYLIGHT_FAULT", Path::new(fault))];
+        let running = Running::bare_with(&view, &variables);
+        // A busy machine may rest on the way: on what the window shows while it loads.
+        until("the picture of the sound window", || {
+            let flip = difference(&expected, &running.picture());
+            println!("{fault}: FLIP against the sound window {flip:.5}");
+            (flip < 0.01).then_some(())
+        });
+        // It still follows.
+        running.after(|d| d.typed('3'));
+        running.close_well();
+    }
+}
+
+#[test]
+fn a_window_whose_device_is_lost_ends_with_one_line_and_is_resumed() {
+    // While the scene is uploaded, with the first frames, and when all is shown.
+    for (number, is_open) in [(2, false), (6, false), (40, true)] {
+        let state = tempfile::tempdir().expect("a scratch folder");
+        let fault = format!("submit@{number}=device-lost");
+        let variables = [
+            ("SKYLIGHT_FAULT", Path::new(&fault)),
+            ("XDG_STATE_HOME", state.path()),
+        ];
+        let running = Running::with(&["--size", "320x180", "--samples", "64"], &variables);
+        let output = running.ended();
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{fault}: {stderr}");
+        assert_eq!(stderr.lines().count(), 1, "{fault}: {stderr}");
+        assert!(stderr.contains("the device was lost"), "{fault}: {stderr}");
+        let kept = state.path().join("skylight").join("bundled.toml");
+        assert!(kept.is_file() || !is_open, "settings are kept for --resume");
+    }
+}

@@ -1,0 +1,58 @@
+//! R in the window: shaders from their sources again, errors on the screen, the last good ones stay.
+
+use std::fs;
+use std::path::Path;
+use std::thread::sleep;
+use std::time::Duration;
+
+use crate::running::{Running, difference};
+
+const STAGE: &str = "tone_map.frag";
+
+/// The sources of the checkout, to be changed.
+fn copied() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders_glsl");
+    fs::create_dir(folder.path().join("include")).expect("a folder");
+    for part in ["", "include"] {
+        for entry in fs::read_dir(sources.join(part)).expect("sources") {
+            let path = entry.expect("an entry").path();
+            let name = path.file_name().expect("a name");
+            if path.is_file() {
+                fs::copy(&path, folder.path().join(part).join(name)).expect("a copy");
+            }
+        }
+    }
+    folder
+}
+
+#[test]
+fn a_changed_shader_is_seen_and_a_broken_one_is_told() {
+    let folder = copied();
+    let file = folder.path().join(STAGE);
+    let good = fs::read_to_string(&file).expect("the source");
+    let variables = [("SKYLIGHT_SHADERS", folder.path())];
+    let words = ["--size", "320x180", "--samples", "1", "--validate"];
+    let running = Running::bare_with(&words, &variables);
+    let before = running.picture();
+
+    // As it is compiled in: the same picture.
+    running.display.typed('r');
+    sleep(Duration::from_secs(2));
+    assert!(difference(&before, &running.picture()) < 0.01);
+
+    let swapped = good.replace("display = vec4(c, 1.0);", "display = vec4(c.bgr, 1.0);");
+    assert_ne!(good, swapped, "{STAGE} has changed: adapt this test");
+    fs::write(&file, &swapped).expect("written");
+    let red = running.after(|d| d.typed('r'));
+    assert!(difference(&before, &red) > 0.05, "colours are swapped");
+
+    fs::write(&file, good.replace("display =", "no such thing =")).expect("written");
+    let told = running.after(|d| d.typed('r'));
+    // The message lies over the picture, which is still the swapped one.
+    assert!(difference(&red, &told) < difference(&before, &told));
+    let output = running.close();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains(STAGE) && said.contains("error"), "{said}");
+}

@@ -1,0 +1,12 @@
+//! The window on a virtual display.
+
+#[path = "../common/running.rs"]
+mod running;
+#[path = "../common/x.rs"]
+mod x;
+
+mod faults;
+#[cfg(feature = "hot-reload")]
+mod hot_reload;
+mod life;
+mod rest;

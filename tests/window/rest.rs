@@ -1,0 +1,164 @@
+//! The real window when nothing moves: from ambient occlusion it goes over to the sky's true visibility, without a jump.
+
+use std::sync::{Mutex, PoisonError};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use crate::running::{Running, difference, program};
+use crate::x::{keysym, until};
+use skylight::compare::{Picture, read};
+
+/// Under a porch, where ambient occlusion lets in too much sky.
+const VIEW: [&str; 8] = [
+    "--size",
+    "160x90",
+    "--dome-size",
+    "256",
+    "--camera",
+    "porch",
+    "--ev100",
+    "13",
+];
+
+/// One window at a time: what a loaded machine draws slowly seems to stand still.
+static ALONE: Mutex<()> = Mutex::new(());
+
+/// Frames averaged at rest.
+const FRAMES: &str = "32";
+
+/// A part of the picture that shows nothing but sky: first and last pixel.
+const SKY: [[usize; 2]; 2] = [[27, 24], [31, 28]];
+
+/// Mean light of the display, 0..1.
+fn brightness(picture: &Picture) -> f64 {
+    picture
+        .luminance()
+        .iter()
+        .map(|l| f64::from(*l))
+        .sum::<f64>()
+        / picture.rgb.len() as f64
+}
+
+/// A picture by `render`.
+fn rendered(words: &[&str]) -> Picture {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("a.png");
+    let mut command = program(folder.path());
+    command
+        .arg("render")
+        .args(VIEW)
+        .args(words)
+        .arg("-o")
+        .arg(&file);
+    let output = command.output().expect("the program starts");
+    let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{complaint}");
+    read(&file).expect("a picture")
+}
+
+/// Mean colour of the sky: of the light alone, whatever hides it from the surfaces.
+fn sky(picture: &Picture) -> [f32; 3] {
+    let [[left, top], [right, bottom]] = SKY;
+    let pixels = (top..=bottom).flat_map(|y| (left..=right).map(move |x| y * picture.size[0] + x));
+    let sum = pixels.fold([0.0; 3], |sum: [f32; 3], i| {
+        std::array::from_fn(|c| sum[c] + picture.rgb[i][c])
+    });
+    sum.map(|v| v / ((right - left + 1) * (bottom - top + 1)) as f32)
+}
+
+/// Whether two pictures show the same light.
+fn same_light(a: &Picture, b: &Picture) -> bool {
+    let (a, b) = (sky(a), sky(b));
+    (0..3).all(|c| (a[c] - b[c]).abs() < 0.002)
+}
+
+#[test]
+fn at_rest_the_window_converges_to_the_dome_without_a_jump() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let running = Running::bare(&[&VIEW[..], &["--samples", FRAMES]].concat());
+    let shown = || running.display.picture(running.window, None);
+    // Half an hour on and back: the light of the command line again, from the first preview on.
+    let first = until("a picture", || {
+        let now = shown();
+        now.rgb.iter().any(|p| *p != now.rgb[0]).then_some(now)
+    });
+    running.display.typed('h');
+    until("another light", || {
+        (!same_light(&first, &shown())).then_some(())
+    });
+    running.display.key('H'.into(), true);
+    // Everything that is shown until nothing changes for a while.
+    let (mut seen, mut changed) = (Vec::<Picture>::new(), Instant::now());
+    while changed.elapsed() < Duration::from_secs(3) {
+        let now = shown();
+        if seen.last() != Some(&now) {
+            seen.push(now);
+            changed = Instant::now();
+        }
+        sleep(Duration::from_millis(10));
+    }
+    let last = seen.last().expect("a picture");
+    let other = seen.iter().rposition(|picture| !same_light(picture, last));
+    let seen = &seen[other.map_or(0, |i| i + 1)..];
+    let list: Vec<f64> = seen.iter().map(brightness).collect();
+    let steps = list.windows(2).map(|w| (w[1] / w[0] - 1.0).abs());
+    let largest = steps.fold(0.0, f64::max);
+    let whole = list[list.len() - 1] / list[0] - 1.0;
+    let dome = rendered(&["--samples", FRAMES, "--dome-directions", "4"]);
+    let converged = rendered(&["--samples", "256", "--visibility", "dome"]);
+    let ssao = rendered(&["--samples", "15", "--visibility", "ssao"]);
+    let [to_dome, to_converged, to_ssao, from_ssao] = [
+        (&dome, last),
+        (&converged, last),
+        (&ssao, last),
+        (&ssao, &seen[0]),
+    ]
+    .map(|(a, b)| difference(a, b));
+    println!(
+        "{} pictures from brightness {:.3}, in all {:.1} %, largest step {:.2} %; FLIP at last to the dome of as many samples \
+         {to_dome:.4}, of 256 {to_converged:.4}, to ambient occlusion {to_ssao:.4}; that at first {from_ssao:.4}",
+        seen.len(),
+        list[0],
+        100.0 * whole,
+        100.0 * largest
+    );
+    // It begins with ambient occlusion..
+    assert!(from_ssao < 0.5 * to_ssao, "{from_ssao} {to_ssao}");
+    // ..from which the porch gets much darker, but never at once: pictures of the screen may fall between a few frames.
+    assert!(seen.len() > 8 && whole < -0.05, "{} {whole}", seen.len());
+    assert!(largest < 0.03, "{largest}: {list:?}");
+    // What is shown in the end is what a file of as many samples shows, with nothing left of the beginning.
+    assert!(to_dome < 0.003, "{to_dome}");
+    assert!(to_converged < 0.4 * to_ssao, "{to_converged} {to_ssao}");
+    running.close_well();
+}
+
+#[test]
+fn who_asks_for_ambient_occlusion_keeps_it() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let kept = ["--visibility", "ssao", "--samples", FRAMES];
+    let running = Running::bare(&[&VIEW[..], &kept].concat());
+    let shown = running.picture();
+    let ssao = rendered(&kept);
+    let flip = difference(&ssao, &shown);
+    println!("FLIP of the window against render with ambient occlusion: {flip:.4}");
+    assert!(flip < 0.01, "{flip}");
+    running.close_well();
+}
+
+#[test]
+fn at_rest_the_panel_tells_of_the_last_frame() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let running = Running::new(&["--size", "640x360", "--samples", "3"]);
+    until("the scene", || {
+        (running.display.title(running.window) != "skylight").then_some(())
+    });
+    let rested = running.picture();
+    // Away and back: laid out anew, with nothing more to draw.
+    running.after(|display| display.key(keysym::TAB, false));
+    let again = running.after(|display| display.key(keysym::TAB, false));
+    let apart = difference(&rested, &again);
+    println!("FLIP of the panel at rest against the panel laid out anew: {apart:.6}");
+    assert!(rested == again, "{apart}");
+    running.close_well();
+}

@@ -14,18 +14,20 @@ use crate::daylight::sky::Daylight;
 use crate::daylight::spectrum::LUMINOUS_EFFICACY;
 use crate::daylight::sun_position::SunPosition;
 use crate::daylight::sunlight::LIMB_DARKENING;
-use crate::daylight::tone_curve::REINHARD_WHITE;
 use crate::error::Result;
 use crate::frame::{FrameSettings, Sampling};
 use crate::gpu::{Context, ContextOptions, Optional};
 use crate::passes::dome::gather::DomeSettings;
-use crate::passes::light::lighting::{LightingSettings, Precision, Shadows, Show};
+use crate::passes::light::lighting::{Precision, Show};
 use crate::passes::occlusion::ssao::SsaoSettings;
-use crate::passes::picture::tone_map::{Scale, ToneSettings};
+use crate::passes::picture::tone_map::Scale;
 use crate::passes::sky::irradiance::IrradianceSettings;
 use crate::passes::sky::route::CubeRoute;
 use crate::scene::{self, Camera, LoadOptions, Loaded, Scene};
 use crate::settings::{Exposure, Fresnel, Options, Penumbra, Preset, Settings};
+
+/// Edge of a face of the sky cube with `--preset lecture`, texels.
+const LECTURE_SKY_EDGE: u32 = 512;
 
 /// How a scene is to be loaded.
 pub fn load_options(options: &Options) -> LoadOptions {
@@ -182,50 +184,37 @@ impl Job {
     /// The settings of the frame.
     pub fn frame_settings(&self, show: Show, precision: Precision) -> FrameSettings {
         let s = &self.settings;
-        let ssao = SsaoSettings {
-            radius: s.ao_radius as f32,
-            downscale: s.ao_resolution.downscale(s.size.height),
-            ..SsaoSettings::default()
-        };
-        FrameSettings {
+        let mut set = FrameSettings {
             size: UVec2::new(s.size.width, s.size.height),
             samples: s.samples,
             sampling: self.sampling(),
-            sky_edge: self.sky_edge(),
             irradiance: self.irradiance_settings(),
             shadow_resolution: s.shadow_size,
-            ssao,
-            lighting: LightingSettings {
-                show,
-                precision,
-                specular_scale: s.specular as f32,
-                limb_darkening: if s.limb_darkening {
-                    LIMB_DARKENING as f32
-                } else {
-                    0.0
-                },
-                has_albedo: true,
-                occlusion_downscale: ssao.pixels_per_texel(),
-                fresnel: s.fresnel == Fresnel::Schlick,
-                shadows: Shadows {
-                    cascades: 0,
-                    penumbrae: s.penumbra == Penumbra::Sun,
-                },
-                mirrors: s.mirrors,
-            },
-            tone: ToneSettings {
-                show,
-                curve: s.tone_curve,
-                scale: self.scale(),
-                white: REINHARD_WHITE,
-                gamma: s.gamma,
-                depth_scale: f64::from(self.scene.bounds.diagonal()).max(1e-3),
-                false_colour: s
-                    .false_colour
-                    .filter(|quantity| show.holds(*quantity))
-                    .map(|quantity| s.false_colour_range.unwrap_or(quantity.daytime())),
-            },
+            ..FrameSettings::default()
+        };
+        if s.preset == Some(Preset::Lecture) {
+            set.sky_edge = LECTURE_SKY_EDGE;
         }
+        set.lighting.precision = precision;
+        set.lighting.specular_scale = s.specular as f32;
+        if s.limb_darkening {
+            set.lighting.limb_darkening = LIMB_DARKENING as f32;
+        }
+        set.lighting.fresnel = s.fresnel == Fresnel::Schlick;
+        set.lighting.shadows.penumbrae = s.penumbra == Penumbra::Sun;
+        set.lighting.mirrors = s.mirrors;
+        set.tone.curve = s.tone_curve;
+        set.tone.scale = self.scale();
+        set.tone.gamma = s.gamma;
+        set.tone.depth_scale = f64::from(self.scene.bounds.diagonal()).max(1e-3);
+        let colours = s.false_colour.filter(|quantity| show.holds(*quantity));
+        let range = colours.map(|quantity| s.false_colour_range.unwrap_or(quantity.daytime()));
+        set.tone.false_colour = range;
+        set.showing(show).with_occlusion(SsaoSettings {
+            radius: s.ao_radius as f32,
+            downscale: s.ao_resolution.downscale(s.size.height),
+            ..SsaoSettings::default()
+        })
     }
 
     fn sampling(&self) -> Sampling {
@@ -238,14 +227,6 @@ impl Job {
                 map_edge: s.dome_size,
                 seed: s.seed,
             },
-        }
-    }
-
-    fn sky_edge(&self) -> u32 {
-        if self.settings.preset == Some(Preset::Lecture) {
-            512
-        } else {
-            256
         }
     }
 

@@ -5,10 +5,13 @@ use std::sync::Arc;
 use glam::UVec2;
 
 use super::{Sampling, Visibility};
+use crate::daylight::exposure::KEY;
+use crate::daylight::tone_curve::{REINHARD_WHITE, ToneCurve};
 use crate::gpu::{Context, Result};
-use crate::passes::light::lighting::LightingSettings;
+use crate::passes::dome::specular::Mirrors;
+use crate::passes::light::lighting::{LightingSettings, Precision, Shadows, Show};
 use crate::passes::occlusion::ssao::SsaoSettings;
-use crate::passes::picture::tone_map::ToneSettings;
+use crate::passes::picture::tone_map::{Scale, ToneSettings};
 use crate::passes::sky::irradiance::IrradianceSettings;
 use crate::passes::sun_shadow::cascades;
 use crate::passes::sun_shadow::map::Shadow;
@@ -37,7 +40,58 @@ pub struct FrameSettings {
     pub tone: ToneSettings,
 }
 
+impl Default for FrameSettings {
+    /// One frame of 1280x720 pixels, with automatic exposure.
+    fn default() -> Self {
+        let (show, ssao) = (Show::Beauty, SsaoSettings::default());
+        Self {
+            size: UVec2::new(1280, 720),
+            samples: 1,
+            sampling: Sampling::default(),
+            sky_edge: 256,
+            irradiance: IrradianceSettings::default(),
+            shadow_resolution: 2048,
+            ssao,
+            lighting: LightingSettings {
+                show,
+                precision: Precision::Half,
+                specular_scale: 1.0,
+                limb_darkening: 0.0,
+                has_albedo: true,
+                occlusion_downscale: ssao.pixels_per_texel(),
+                fresnel: false,
+                shadows: Shadows::default(),
+                mirrors: Mirrors::default(),
+            },
+            tone: ToneSettings {
+                show,
+                curve: ToneCurve::default(),
+                scale: Scale::Average(KEY),
+                white: REINHARD_WHITE,
+                gamma: None,
+                depth_scale: 1.0,
+                false_colour: None,
+            },
+        }
+    }
+}
+
 impl FrameSettings {
+    /// These settings, to show something else.
+    #[must_use]
+    pub fn showing(mut self, show: Show) -> Self {
+        (self.lighting.show, self.tone.show) = (show, show);
+        self
+    }
+
+    /// These settings with other ambient occlusion.
+    #[must_use]
+    pub fn with_occlusion(mut self, ssao: SsaoSettings) -> Self {
+        self.lighting.occlusion_downscale = ssao.pixels_per_texel();
+        self.ssao = ssao;
+        self
+    }
+
     /// Whether frames are averaged by [`crate::passes::picture::accumulate::Accumulate`].
     pub(super) fn averages(&self) -> bool {
         self.samples > 1 && self.sampling.visibility == Visibility::Ssao

@@ -59,13 +59,7 @@ fn glossy_scene() -> Scene {
 
 /// Ambient occlusion at half resolution, so that every term differs from pixel to pixel.
 fn occluded(width: u32, height: u32) -> FrameSettings {
-    let mut set = settings(width, height);
-    set.ssao = SsaoSettings {
-        downscale: 2,
-        ..SsaoSettings::default()
-    };
-    set.lighting.occlusion_downscale = set.ssao.pixels_per_texel();
-    set
+    settings(width, height).with_occlusion(SsaoSettings::default())
 }
 
 /// Sum of the addends against the picture; `unit` names one kcd/m² in the numbers given.

@@ -24,7 +24,7 @@
 //! - [`passes`]: one file a pass; [`frame`] owns them.
 //! - [`lecture`]: every formula of the slides with its function, shader and test.
 //! - [`compare`]: two pictures, how far apart: radiometric errors and FLIP.
-//! - [`cli`] and [`settings`]: text to settings. [`commands`]: drivers of the one frame. [`output`]: files, whole or not at all.
+//! - [`cli`] and [`options`]: text to options. [`commands`]: drivers of the one frame. [`output`]: files, whole or not at all.
 //!
 //! Imports run one way: commands → frame → passes → gpu, scene, daylight; the last three import nothing of ours.
 //!
@@ -50,7 +50,7 @@ pub mod error;
 pub mod frame;
 pub mod gpu;
 pub mod lecture;
+pub mod options;
 pub mod output;
 pub mod passes;
 pub mod scene;
-pub mod settings;

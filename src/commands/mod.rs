@@ -1,4 +1,4 @@
-//! The faces of the program: drivers of the same [`Frame`](crate::frame::Frame).
+//! The commands of the program: drivers of the same [`Frame`](crate::frame::Frame).
 
 mod bake;
 mod bench;
@@ -21,14 +21,6 @@ mod startup;
 mod tiled;
 pub mod view;
 
-pub use bake::{BakeWishes, Layout, Map};
-pub use bench::BenchWishes;
-pub use compare::CompareWishes;
-pub use motion::Motion;
-pub use sky::SkyWishes;
-
-use std::path::PathBuf;
-
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::Command;
@@ -44,31 +36,22 @@ pub fn run(command: Command) -> Result<()> {
             scene,
             output,
             options,
-        } => render::run(scene.as_deref(), &output, *options),
+        } => render::run(scene.as_deref(), &output, &options),
         Command::View {
             scene,
             resume,
             options,
-        } => view::run(scene.as_deref(), resume, *options),
-        Command::Bench { wishes, options } => bench::run(&wishes, *options),
-        Command::Sky { wishes, options } => sky::run(&wishes, *options),
-        Command::Bake { wishes, options } => bake::run(&wishes, *options),
-        Command::Compare { wishes } => compare::run(&wishes),
+        } => view::run(scene.as_deref(), resume, options),
+        Command::Bench { args, options } => bench::run(&args, options),
+        Command::Sky { args, options } => sky::run(&args, options),
+        Command::Bake { args, options } => bake::run(&args, options),
+        Command::Compare { args } => compare::run(&args),
         Command::Info {
             startup: true,
             device,
             without,
         } => startup::run(device, without),
         Command::Info { without, .. } => info::run(without.as_slice()),
-    }
-}
-
-/// A file name that ends in `.svg`.
-fn svg_path(text: &str) -> std::result::Result<PathBuf, String> {
-    let path = PathBuf::from(text);
-    match path.extension() {
-        Some(extension) if extension.eq_ignore_ascii_case("svg") => Ok(path),
-        _ => Err("the name must end in .svg".to_owned()),
     }
 }
 

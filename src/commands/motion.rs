@@ -2,25 +2,13 @@
 
 use std::borrow::Cow;
 
-use clap::ValueEnum;
 use glam::Quat;
 
 use super::job::Job;
 use super::light::conditions;
+use crate::cli::Motion;
 use crate::daylight::sky::Daylight;
 use crate::scene::Camera;
-
-/// What moves while whole frames are timed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum Motion {
-    /// Nothing: every frame shows the same.
-    None,
-    /// The camera, every frame: nothing of the view can be reused.
-    #[default]
-    Camera,
-    /// Camera and sun, every frame: sky, irradiance and shadow map begin anew.
-    Sun,
-}
 
 /// Turn of the camera about its target between two frames, radians: a slow walk around.
 const CAMERA_STEP: f32 = 0.002;

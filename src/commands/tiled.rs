@@ -20,10 +20,10 @@ use crate::daylight::false_colour::Range;
 use crate::error::Result;
 use crate::frame::{Frame, FrameSettings, Visibility};
 use crate::gpu::{Context, Image, Pixels, Recorder, Timing, read_back};
+use crate::options::OptionsError;
 use crate::output::{Encoding, LayerKind, PngRows, write_exr_rows};
 use crate::passes::light::lighting::{Precision, Show};
 use crate::passes::picture::tone_map::Scale;
-use crate::settings::{Exposure, SettingsError};
 
 /// Draws tiles of the picture of a job.
 pub(super) struct Tiled<'j> {
@@ -58,7 +58,7 @@ impl<'j> Tiled<'j> {
         };
         if job.settings.noise.is_some() {
             let what = "--noise is judged on whole pictures, not in tiles; say how many --samples, or choose a smaller --size";
-            return Err(SettingsError(what.to_owned()).into());
+            return Err(OptionsError(what.to_owned()).into());
         }
         let occludes = job.settings.visibility == Visibility::Ssao && job.settings.ao_radius > 0.0;
         let (size, coarser, window) = plan.overview(occludes);
@@ -198,7 +198,7 @@ impl<'j> Tiled<'j> {
         let settings = &self.job.settings;
         if settings.false_colour.is_some() {
             let what = "--false-colour draws its legend on whole pictures; choose a smaller --size, or a larger --tile";
-            return Err(SettingsError(what.to_owned()).into());
+            return Err(OptionsError(what.to_owned()).into());
         }
         let ev100 = self.ev100();
         let mut metadata = self.job.metadata();
@@ -219,10 +219,7 @@ impl<'j> Tiled<'j> {
         if settings.scale.is_some() || settings.show.file_unit() == 1.0 {
             return None;
         }
-        match settings.exposure {
-            Exposure::Ev100(ev100) => Some(ev100),
-            Exposure::Auto => self.average.map(automatic),
-        }
+        settings.ev100.or_else(|| self.average.map(automatic))
     }
 
     /// Writes an EXR of these quantities, the first of which is the picture; tells size and layers.

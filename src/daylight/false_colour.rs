@@ -3,7 +3,6 @@
 //! Values run logarithmically from one end of a [`Range`] to the other, and through [`turbo`]. What is below or above the
 //! range has the colour of its end; where there is no light, or no surface, it is black.
 
-use clap::ValueEnum;
 use glam::DVec3;
 
 use super::colour::srgb_eotf;
@@ -14,7 +13,7 @@ const OUTLIERS: f64 = 0.01;
 const STEP_DECADES: f64 = 0.5;
 
 /// What false colours show.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// Of the light toward the eye, cd/m².
     Luminance,

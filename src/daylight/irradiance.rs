@@ -49,9 +49,7 @@
 
 use std::f64::consts::PI;
 
-use clap::ValueEnum;
 use glam::{DVec2, DVec3};
-use serde::Deserialize;
 
 use super::cube::{self, CubeMap};
 use super::frame;
@@ -59,8 +57,7 @@ use super::quadrature::SphereQuadrature;
 use super::sampling::{cosine_hemisphere, r2, rnd, rotate, tea};
 
 /// How the irradiance map is computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum IrradianceMethod {
     /// Random cosine-weighted directions, as in the lecture.
     MonteCarlo,

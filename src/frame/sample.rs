@@ -1,16 +1,13 @@
 //! Where frames that are averaged sample the pixel and the sun's disc, and by what the sky is hidden.
 
-use clap::ValueEnum;
 use glam::{DVec2, Vec2, Vec3};
-use serde::Deserialize;
 
 use crate::daylight::sampling;
 use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
 use crate::passes::dome::gather::DomeSettings;
 
 /// What hides the sky from a surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, ValueEnum, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Visibility {
     /// Screen-space ambient occlusion: at once, from what is on the screen.
     #[default]
@@ -18,13 +15,11 @@ pub enum Visibility {
     /// Shadow maps from directions of the sky: converges to the truth over the samples.
     Dome,
     /// The same, beginning with the preview, which fades: for what stops moving (previews are drawn as with `Ssao`).
-    #[value(skip)]
     Progressive,
 }
 
 /// How the samples of a pixel are spread.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, ValueEnum, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Filter {
     /// Evenly over the pixel.
     #[default]

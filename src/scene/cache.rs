@@ -37,7 +37,7 @@ struct Head {
     textures: Vec<Picture>,
     bounds: Bounds,
     warnings: Vec<String>,
-    options: Vec<(String, String)>,
+    options: Vec<NamedOptions>,
     cameras: Vec<NamedOptions>,
     moments: Vec<NamedOptions>,
     /// Numbers of positions, normals, texture coordinates, colours, tangents, indices, and of the layout's clusters, parts

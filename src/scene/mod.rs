@@ -41,7 +41,7 @@ use builder::Builder;
 use files::Files;
 use obj::{Placement, append_obj};
 use progress::Reporter;
-use scene_file::Said;
+use scene_file::{SceneFileOptions, camera_table};
 
 /// Everything there is to see: one arena of vertices, the parts that draw them, and what they look like.
 #[derive(Debug, Clone, PartialEq)]
@@ -201,9 +201,9 @@ pub struct Loaded {
     pub path: PathBuf,
     /// What is seen.
     pub scene: Scene,
-    /// Options of the scene file as the command line would have them, without dashes: `("turbidity", "3")`. The
-    /// nameless `[camera]` is among them. For a model: its first camera, if it has any.
-    pub options: Vec<(String, String)>,
+    /// The option tables of the scene file: options as on the command line, without dashes, `("turbidity", "3")`. The
+    /// nameless `[camera]` is the last of them. For a model: its first camera, if it has any.
+    pub options: Vec<NamedOptions>,
     /// The named cameras, in the order of the file.
     pub cameras: Vec<NamedCamera>,
     /// The named moments, in the order of the file.
@@ -285,8 +285,8 @@ fn load_from(
             };
             let cameras = append_model(&mut builder, path, &placement)?;
             let first = cameras.first().map(|c| c.options.clone());
-            Said {
-                options: first.unwrap_or_default(),
+            SceneFileOptions {
+                options: first.map(camera_table).into_iter().collect(),
                 cameras,
                 moments: Vec::new(),
             }

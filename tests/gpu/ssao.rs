@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::common::{Worst, shared};
-use crate::gpu::{Device, Model, Picture, camera, clear_day, matt, on_ground, settings, showing};
+use crate::gpu::{Device, Model, Picture, camera, clear_day, matt, on_ground, settings};
 use crate::truth::{VIEWS, View};
 use skylight::frame::FrameSettings;
 use skylight::passes::light::lighting::Show;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::UVec2;
-use skylight::daylight::{Conditions, Daylight, ToneCurve};
+use skylight::daylight::{Conditions, Daylight};
 use skylight::frame::{Frame, FrameSettings};
 use skylight::gpu::{Context, ContextOptions, Recorder, Timing, read_back};
 use skylight::passes::light::lighting::{Precision, Show};

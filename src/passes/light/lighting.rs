@@ -4,9 +4,7 @@
 
 use std::sync::Arc;
 
-use clap::ValueEnum;
 use glam::{IVec2, Vec3};
-use serde::Deserialize;
 
 use crate::daylight::false_colour::Quantity;
 use crate::daylight::sky::Daylight;
@@ -40,8 +38,7 @@ gpu_struct! {
 }
 
 /// What is shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, ValueEnum, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Show {
     /// The whole picture, cd/m².
     #[default]
@@ -91,25 +88,6 @@ impl Show {
         Self::Normal,
         Self::Depth,
     ];
-
-    /// Name on the command line and of layers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Beauty => "beauty",
-            Self::Sun => "sun",
-            Self::Sky => "sky",
-            Self::SunSpecular => "sun-specular",
-            Self::SkySpecular => "sky-specular",
-            Self::Background => "background",
-            Self::Visibility => "visibility",
-            Self::Occlusion => "occlusion",
-            Self::Irradiance => "irradiance",
-            Self::Albedo => "albedo",
-            Self::Normal => "normal",
-            Self::Depth => "depth",
-            Self::Luminance => "luminance",
-        }
-    }
 
     /// Factor from the device's unit to the file's: kcd/m² and klx to cd/m² and lux.
     pub fn file_unit(self) -> f32 {
@@ -355,14 +333,6 @@ impl Lighting {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn names_are_those_of_the_command_line() {
-        for show in Show::value_variants() {
-            let value = show.to_possible_value().expect("a value");
-            assert_eq!(value.get_name(), show.name());
-        }
-    }
 
     #[test]
     fn each_addend_is_in_the_picture_once() {

@@ -2,7 +2,7 @@
 
 use chrono::TimeDelta;
 
-use crate::settings::SunInput;
+use crate::options::SunInput;
 
 /// Speeds on offer, seconds of the day to one of the user's.
 pub(super) const SPEEDS: [(f64, &str); 4] = [

@@ -1,8 +1,6 @@
 //! Where the sun stands: place and time, the lecture's solar time, or a direction.
 
-use chrono::{
-    DateTime, Datelike, FixedOffset, NaiveDate, NaiveDateTime, NaiveTime, TimeDelta, Timelike,
-};
+use chrono::{DateTime, Datelike, FixedOffset, NaiveDate, NaiveDateTime, NaiveTime, Timelike};
 use egui::{Color32, DragValue, Response, Slider, TextEdit, Ui, pos2, vec2};
 
 use super::clock::{Clock, SPEEDS};
@@ -10,7 +8,7 @@ use crate::commands::view::document::Document;
 use crate::commands::view::style;
 use crate::daylight::cities;
 use crate::daylight::sun_position::{SunEvents, SunPosition, sun_events};
-use crate::settings::{Settings, SunInput};
+use crate::options::{Options, SunInput};
 
 /// Cities that a search lists at most.
 const MOST_FOUND: usize = 8;
@@ -72,13 +70,9 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, place: &mut Place, cloc
 }
 
 /// Changes between the three ways to say where the sun stands, keeping as much as can be kept.
-fn kind(ui: &mut Ui, settings: &mut Settings, sun: &SunPosition) {
+fn kind(ui: &mut Ui, settings: &mut Options, sun: &SunPosition) {
     let now = std::mem::discriminant(&settings.sun);
-    let place = SunInput::Place {
-        latitude: 55.79,
-        longitude: 12.52,
-        when: default_moment(),
-    };
+    let place = SunInput::default();
     let solar = solar_of(&settings.sun);
     let direction = SunInput::Direction {
         azimuth_deg: sun.azimuth_deg,
@@ -96,17 +90,6 @@ fn kind(ui: &mut Ui, settings: &mut Settings, sun: &SunPosition) {
             }
         }
     });
-}
-
-fn default_moment() -> DateTime<FixedOffset> {
-    let date = NaiveDate::from_ymd_opt(2026, 6, 21).unwrap_or_default();
-    moment_at(date, 15.0 * 3600.0, FixedOffset::east_opt(7200))
-}
-
-fn moment_at(date: NaiveDate, seconds: f64, offset: Option<FixedOffset>) -> DateTime<FixedOffset> {
-    let offset = offset.unwrap_or(FixedOffset::east_opt(0).unwrap_or_else(|| unreachable!("UTC")));
-    let local = date.and_time(NaiveTime::MIN) + TimeDelta::milliseconds((seconds * 1e3) as i64);
-    DateTime::from_naive_utc_and_offset(local - offset, offset)
 }
 
 /// The same day, time and latitude in solar time.

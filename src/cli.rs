@@ -133,40 +133,26 @@ pub fn parse(words: impl IntoIterator<Item = OsString>) -> Result<Command, CliEx
 }
 
 fn exit(error: &clap::Error, words: &[OsString]) -> CliExit {
+    let usage = |what: String| {
+        let mut command = words.get(1).and_then(|word| word.to_str()).into_iter();
+        let hint = command.find(|word| is_command(word));
+        let hint = hint.map_or("skylight".to_owned(), |word| format!("skylight {word}"));
+        CliExit::Usage(format!("{what} (see {hint} --help)"))
+    };
     match error.kind() {
-        ErrorKind::DisplayHelp
-        | ErrorKind::DisplayVersion
-        | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            if let Some(file) = file_taken_for_help(words) {
-                return CliExit::Usage(format!("no option {file}; write ./{file} if it is a file"));
-            }
-            let text = error.render().to_string();
-            // Without a command clap shows help as an error.
-            if error.exit_code() == 0 {
-                CliExit::Help(text)
-            } else {
-                CliExit::Usage(missing_command())
-            }
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => match file_taken_for_help(words) {
+            Some(file) => usage(format!("no option {file}; write ./{file} if it is a file")),
+            None => CliExit::Help(error.render().to_string()),
+        },
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => {
+            CliExit::Usage(missing_command())
         }
-        ErrorKind::MissingSubcommand => CliExit::Usage(missing_command()),
         ErrorKind::InvalidUtf8 => {
             let mut odd = words.iter().filter(|word| word.to_str().is_none());
             let word = odd.next().map(|word| word.to_string_lossy());
-            CliExit::Usage(format!(
-                "'{}' is not UTF-8, and not the name of a file",
-                word.unwrap_or_default()
-            ))
+            usage(format!("'{}' is not UTF-8", word.unwrap_or_default()))
         }
-        _ => {
-            let command = words
-                .get(1)
-                .and_then(|word| word.to_str())
-                .filter(|word| is_command(word));
-            let hint = command.map_or("skylight --help".to_owned(), |word| {
-                format!("skylight {word} --help")
-            });
-            CliExit::Usage(format!("{} (see {hint})", one_line(error)))
-        }
+        _ => usage(one_line(error)),
     }
 }
 

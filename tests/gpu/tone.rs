@@ -144,7 +144,7 @@ fn the_false_colours_are_those_of_the_cpu() {
         depth_scale: 1.0,
         false_colour: Some(range),
     };
-    let mut tone_map = ToneMap::new(&device.context, size, settings).expect("a pass");
+    let tone_map = ToneMap::new(&device.context, size, settings).expect("a pass");
     let source = device
         .run(|rec| upload_texture(rec, &desc, &[bytemuck::cast_slice(&texels)]).expect("uploaded"));
     device.run(|rec| {
@@ -181,7 +181,7 @@ fn uploaded(device: &mut Device, size: [u32; 2], texels: &[[f32; 4]]) -> Image {
 }
 
 /// Average luminance of a picture by the device, cd/m².
-fn average(device: &mut Device, exposure: &mut Exposure, picture: &Image) -> f64 {
+fn average(device: &mut Device, exposure: &Exposure, picture: &Image) -> f64 {
     device.run(|rec| {
         exposure.record(rec, picture);
     });
@@ -218,7 +218,7 @@ fn the_automatic_exposure_is_that_of_the_cpu() {
         let colours: Vec<[f32; 3]> = (0..GRID[0] * GRID[1]).map(|i| texel(noise(i))).collect();
         let texels: Vec<[f32; 4]> = colours.iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect();
         let picture = uploaded(&mut device, GRID, &texels);
-        let device_average = average(&mut device, &mut exposure, &picture);
+        let device_average = average(&mut device, &exposure, &picture);
         let of_colour = |c: &[f32; 3]| luminance(glam::Vec3::from(*c).as_dvec3()) * 1e3;
         let luminances: Vec<f64> = colours.iter().map(of_colour).collect();
         let expected = robust_log_average(&luminances).expect("light");
@@ -234,15 +234,15 @@ fn pictures_of_any_size_are_metered_and_black_ones_too() {
         let mut exposure = Exposure::new(&device.context).expect("a pass");
         let grey = vec![[2.5; 4]; (size[0] * size[1]) as usize];
         let picture = uploaded(&mut device, size, &grey);
-        let value = average(&mut device, &mut exposure, &picture);
+        let value = average(&mut device, &exposure, &picture);
         assert!((value / 2500.0 - 1.0).abs() < 1e-5, "{size:?} {value}");
         // Black keeps the exposure where there was one, and is 1000 cd/m² at first.
         let black = uploaded(&mut device, size, &vec![[0.0; 4]; grey.len()]);
         exposure.set_share(0.5);
-        let kept = average(&mut device, &mut exposure, &black);
+        let kept = average(&mut device, &exposure, &black);
         assert!((kept / 2500.0 - 1.0).abs() < 1e-5, "{size:?} {kept}");
-        let mut first = Exposure::new(&device.context).expect("a pass");
-        assert_eq!(average(&mut device, &mut first, &black), 1e3);
+        let first = Exposure::new(&device.context).expect("a pass");
+        assert_eq!(average(&mut device, &first, &black), 1e3);
     }
 }
 
@@ -255,7 +255,7 @@ fn the_exposure_adapts_along_the_cpus_curve_both_ways() {
     // The first picture is adapted to at once.
     exposure.set_share(0.0);
     worst.see(
-        (average(&mut device, &mut exposure, &dark) / 250.0).log2(),
+        (average(&mut device, &exposure, &dark) / 250.0).log2(),
         "at first",
     );
     let mut log = 250f64.log2();
@@ -264,14 +264,14 @@ fn the_exposure_adapts_along_the_cpus_curve_both_ways() {
             let share = adaptation(seconds);
             exposure.set_share(share as f32);
             log += (luminance.log2() - log) * share;
-            let value = average(&mut device, &mut exposure, picture);
+            let value = average(&mut device, &exposure, picture);
             worst.see(value.log2() - log, seconds);
         }
         assert!((log - luminance.log2()).abs() < 0.85, "a tenth of 8 stops");
         exposure.set_share(1.0);
         log = luminance.log2();
         worst.see(
-            average(&mut device, &mut exposure, picture).log2() - log,
+            average(&mut device, &exposure, picture).log2() - log,
             "at once",
         );
     }

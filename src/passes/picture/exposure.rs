@@ -1,6 +1,7 @@
 //! The luminance that automatic exposure goes by, and its adaptation over time; [`crate::daylight::exposure`] is the
 //! same on the CPU.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use crate::daylight::exposure::{BINS_PER_STOP, BLACK, BOUND, FADE};
@@ -24,10 +25,11 @@ gpu_struct! {
 /// The pass and its image.
 pub struct Exposure {
     pipeline: Pipeline,
-    /// The newest luminance and the one before.
+    /// Luminances of the newest picture and of the one before.
     luminances: [Image; 2],
+    /// Index of the newest, once there is one.
+    newest: Cell<Option<usize>>,
     share: f32,
-    has_previous: bool,
 }
 
 impl Exposure {
@@ -54,8 +56,8 @@ impl Exposure {
         Ok(Self {
             pipeline,
             luminances: [image("average luminance 0")?, image("average luminance 1")?],
+            newest: Cell::new(None),
             share: 1.0,
-            has_previous: false,
         })
     }
 
@@ -66,11 +68,14 @@ impl Exposure {
     }
 
     /// Computes the average luminance of a picture: one texel, kcd/m².
-    pub fn record(&mut self, recorder: &mut Recorder, radiance: &Image) -> &Image {
-        let share = if self.has_previous { self.share } else { 1.0 };
-        self.has_previous = true;
-        self.luminances.swap(0, 1);
-        let [new, previous] = &self.luminances;
+    pub fn record(&self, recorder: &mut Recorder, radiance: &Image) -> &Image {
+        let share = self.newest.get().map_or(1.0, |_| self.share);
+        let [previous, new] = match self.newest.get() {
+            Some(1) => [1, 0],
+            _ => [0, 1],
+        };
+        self.newest.set(Some(new));
+        let [previous, new] = [previous, new].map(|i| &self.luminances[i]);
         recorder
             .pass("exposure", &self.pipeline)
             .sample("radiance", radiance, Sampler::Nearest)
@@ -89,7 +94,7 @@ impl Exposure {
 
     /// The newest average luminance: one texel, kcd/m².
     pub fn image(&self) -> &Image {
-        &self.luminances[0]
+        &self.luminances[self.newest.get().unwrap_or(0)]
     }
 }
 

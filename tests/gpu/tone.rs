@@ -211,7 +211,7 @@ fn the_automatic_exposure_is_that_of_the_cpu() {
         }),
     ];
     let mut device = Device::new();
-    let mut exposure = Exposure::new(&device.context).expect("a pass");
+    let exposure = Exposure::new(&device.context).expect("a pass");
     // Sums of 9216 floats.
     let mut worst = Worst::new("automatic exposure, stops", 2e-4);
     for (name, texel) in scenes {

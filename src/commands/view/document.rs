@@ -10,8 +10,10 @@ use crate::gpu::{Image, Recorder};
 use crate::options::{OptionValues, Options, Size, SunInput, Visibility};
 use crate::passes::light::lighting::Precision;
 use crate::passes::light::probe::Reading;
+use crate::passes::picture::tone_map::Scale;
 use crate::scene::{Camera, Loaded};
 
+use super::adaptation::Adaptation;
 use super::controls::{Controls, FlyKeys};
 use super::interface::{Notes, shift};
 use super::keys::Action;
@@ -38,6 +40,7 @@ pub(super) struct Document {
     drawn: Option<Camera>,
     /// Frames in the average.
     averaged: u32,
+    adaptation: Adaptation,
     /// Frames drawn since it was opened.
     frames: u64,
 }
@@ -66,6 +69,7 @@ impl Document {
             job,
             drawn: None,
             averaged: 0,
+            adaptation: Adaptation::default(),
             frames: 0,
         })
     }
@@ -117,6 +121,7 @@ impl Document {
     /// Advances the camera by `seconds` with these keys held.
     pub(super) fn advance(&mut self, seconds: f64, keys: FlyKeys) {
         self.controls.advance(seconds, keys);
+        self.adaptation.advance(seconds);
         self.job.camera = self.controls.camera();
     }
 
@@ -142,6 +147,9 @@ impl Document {
     }
 
     fn try_follow(&mut self, recorder: &mut Recorder) -> Result<()> {
+        if self.job.settings.show != self.followed.show {
+            self.adaptation.cut();
+        }
         if self.job.settings.light() != self.followed.light() {
             self.job.relight()?;
         }
@@ -168,8 +176,13 @@ impl Document {
         self.drawn = None;
     }
 
-    /// Whether the picture has all its samples.
+    /// Whether the picture has all its samples and the exposure has adapted to it.
     pub(super) fn is_at_rest(&self) -> bool {
+        self.is_averaged() && self.adaptation.is_done()
+    }
+
+    /// Whether the average has all its frames.
+    fn is_averaged(&self) -> bool {
         !self.is_behind() && !self.has_moved() && self.averaged >= self.job.settings.samples
     }
 
@@ -183,13 +196,26 @@ impl Document {
     }
 
     /// Records the next frame: a preview while the camera moves or the irradiance is refined, then the samples of the average,
-    /// then nothing.
+    /// then only the exposure until it has adapted, then nothing.
     pub(super) fn record(&mut self, recorder: &mut Recorder) {
         if self.is_at_rest() {
             return;
         }
         let (daylight, camera) = (&self.job.daylight, &self.job.camera);
-        if self.has_moved() || !self.frame.is_refined() {
+        let is_preview = self.has_moved() || !self.frame.is_refined();
+        if is_preview {
+            self.adaptation.restart();
+        }
+        if !matches!(self.frame.settings().tone.scale, Scale::Average(_)) {
+            self.adaptation.cut();
+        }
+        let is_last = !is_preview && self.averaged + 1 >= self.job.settings.samples;
+        self.frame.set_adaptation(self.adaptation.share(is_last));
+        if self.is_averaged() {
+            self.frame.expose(recorder);
+            return;
+        }
+        if is_preview {
             self.frame.preview(recorder, daylight, camera);
             self.averaged = 0;
         } else {

@@ -3,7 +3,7 @@
 //! # A tour, in the order of the light
 //!
 //! 1. [`sun_position`]: a place and a moment give the direction of the sun, by SPA or by the lecture's formulas.
-//!    [`sun_path`]: its ways over the sky, for a diagram; [`cities`]: places by name, with their clocks.
+//!    [`sun_path`]: its ways over the sky, for a diagram; [`place`] and [`moment`]: both as people write them; [`cities`]: places by name.
 //! 2. [`sunlight`]: the sun's spectrum through five transmittances of the air gives its disc in cd/m² and its
 //!    illuminance in lux. [`spectrum`] integrates, [`colour`] turns XYZ into linear BT.709 RGB.
 //! 3. [`preetham`], [`hosek`], [`cie`]: the sky's radiance in a direction.
@@ -35,6 +35,8 @@ pub mod false_colour;
 pub mod frame;
 pub mod hosek;
 pub mod irradiance;
+pub mod moment;
+pub mod place;
 pub mod preetham;
 pub mod quadrature;
 pub mod refinement;

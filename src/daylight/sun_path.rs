@@ -7,7 +7,8 @@ use chrono::{DateTime, Datelike, Duration, FixedOffset, NaiveDate, TimeZone, Tim
 use glam::DVec3;
 
 use super::sun_position::{
-    Polar, SunEvents, SunPosition, SunPositionError, SunPositionMethod, direction, spa, sun_events,
+    Polar, SunEvents, SunPosition, SunPositionError, SunPositionMethod, YEARS, direction, spa,
+    sun_events,
 };
 
 /// Between two points of a line, minutes: 2.5° at most, a chord 0.014° off its arc.
@@ -269,7 +270,7 @@ fn at_hour(
     hour: u32,
 ) -> Result<DateTime<FixedOffset>, SunPositionError> {
     let outside = || SunPositionError::Year(date.year());
-    if !(-500..=3000).contains(&date.year()) {
+    if !YEARS.contains(&date.year()) {
         return Err(outside());
     }
     let clock = date.and_hms_opt(hour, 0, 0).ok_or_else(outside)?;
@@ -281,7 +282,7 @@ fn at_hour(
 
 fn date(year: i32, month: u32, day: u32) -> Result<NaiveDate, SunPositionError> {
     NaiveDate::from_ymd_opt(year, month, day)
-        .filter(|_| (-500..=3000).contains(&year))
+        .filter(|_| YEARS.contains(&year))
         .ok_or(SunPositionError::Year(year))
 }
 

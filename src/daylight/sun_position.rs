@@ -18,6 +18,10 @@ use glam::DVec3;
 use serde::Deserialize;
 use solar_positioning::{Horizon, Location, SolarEvents, SolarPositions, delta_t};
 use std::f64::consts::PI;
+use std::ops::RangeInclusive;
+
+/// Years in which the formulas hold: those of the estimates of ΔT.
+pub const YEARS: RangeInclusive<i32> = -500..=3000;
 
 /// Pressure at which [`refraction_deg`] bends the light, hPa.
 pub const PRESSURE_HPA: f64 = 1013.25;
@@ -65,7 +69,7 @@ pub enum SunPositionError {
     #[error("longitude {0} is not in -180..=180 degrees")]
     Longitude(f64),
     /// A year the ephemeris does not cover.
-    #[error("no sun position in the year {0}; the years -500 to 3000 are known")]
+    #[error("no sun position in the year {0}; the years -500 to 3000 are covered")]
     Year(i32),
     /// A moment the ephemeris does not cover.
     #[error("no sun position for this moment: {0}")]
@@ -139,19 +143,43 @@ pub fn refraction_deg(true_elevation_deg: f64) -> f64 {
 
 /// Reda & Andreas 2004: NREL's Solar Position Algorithm, by the crate `solar-positioning`, at sea level.
 ///
-/// Terrestrial time is UT plus an estimated ΔT (Espenak & Meeus). Years -500 to 3000.
+/// Terrestrial time is UT plus an estimated ΔT (Espenak & Meeus). UTC stands for UT1: a leap second is the second after it.
+///
+/// # Errors
+/// A place outside of the coordinates' ranges, a year outside of [`YEARS`].
 pub fn spa(
     when: DateTime<FixedOffset>,
     latitude: f64,
     longitude: f64,
 ) -> Result<SunPosition, SunPositionError> {
     let location = check(latitude, longitude)?;
-    let delta_t = delta_t::estimate_from_date_like(&when)?;
-    let seen = SolarPositions::new().at(&when, location, 0.0, delta_t, None)?;
+    let delta_t = delta_t_s(when.date_naive())?;
+    let seen = SolarPositions::new().at(&without_leap(when), location, 0.0, delta_t, None)?;
     Ok(SunPosition::from_true(
         seen.azimuth(),
         seen.elevation_angle(),
     ))
+}
+
+/// Estimated terrestrial time less universal time, seconds, in the month of a date.
+fn delta_t_s(date: NaiveDate) -> Result<f64, SunPositionError> {
+    let year = date.year();
+    if !YEARS.contains(&year) {
+        return Err(SunPositionError::Year(year));
+    }
+    // The polynomials end when the last year begins; until its end they grow by 10 s, in which the sun moves 0.0001°.
+    if year == *YEARS.end() {
+        return Ok(delta_t::estimate(f64::from(year))?);
+    }
+    Ok(delta_t::estimate_from_date_like(&date)?)
+}
+
+/// chrono counts the nanoseconds of a leap second on from those of the second before.
+fn without_leap(when: DateTime<FixedOffset>) -> DateTime<FixedOffset> {
+    let leap = when.nanosecond() / 1_000_000_000;
+    let before = when.with_nanosecond(when.nanosecond() % 1_000_000_000);
+    let after = before.and_then(|w| w.checked_add_signed(Duration::seconds(i64::from(leap))));
+    after.unwrap_or(when)
 }
 
 fn check(latitude: f64, longitude: f64) -> Result<Location, SunPositionError> {
@@ -210,8 +238,10 @@ pub struct SolarTime {
 /// A moment with its UTC offset needs neither zone meridian nor summer time: t = UTC + EoT + L/15.
 pub fn solar_time(when: DateTime<FixedOffset>, longitude: f64) -> SolarTime {
     let seconds = longitude / 15.0 * 3600.0;
-    // Saturates for an absurd longitude; a longitude shifts the clock by at most half a day.
-    let mean_time = when.naive_utc() + Duration::milliseconds((seconds * 1000.0).round() as i64);
+    let utc = when.naive_utc();
+    let shift = Duration::milliseconds((seconds * 1000.0).round() as i64);
+    // chrono's calendar ends in the year 262 142.
+    let mean_time = utc.checked_add_signed(shift).unwrap_or(utc);
     let clock = mean_time.time();
     let hours = f64::from(clock.num_seconds_from_midnight()) / 3600.0
         + f64::from(clock.nanosecond()) / 3.6e12;
@@ -266,7 +296,7 @@ pub fn sun_events(
     longitude: f64,
 ) -> Result<SunEvents, SunPositionError> {
     let location = check(latitude, longitude)?;
-    let delta_t = delta_t::estimate_from_date_like(&date)?;
+    let delta_t = delta_t_s(date)?;
     let events = SolarEvents::new();
     let day = events.for_date(date, &offset, location, delta_t, Horizon::SunriseSunset)?;
     Ok(SunEvents {
@@ -380,6 +410,44 @@ mod tests {
         );
         let polar = sun_events(day, zone, 78.2, 15.6).unwrap();
         assert!(polar.sunrise.is_none() && polar.sunset.is_none() && polar.noon.is_some());
+    }
+
+    #[test]
+    fn the_whole_of_the_last_year_and_leap_seconds_have_a_sun() {
+        let at = |text: &str| spa(moment(text), 55.79, 12.52);
+        // As on these days of other years that are as long after a leap year.
+        for (text, elevation) in [
+            ("3000-06-21T11:10:00Z", 57.6),
+            ("3000-12-31T11:10:00Z", 11.1),
+            ("-0500-06-26T11:10:00Z", 58.0),
+        ] {
+            let found = at(text).unwrap().elevation_deg;
+            assert!((found - elevation).abs() < 0.2, "{text}: {found}");
+        }
+        let date = |year, month, day| NaiveDate::from_ymd_opt(year, month, day).unwrap();
+        let utc = FixedOffset::east_opt(0).unwrap();
+        for day in [date(3000, 12, 31), date(-500, 1, 1)] {
+            let events = sun_events(day, utc, 55.79, 12.52).unwrap();
+            assert!(events.sunrise.is_some() && events.sunset.is_some());
+        }
+        let leap = at("2016-12-31T23:59:60Z").unwrap();
+        assert_eq!(leap, at("2017-01-01T00:00:00Z").unwrap());
+        assert_ne!(leap, at("2016-12-31T23:59:59Z").unwrap());
+        assert_eq!(
+            at("2016-12-31T23:59:60.5Z").unwrap(),
+            at("2017-01-01T00:00:00.5Z").unwrap()
+        );
+        for text in ["3001-01-01T00:00:00Z", "9999-01-01T00:00:00Z"] {
+            let error = at(text).unwrap_err().to_string();
+            assert!(error.contains("the years -500 to 3000"), "{error}");
+        }
+        for end in [chrono::NaiveDateTime::MIN, chrono::NaiveDateTime::MAX] {
+            let when = DateTime::from_naive_utc_and_offset(end, utc);
+            assert!(spa(when, 0.0, 0.0).is_err());
+            for longitude in [-180.0, 180.0] {
+                assert!((0.0..24.0).contains(&solar_time(when, longitude).hours));
+            }
+        }
     }
 
     #[test]

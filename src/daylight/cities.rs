@@ -8,15 +8,15 @@ use deunicode::deunicode;
 pub use super::data::cities::CITIES;
 use super::sun_position::direction;
 
-/// Radius of the earth as a ball, km.
+/// Mean radius of the earth, km.
 const EARTH_RADIUS_KM: f64 = 6371.0;
 
 /// A city of the list.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct City {
-    /// Name in English, or as English writes it.
+    /// English name.
     pub name: &'static str,
-    /// Another name by which it is found: its own language's, or a former one; may be empty.
+    /// A second name that finds it, such as the local or a former one; may be empty.
     pub other_name: &'static str,
     /// ISO 3166-1 code of the country or territory, two letters.
     pub country: &'static str,
@@ -24,7 +24,7 @@ pub struct City {
     pub latitude: f64,
     /// Degrees, positive east.
     pub longitude: f64,
-    /// Time zone, with its history and its summer times.
+    /// Time zone of the IANA database.
     pub zone: Tz,
 }
 
@@ -37,13 +37,13 @@ impl City {
     }
 }
 
-/// Without case, accents and what surrounds a name.
+/// A name without case, accents and surrounding blanks.
 fn folded(text: &str) -> String {
     deunicode(text.trim()).to_lowercase()
 }
 
-/// Cities whose names begin with `text`, then those with a word that does, then those that contain it; each by name. All
-/// of them when `text` is empty.
+/// Cities whose names begin with `text`, then those with a word that begins with it, then those that contain it; each group by
+/// name. All cities for an empty text.
 pub fn search(text: &str) -> Vec<&'static City> {
     let wanted = folded(text);
     let rank = |city: &City| {
@@ -65,7 +65,7 @@ pub fn search(text: &str) -> Vec<&'static City> {
 /// The city of this name.
 ///
 /// # Errors
-/// One line that suggests the name that is most like it.
+/// One line that suggests the most similar name.
 pub fn named(text: &str) -> Result<&'static City, String> {
     let wanted = folded(text);
     if let Some(city) = CITIES
@@ -79,7 +79,7 @@ pub fn named(text: &str) -> Result<&'static City, String> {
         .copied()
         .unwrap_or_else(|| alike(&wanted));
     Err(format!(
-        "\"{}\" is no city of the list; did you mean \"{}\"? Otherwise write LAT,LON in degrees",
+        "\"{}\" is not a listed city; did you mean \"{}\"? Otherwise write LAT,LON in degrees",
         text.trim(),
         meant.name
     ))
@@ -99,7 +99,7 @@ pub fn alike(text: &str) -> &'static City {
     best.unwrap_or(&CITIES[0])
 }
 
-/// The city nearest to a place (degrees), and how far it is, km.
+/// The city nearest to a place (degrees), and its distance, km.
 pub fn nearest(latitude: f64, longitude: f64) -> (&'static City, f64) {
     // Longitude and latitude are an azimuth and an elevation over the plane of the equator.
     let here = direction(longitude, latitude);

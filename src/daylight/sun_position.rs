@@ -23,13 +23,13 @@ use std::ops::RangeInclusive;
 /// Years in which the formulas hold: those of the estimates of ΔT.
 pub const YEARS: RangeInclusive<i32> = -500..=3000;
 
-/// Pressure at which [`refraction_deg`] bends the light, hPa.
+/// Air pressure in [`refraction_deg`], hPa.
 pub const PRESSURE_HPA: f64 = 1013.25;
 
-/// Temperature at which [`refraction_deg`] bends the light, °C.
+/// Air temperature in [`refraction_deg`], °C.
 pub const TEMPERATURE_C: f64 = 12.0;
 
-/// Which formulas turn place and moment into a sun position.
+/// Formulas of the sun's position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SunPositionMethod {
@@ -42,6 +42,9 @@ pub enum SunPositionMethod {
 
 impl SunPositionMethod {
     /// Position of the sun by this method at `when`, seen from `latitude` (±90°) and `longitude` (±180°).
+    ///
+    /// # Errors
+    /// Coordinates out of range; for SPA a year outside of [`YEARS`].
     pub fn position(
         self,
         when: DateTime<FixedOffset>,
@@ -68,10 +71,10 @@ pub enum SunPositionError {
     /// Longitude outside ±180°, or not a number.
     #[error("longitude {0} is not in -180..=180 degrees")]
     Longitude(f64),
-    /// A year the ephemeris does not cover.
+    /// A year outside of [`YEARS`].
     #[error("no sun position in the year {0}; the years -500 to 3000 are covered")]
     Year(i32),
-    /// A moment the ephemeris does not cover.
+    /// Any other failure of the algorithm.
     #[error("no sun position for this moment: {0}")]
     Moment(#[from] solar_positioning::Error),
 }
@@ -83,7 +86,7 @@ pub struct SunPosition {
     pub azimuth_deg: f64,
     /// True (geometric) elevation over the horizon, degrees in -90..=90.
     pub elevation_deg: f64,
-    /// Apparent elevation, degrees: as seen, lifted by refraction ([`refraction_deg`]).
+    /// Apparent elevation, degrees: the true one plus [`refraction_deg`].
     pub apparent_elevation_deg: f64,
 }
 
@@ -97,7 +100,7 @@ impl SunPosition {
         }
     }
 
-    /// Unit vector toward the sun as it is seen (apparent elevation), in world space.
+    /// Unit vector toward the apparent sun, in world space.
     pub fn direction(&self) -> DVec3 {
         direction(self.azimuth_deg, self.apparent_elevation_deg)
     }
@@ -125,10 +128,10 @@ pub fn azimuth_elevation(direction: DVec3) -> (f64, f64) {
     (azimuth, direction.y.atan2(horizontal).to_degrees())
 }
 
-/// Reda & Andreas 2004, eq. 42 (Sæmundsson 1986): degrees by which the air at 1013.25 hPa and 12 °C lifts the sun.
+/// Reda & Andreas 2004, eq. 42 (Sæmundsson 1986): atmospheric refraction at 1013.25 hPa and 12 °C, degrees.
 ///
-/// The algorithm drops refraction at once when the sun's upper limb has set (-0.8333°), a jump of 0.6°. Here
-/// it fades to 0 at -3° instead, so that a film of a sunset has no jump; above -0.8333° the values are SPA's.
+/// SPA sets refraction to 0 when the upper limb has set (-0.8333°), a jump of 0.6°. Here it fades to 0 at -3° instead, so that
+/// an animated sunset has no jump; above -0.8333° the values are SPA's.
 pub fn refraction_deg(true_elevation_deg: f64) -> f64 {
     const CUTOFF: f64 = -(0.266_67 + 0.566_7);
     const GONE: f64 = -3.0;
@@ -263,7 +266,7 @@ pub struct SunEvents {
     pub sunset: Option<DateTime<FixedOffset>>,
 }
 
-/// A day on which the sun neither rises nor sets.
+/// A day without sunrise and sunset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Polar {
     /// It stays up.
@@ -273,12 +276,12 @@ pub enum Polar {
 }
 
 impl SunEvents {
-    /// Which kind of day it is where the sun neither rises nor sets; `None` where it does. The place is that of the events.
+    /// Polar day or night at the place of the events; `None` on a day with sunrise or sunset.
     pub fn polar(&self, latitude: f64, longitude: f64) -> Option<Polar> {
         if self.sunrise.is_some() || self.sunset.is_some() {
             return None;
         }
-        // Looked at where it is highest.
+        // At solar noon the sun is highest.
         let noon = spa(self.noon?, latitude, longitude).ok()?;
         Some(if noon.apparent_elevation_deg > 0.0 {
             Polar::Day

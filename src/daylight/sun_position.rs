@@ -72,7 +72,9 @@ pub enum SunPositionError {
     #[error("longitude {0} is not in -180..=180 degrees")]
     Longitude(f64),
     /// A year outside of [`YEARS`].
-    #[error("no sun position in the year {0}; the years -500 to 3000 are covered")]
+    #[error(
+        "no sun position for this moment: the formulas hold for the years -500 to 3000, not for {0}"
+    )]
     Year(i32),
     /// Any other failure of the algorithm.
     #[error("no sun position for this moment: {0}")]

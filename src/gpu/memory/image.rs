@@ -101,7 +101,7 @@ pub(in crate::gpu) fn is_depth(format: vk::Format) -> bool {
     matches!(format, vk::Format::D32_SFLOAT | vk::Format::D16_UNORM)
 }
 
-fn is_block_or_srgb_texture(format: vk::Format) -> bool {
+fn is_srgb_texture(format: vk::Format) -> bool {
     format == vk::Format::R8G8B8A8_SRGB
 }
 
@@ -112,7 +112,7 @@ fn usage(desc: &ImageDesc<'_>) -> vk::ImageUsageFlags {
         | vk::ImageUsageFlags::TRANSFER_DST;
     if is_depth(format) {
         common | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT
-    } else if levels > 1 && is_block_or_srgb_texture(format) {
+    } else if levels > 1 && is_srgb_texture(format) {
         common
     } else if desc.kind == ImageKind::Cube {
         // Compute shaders write cubes on devices without geometry shaders.

@@ -66,10 +66,20 @@ pub struct MemoryBarrier {
     pub dst_access: Access,
 }
 
+/// Stages of the depth test.
+const DEPTH_TESTS: Stage =
+    Stage::from_raw(Stage::EARLY_FRAGMENT_TESTS.as_raw() | Stage::LATE_FRAGMENT_TESTS.as_raw());
+/// Stages that sample images.
+const SAMPLING: Stage =
+    Stage::from_raw(Stage::FRAGMENT_SHADER.as_raw() | Stage::COMPUTE_SHADER.as_raw());
+/// Stages that read storage buffers.
+const STORAGE_READING: Stage = Stage::from_raw(Stage::VERTEX_SHADER.as_raw() | SAMPLING.as_raw());
+
 /// One row of the table of images: stages, reads, writes, layout.
 const fn row(of: ImageAccess) -> (Stage, Access, Access, Layout) {
+    const NONE: Access = Access::NONE;
     match of {
-        ImageAccess::Undefined => (Stage::NONE, Access::NONE, Access::NONE, Layout::UNDEFINED),
+        ImageAccess::Undefined => (Stage::NONE, NONE, NONE, Layout::UNDEFINED),
         ImageAccess::ColorAttachment => (
             Stage::COLOR_ATTACHMENT_OUTPUT,
             Access::COLOR_ATTACHMENT_READ,
@@ -77,64 +87,44 @@ const fn row(of: ImageAccess) -> (Stage, Access, Access, Layout) {
             Layout::COLOR_ATTACHMENT_OPTIMAL,
         ),
         ImageAccess::DepthAttachment => (
-            Stage::from_raw(
-                Stage::EARLY_FRAGMENT_TESTS.as_raw() | Stage::LATE_FRAGMENT_TESTS.as_raw(),
-            ),
+            DEPTH_TESTS,
             Access::DEPTH_STENCIL_ATTACHMENT_READ,
             Access::DEPTH_STENCIL_ATTACHMENT_WRITE,
             Layout::DEPTH_ATTACHMENT_OPTIMAL,
         ),
         ImageAccess::Sampled => (
-            Stage::from_raw(Stage::FRAGMENT_SHADER.as_raw() | Stage::COMPUTE_SHADER.as_raw()),
+            SAMPLING,
             Access::SHADER_SAMPLED_READ,
-            Access::NONE,
+            NONE,
             Layout::SHADER_READ_ONLY_OPTIMAL,
         ),
         ImageAccess::SampledDepth => (
-            Stage::from_raw(
-                Stage::FRAGMENT_SHADER.as_raw()
-                    | Stage::COMPUTE_SHADER.as_raw()
-                    | Stage::EARLY_FRAGMENT_TESTS.as_raw()
-                    | Stage::LATE_FRAGMENT_TESTS.as_raw(),
-            ),
+            Stage::from_raw(SAMPLING.as_raw() | DEPTH_TESTS.as_raw()),
             Access::from_raw(
                 Access::SHADER_SAMPLED_READ.as_raw()
                     | Access::DEPTH_STENCIL_ATTACHMENT_READ.as_raw(),
             ),
-            Access::NONE,
+            NONE,
             Layout::DEPTH_READ_ONLY_OPTIMAL,
         ),
-        ImageAccess::StorageWrite => (
-            Stage::COMPUTE_SHADER,
-            Access::NONE,
-            Access::SHADER_STORAGE_WRITE,
-            Layout::GENERAL,
-        ),
-        ImageAccess::CopySource => (
-            Stage::TRANSFER,
-            Access::TRANSFER_READ,
-            Access::NONE,
-            Layout::TRANSFER_SRC_OPTIMAL,
-        ),
-        ImageAccess::CopyTarget => (
-            Stage::TRANSFER,
-            Access::NONE,
-            Access::TRANSFER_WRITE,
-            Layout::TRANSFER_DST_OPTIMAL,
-        ),
-        // The submission waits for the semaphore at this stage: the barrier chains to it.
-        ImageAccess::Acquired => (
-            Stage::COLOR_ATTACHMENT_OUTPUT,
-            Access::NONE,
-            Access::NONE,
-            Layout::UNDEFINED,
-        ),
-        ImageAccess::Present => (
-            Stage::NONE,
-            Access::NONE,
-            Access::NONE,
-            Layout::PRESENT_SRC_KHR,
-        ),
+        ImageAccess::StorageWrite => {
+            let write = Access::SHADER_STORAGE_WRITE;
+            (Stage::COMPUTE_SHADER, NONE, write, Layout::GENERAL)
+        }
+        ImageAccess::CopySource => {
+            let layout = Layout::TRANSFER_SRC_OPTIMAL;
+            (Stage::TRANSFER, Access::TRANSFER_READ, NONE, layout)
+        }
+        ImageAccess::CopyTarget => {
+            let layout = Layout::TRANSFER_DST_OPTIMAL;
+            (Stage::TRANSFER, NONE, Access::TRANSFER_WRITE, layout)
+        }
+        // The submission waits for the semaphore at this stage, to which the barrier chains.
+        ImageAccess::Acquired => {
+            let stage = Stage::COLOR_ATTACHMENT_OUTPUT;
+            (stage, NONE, NONE, Layout::UNDEFINED)
+        }
+        ImageAccess::Present => (Stage::NONE, NONE, NONE, Layout::PRESENT_SRC_KHR),
     }
 }
 
@@ -148,15 +138,7 @@ const fn buffer_row(of: BufferAccess) -> (Stage, Access, Access) {
             Access::NONE,
         ),
         BufferAccess::Index => (Stage::INDEX_INPUT, Access::INDEX_READ, Access::NONE),
-        BufferAccess::StorageRead => (
-            Stage::from_raw(
-                Stage::VERTEX_SHADER.as_raw()
-                    | Stage::FRAGMENT_SHADER.as_raw()
-                    | Stage::COMPUTE_SHADER.as_raw(),
-            ),
-            Access::SHADER_STORAGE_READ,
-            Access::NONE,
-        ),
+        BufferAccess::StorageRead => (STORAGE_READING, Access::SHADER_STORAGE_READ, Access::NONE),
         BufferAccess::HostRead => (Stage::HOST, Access::HOST_READ, Access::NONE),
     }
 }

@@ -6,4 +6,5 @@ mod common;
 mod files;
 mod fuzz;
 mod hostile;
+mod invariants;
 mod models;

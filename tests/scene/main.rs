@@ -8,3 +8,4 @@ mod fuzz;
 mod hostile;
 mod invariants;
 mod models;
+mod tobj_oracle;

@@ -106,7 +106,7 @@ impl Job {
     /// # Errors
     /// A scene that cannot be read, or options that make no sense.
     pub fn new(path: Option<&Path>, options: Options) -> Result<Self> {
-        let loaded = scene::load_telling(path, &load_options(&options), &|_, _| ())?;
+        let loaded = scene::load_with_progress(path, &load_options(&options), &|_, _| ())?;
         let job = Self::of(path, loaded, options)?;
         if !job.settings.quiet {
             for warning in job.warnings() {

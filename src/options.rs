@@ -36,7 +36,7 @@ pub use given::OptionValues;
 pub use sun_input::SunInput;
 pub use values::{
     AoResolution, Direction, ExposureMode, Fresnel, Penumbra, Place, Preset, Size, SolarTime,
-    Switch,
+    Switch, When,
 };
 pub(crate) use values::{exposure_factor, ratio, sun as direction};
 

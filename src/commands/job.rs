@@ -9,7 +9,7 @@ use glam::UVec2;
 
 use super::light::{conditions, sun_position};
 use crate::daylight::exposure::{KEY, factor_from_ev100};
-use crate::daylight::refinement::Refinement;
+use crate::daylight::sample_count::ErrorEstimate;
 use crate::daylight::sky::Daylight;
 use crate::daylight::spectrum::LUMINOUS_EFFICACY;
 use crate::daylight::sun_position::SunPosition;
@@ -38,7 +38,7 @@ pub fn load_options(options: &Options) -> LoadOptions {
     }
 }
 
-/// Where processed scenes and pipelines are kept: the user's folder for what may be deleted at any time.
+/// Where processed scenes and pipelines are kept: the user's folder for files that may be deleted at any time.
 fn cache_folder() -> Option<PathBuf> {
     Some(dirs::cache_dir()?.join("skylight"))
 }
@@ -51,6 +51,7 @@ pub fn context_options(options: &Options) -> ContextOptions {
         without: options.without.into_iter().collect(),
         cache_folder: cache_folder(),
         fault: std::env::var("SKYLIGHT_FAULT").ok(),
+        ..ContextOptions::default()
     }
 }
 
@@ -91,7 +92,7 @@ impl Job {
     /// # Errors
     /// A scene that cannot be read, or invalid options.
     pub fn new(path: Option<&Path>, user: &OptionValues) -> Result<Self> {
-        let loaded = scene::load_telling(path, &load_options(&user.alone()?), &|_, _| ())?;
+        let loaded = scene::load_with_progress(path, &load_options(&user.alone()?), &|_, _| ())?;
         let job = Self::of(path, loaded, user)?;
         if !job.settings.quiet {
             for warning in job.warnings() {
@@ -223,8 +224,8 @@ impl Job {
         let (error, most) = (s.irradiance_error / 100.0, s.irradiance_samples);
         // The estimate takes milliseconds, so it is made only where it can save samples.
         let samples = if method.is_sampled() && error > 0.0 {
-            let refinement = Refinement::new(|direction| self.daylight.radiance(direction));
-            refinement.samples(method, error, most)
+            let estimate = ErrorEstimate::new(|direction| self.daylight.radiance(direction));
+            estimate.samples(method, error, most)
         } else {
             most
         };

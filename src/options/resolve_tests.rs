@@ -46,6 +46,35 @@ fn nothing_given_is_a_summer_afternoon() {
 }
 
 #[test]
+fn local_times_are_those_of_the_place_that_is_used() {
+    let when = |user: &[(&str, &str)], file: &[(&str, &str)]| match sun(user, file) {
+        SunInput::Place { when, .. } => when.to_rfc3339(),
+        other => panic!("{other:?}"),
+    };
+    let tokyo = ("place", "tokyo");
+    assert_eq!(when(&[tokyo], &[]), "2026-06-21T15:00:00+09:00");
+    assert_eq!(when(&[], &[tokyo]), "2026-06-21T15:00:00+09:00");
+    let winter = ("when", "2026-12-21T15:00");
+    for (user, file) in [([tokyo], [winter]), ([winter], [tokyo])] {
+        assert_eq!(when(&user, &file), "2026-12-21T15:00:00+09:00");
+    }
+    assert_eq!(when(&[winter], &[]), "2026-12-21T15:00:00+01:00");
+    let error = resolve(&[("when", "2026-10-25 02:30")], &[("place", "oslo")]);
+    let error = error.expect_err("two readings");
+    assert!(
+        error.starts_with("--when: 2026-10-25 02:30 occurs twice") && error.lines().count() == 1,
+        "{error}"
+    );
+    // Which of the readings matters at the scene's place alone.
+    let user = OptionValues::from([("when", "2026-10-25 02:30")].as_slice());
+    assert!(user.alone().is_ok());
+    assert_eq!(
+        when(&[("when", "2026-10-25 02:30")], &[tokyo]),
+        "2026-10-25T02:30:00+09:00"
+    );
+}
+
+#[test]
 fn the_users_sun_replaces_the_files() {
     let file = [("place", "10,20"), ("when", "2026-01-01T12:00Z")];
     let direction = SunInput::Direction {

@@ -1,17 +1,11 @@
 //! Where the sun comes from: a place and a moment, the lecture's inputs, or a direction.
 
 use chrono::{DateTime, FixedOffset};
+use clap::error::ErrorKind;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
-use super::{Direction, OptionGroup, Place, SolarTime, options, values};
-
-/// The default place: the lecture's university, degrees.
-const DEFAULT_PLACE: Place = Place {
-    latitude: 55.79,
-    longitude: 12.52,
-};
-/// The default moment: a summer afternoon there.
-const DEFAULT_WHEN: &str = "2026-06-21T15:00:00+02:00";
+use super::{Direction, OptionGroup, Place, SolarTime, When, options, values};
+use crate::daylight::moment::default_moment;
 
 /// Where the sun comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,13 +41,14 @@ options! {
     /// The options that say where the sun comes from.
     struct SunArgs {
         "Sun and sky" ["place", "sun", "moment"] {
-            /// Latitude and longitude, degrees, north and east positive, or the name of a city.
-            #[arg(value_name = "LAT,LON|CITY", value_parser = values::place, allow_hyphen_values = true,
-                  default_value_t = DEFAULT_PLACE)]
+            /// Latitude and longitude, degrees, north and east positive (-33.87,151.21 or "33.87 S, 151.21 E"), or the name of a city.
+            #[arg(value_name = "LAT,LON|CITY", value_parser = Place::parse, allow_hyphen_values = true, default_value_t)]
             place: Place,
-            /// Moment with its UTC offset.
-            #[arg(value_name = "MOMENT", value_parser = values::when, default_value = DEFAULT_WHEN)]
-            when: DateTime<FixedOffset>,
+            /// Moment: with a UTC offset (2026-12-21T15:00+01:00), with a time zone ("2026-12-21 15:00 Asia/Tokyo"), or local time of
+            /// --place ("2026-12-21 15:00"): of the nearest listed city within 1000 km, else the hour of the longitude. Years -500
+            /// to 3000; by default 15:00 local time on 2026-06-21.
+            #[arg(value_name = "MOMENT", allow_hyphen_values = true)]
+            when: Option<When>,
             /// Day of the year and solar time in hours, with the latitude of --place.
             #[arg(value_name = "J,T", value_parser = values::solar, conflicts_with = "when")]
             solar: Option<SolarTime>,
@@ -68,49 +63,50 @@ options! {
 }
 
 impl SunInput {
-    /// What the options say of it.
-    fn of(o: &SunArgs) -> Self {
+    /// The input that the options give, or what is wrong with it.
+    fn of(o: &SunArgs) -> Result<Self, String> {
+        let place = o.place;
         let Place {
             latitude,
             longitude,
-        } = o.place;
+        } = place;
         if let Some(Direction {
             azimuth_deg,
             elevation_deg,
         }) = o.sun
         {
-            return Self::Direction {
+            return Ok(Self::Direction {
                 azimuth_deg,
                 elevation_deg,
-            };
+            });
         }
         if let Some(SolarTime { day, hours }) = o.solar {
-            return Self::Solar {
+            return Ok(Self::Solar {
                 day,
                 hours,
                 latitude,
-            };
+            });
         }
-        Self::Place {
+        let when = match o.when {
+            Some(when) => when.at(place).map_err(|what| format!("--when: {what}"))?,
+            None => default_moment(place),
+        };
+        Ok(Self::Place {
             latitude,
             longitude,
-            when: o.when,
-        }
+            when,
+        })
     }
 }
 
-/// The default place and moment.
+/// The default place and its default moment.
 impl Default for SunInput {
     fn default() -> Self {
-        let Place {
-            latitude,
-            longitude,
-        } = DEFAULT_PLACE;
-        let when = values::when(DEFAULT_WHEN);
+        let place = Place::default();
         Self::Place {
-            latitude,
-            longitude,
-            when: when.unwrap_or_else(|what| unreachable!("{what}")),
+            latitude: place.latitude,
+            longitude: place.longitude,
+            when: default_moment(place),
         }
     }
 }
@@ -158,7 +154,8 @@ impl Args for SunInput {
 
 impl FromArgMatches for SunInput {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        Ok(Self::of(&SunArgs::from_arg_matches(matches)?))
+        let input = Self::of(&SunArgs::from_arg_matches(matches)?);
+        input.map_err(|what| clap::Error::raw(ErrorKind::ValueValidation, what))
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {

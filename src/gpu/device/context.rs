@@ -12,7 +12,9 @@ use crate::gpu::device::heap::keep_freed_memory;
 use crate::gpu::device::instance::{InstanceGuard, has_instance_extension, load};
 use crate::gpu::device::select::{self, DeviceSummary, Optional};
 use crate::gpu::device::startup::{Startup, Step};
-use crate::gpu::device::surface::{self, RawSurface, Surface, WindowHandles};
+use crate::gpu::device::surface::{self, RawSurface, Window};
+#[cfg(feature = "window")]
+use crate::gpu::device::surface::{Surface, WindowHandles};
 use crate::gpu::device::validation::Messenger;
 use crate::gpu::error::{During, GpuError, Result};
 use crate::gpu::memory::sampler::{self, Sampler};
@@ -58,6 +60,7 @@ pub struct Context {
     pub(in crate::gpu) startup: Startup,
     device: DeviceGuard,
     pub(in crate::gpu) push_descriptor: Option<khr::push_descriptor::Device>,
+    #[cfg(feature = "window")]
     pub(in crate::gpu) swapchain: Option<khr::swapchain::Device>,
     pub(in crate::gpu) debug: Option<ext::debug_utils::Device>,
     pub(in crate::gpu) queue: vk::Queue,
@@ -69,6 +72,10 @@ pub struct Context {
     pub(in crate::gpu) reloaded: crate::gpu::pipeline::hot_reload::Reloaded,
     messenger: Option<Messenger>,
     instance: InstanceGuard,
+    #[cfg_attr(
+        not(feature = "window"),
+        expect(dead_code, reason = "keeps the loader's library loaded")
+    )]
     entry: ash::Entry,
 }
 
@@ -85,6 +92,7 @@ impl Context {
     ///
     /// # Errors
     /// As [`Context::new`], and when no device can present to this window.
+    #[cfg(feature = "window")]
     pub fn for_window(
         options: &ContextOptions,
         window: Arc<dyn WindowHandles>,
@@ -96,14 +104,14 @@ impl Context {
 
     fn open(
         options: &ContextOptions,
-        window: Option<Arc<dyn WindowHandles>>,
+        window: Option<Window>,
     ) -> Result<(Arc<Self>, Option<RawSurface>)> {
         let mut startup = Startup::new();
         let faults = Faults::new(options.fault.as_deref())?;
         let entry = load()?;
         startup.done("Vulkan loader");
         let windows = window
-            .as_deref()
+            .as_ref()
             .map_or(Ok(&[][..]), surface::instance_extensions)?;
         let instance = InstanceGuard::new(&entry, options.validate, windows)?;
         let messenger = options
@@ -136,6 +144,7 @@ impl Context {
             .then(|| ext::debug_utils::Device::new(&instance.raw, &device.raw));
         let push_descriptor =
             push.then(|| khr::push_descriptor::Device::new(&instance.raw, &device.raw));
+        #[cfg(feature = "window")]
         let swapchain = surface
             .is_some()
             .then(|| khr::swapchain::Device::new(&instance.raw, &device.raw));
@@ -153,6 +162,7 @@ impl Context {
             startup,
             device,
             push_descriptor,
+            #[cfg(feature = "window")]
             swapchain,
             debug,
             queue,
@@ -169,15 +179,18 @@ impl Context {
         Ok((context, surface))
     }
 
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn entry(&self) -> &ash::Entry {
         &self.entry
     }
 
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn instance(&self) -> &ash::Instance {
         &self.instance.raw
     }
 
     /// The allocator, for a renderer that manages its own buffers; it must be dropped before the context.
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn shared_allocator(&self) -> Arc<Mutex<Allocator>> {
         Arc::clone(&self.allocator)
     }

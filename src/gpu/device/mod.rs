@@ -6,5 +6,9 @@ pub(in crate::gpu) mod heap;
 pub(in crate::gpu) mod instance;
 pub(in crate::gpu) mod select;
 pub(in crate::gpu) mod startup;
+#[cfg(feature = "window")]
+pub(in crate::gpu) mod surface;
+#[cfg(not(feature = "window"))]
+#[path = "no_surface.rs"]
 pub(in crate::gpu) mod surface;
 pub(in crate::gpu) mod validation;

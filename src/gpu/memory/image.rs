@@ -187,6 +187,7 @@ impl Image {
     }
 
     /// An image of a swapchain, which outlives it.
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn of_swapchain(
         context: &Arc<Context>,
         raw: vk::Image,

@@ -163,6 +163,7 @@ impl<'r> Draws<'_, 'r> {
     }
 
     /// The command buffer and the size of the target, pixels, for a renderer of its own that draws last.
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn foreign(&self) -> (vk::CommandBuffer, [u32; 2]) {
         (self.pass.recorder.command, self.pass.target().size())
     }

@@ -225,6 +225,7 @@ impl Recorder {
     }
 
     /// The next submission waits for this semaphore before it draws to an acquired image.
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn wait_for(&mut self, acquired: vk::Semaphore) {
         self.acquired = Some(acquired);
     }

@@ -7,7 +7,7 @@ use crate::scene::Camera;
 
 gpu_struct! {
     /// `VIEW_BLOCK` of `include/view.glsl`.
-    pub struct ViewBlock {
+    pub struct ViewBlock: view of SSAO_FRAG, LIGHTING_FRAG, BACKGROUND_FRAG, DOME_GATHER_FRAG, DOME_MIRROR_FRAG {
         world_from_view: Mat3,
         eye: Vec3,
         ray_scale: Vec2,
@@ -119,7 +119,6 @@ impl View {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::{GpuStruct, check_layout, shaders};
 
     fn view(jitter: Vec2) -> View {
         let camera = Camera {
@@ -161,18 +160,6 @@ mod tests {
             assert_eq!(z, part_z);
             let back = part.point(b, part.camera.near / z);
             assert!((back - point).length() < 1e-3, "{back}");
-        }
-    }
-
-    #[test]
-    fn host_and_shader_agree() {
-        for stage in [&shaders::SSAO_FRAG, &shaders::LIGHTING_FRAG] {
-            let binding = stage
-                .bindings
-                .iter()
-                .find(|b| b.name == "view")
-                .expect("view");
-            assert_eq!(check_layout(ViewBlock::FIELDS, binding.fields), Ok(()));
         }
     }
 

@@ -2,7 +2,7 @@
 
 use bytemuck::Pod;
 
-use crate::gpu::pipeline::shader::Field;
+use crate::gpu::pipeline::shader::{Field, Shader, text_equals};
 
 /// A host struct whose bytes a shader block (`layout(scalar)`) reads.
 ///
@@ -12,14 +12,31 @@ pub trait GpuStruct: Pod {
     const FIELDS: &'static [Field];
 }
 
-/// Defines a `#[repr(C)]` struct of plain numbers and vectors, and the table of its members for [`check_layout`].
+/// Defines a `#[repr(C)]` struct of plain numbers and vectors that a block of shaders reads, and compares the two at compile
+/// time: `struct NAME: BLOCK of STAGE, ...`. `BLOCK` is the name of a uniform block, or `push`; the stages are those of
+/// [`shaders`](crate::gpu::shaders) that declare it.
+///
+/// Reordered members do not compile:
+/// ```compile_fail
+/// skylight::gpu_struct! {
+///     struct Samples: push of IRRADIANCE_FRAG { count: u32, first: u32 }
+/// }
+/// ```
+/// The block as the shader declares it:
+/// ```
+/// skylight::gpu_struct! {
+///     struct Samples: push of IRRADIANCE_FRAG { first: u32, count: u32 }
+/// }
+/// ```
 #[macro_export]
 macro_rules! gpu_struct {
-    ($(#[$meta:meta])* $vis:vis struct $name:ident { $($(#[$field_meta:meta])* $field:ident : $ty:ty),* $(,)? }) => {
+    ($(#[$meta:meta])* $vis:vis struct $name:ident : $block:ident of $($stage:ident),+ {
+        $($(#[$field_meta:meta])* $field:ident : $ty:ty),* $(,)?
+    }) => {
         $(#[$meta])*
         #[repr(C)]
         #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-        // The members are documented where they are declared first: in the shader's block of the same names.
+        // The members are documented in the shader's block of the same names.
         #[allow(missing_docs)]
         $vis struct $name { $($(#[$field_meta])* $vis $field: $ty),* }
 
@@ -30,14 +47,52 @@ macro_rules! gpu_struct {
                 size: std::mem::size_of::<$ty>() as u32,
             }),*];
         }
+
+        $(const _: () = $crate::gpu::assert_layout(
+            <$name as $crate::gpu::GpuStruct>::FIELDS,
+            stringify!($block),
+            &$crate::gpu::shaders::$stage,
+        );)+
     };
+}
+
+/// Compares a host struct with a block of a stage, at compile time.
+///
+/// # Panics
+/// With the name of the first member that differs in name, offset or size.
+pub const fn assert_layout(host: &[Field], block: &str, stage: &Shader) {
+    let Some(members) = stage.block(block) else {
+        panic!("the stage declares no block of this name");
+    };
+    if let Some(member) = first_difference(host, members) {
+        panic!("{}", member);
+    }
+}
+
+/// Name of the first member in which a host struct and a shader block differ.
+const fn first_difference(host: &[Field], block: &[Field]) -> Option<&'static str> {
+    let mut i = 0;
+    while i < host.len() && i < block.len() {
+        let (h, s) = (host[i], block[i]);
+        if !text_equals(h.name, s.name) || h.offset != s.offset || h.size != s.size {
+            return Some(h.name);
+        }
+        i += 1;
+    }
+    if i < host.len() {
+        Some(host[i].name)
+    } else if i < block.len() {
+        Some(block[i].name)
+    } else {
+        None
+    }
 }
 
 /// Compares a host struct with the members a shader block declares.
 ///
 /// # Errors
 /// Says the first difference: a member's name, offset or size, or their number.
-pub fn check_layout(host: &[Field], block: &[Field]) -> Result<(), String> {
+pub(in crate::gpu) fn check_layout(host: &[Field], block: &[Field]) -> Result<(), String> {
     for (h, s) in host.iter().zip(block) {
         if h != s {
             return Err(format!("host {h:?} but shader {s:?}"));
@@ -72,10 +127,18 @@ mod tests {
     }
 
     #[test]
-    fn the_macro_lists_members() {
-        gpu_struct! {
-            struct Pair { a: f32, b: [f32; 3] }
+    fn the_first_difference_is_found_in_names_offsets_sizes_and_number() {
+        let host = [field("x", 0, 4), field("y", 4, 12)];
+        assert_eq!(first_difference(&host, &host), None);
+        let others = [
+            [field("x", 0, 4), field("z", 4, 12)],
+            [field("x", 0, 4), field("y", 8, 12)],
+            [field("x", 0, 4), field("y", 4, 8)],
+        ];
+        for block in others {
+            assert_eq!(first_difference(&host, &block), Some("y"), "{block:?}");
         }
-        assert_eq!(Pair::FIELDS, &[field("a", 0, 4), field("b", 4, 12)]);
+        assert_eq!(first_difference(&host, &host[..1]), Some("y"));
+        assert_eq!(first_difference(&host[..1], &host), Some("y"));
     }
 }

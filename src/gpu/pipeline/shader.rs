@@ -96,6 +96,33 @@ pub struct Shader {
     pub declared: &'static str,
 }
 
+impl Shader {
+    /// Members of the uniform block of this name, or of the push constants (`push`).
+    pub const fn block(&self, name: &str) -> Option<&'static [Field]> {
+        if text_equals(name, "push") {
+            return self.push;
+        }
+        let mut i = 0;
+        while i < self.bindings.len() {
+            if text_equals(self.bindings[i].name, name) {
+                return Some(self.bindings[i].fields);
+            }
+            i += 1;
+        }
+        None
+    }
+}
+
+/// `a == b`, at compile time.
+pub(in crate::gpu) const fn text_equals(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut i = 0;
+    while i < a.len() && i < b.len() && a[i] == b[i] {
+        i += 1;
+    }
+    i == a.len() && i == b.len()
+}
+
 /// The stages compiled from `shaders_glsl/` by build.rs.
 #[allow(missing_docs)]
 pub mod compiled {

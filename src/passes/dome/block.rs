@@ -9,7 +9,7 @@ use crate::passes::sun_shadow::fit::ShadowView;
 
 gpu_struct! {
     /// The directions of a frame.
-    pub struct DomeBlock {
+    pub struct DomeBlock: dome of DOME_GATHER_FRAG, DOME_MIRROR_FRAG {
         clip_from_world: [[[f32; 4]; 4]; 16],
         planes: [[[f32; 4]; 4]; 16],
         window: [[f32; 4]; 16],

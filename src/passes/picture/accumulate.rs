@@ -11,7 +11,7 @@ use crate::passes::fullscreen;
 
 gpu_struct! {
     /// How many frames there are.
-    pub struct Push {
+    pub struct Push: push of ACCUMULATE_FRAG {
         count: u32,
     }
 }
@@ -61,17 +61,5 @@ impl Accumulate {
     /// The newest mean.
     pub fn image(&self) -> &Image {
         &self.means[0]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::{GpuStruct, check_layout};
-
-    #[test]
-    fn host_and_shader_agree() {
-        let push = shaders::ACCUMULATE_FRAG.push.expect("push");
-        assert_eq!(check_layout(Push::FIELDS, push), Ok(()));
     }
 }

@@ -105,20 +105,3 @@ fn bind_maps(draws: &mut Draws<'_, '_>, bound: &Bound<'_>) {
         draws.texture(name, map.unwrap_or(bound.white), Sampler::Repeat);
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::{GpuStruct, check_layout};
-
-    #[test]
-    fn host_and_shader_agree() {
-        for stage in [
-            &shaders::GBUFFER_DETAILED_VERT,
-            &shaders::GBUFFER_DETAILED_FRAG,
-        ] {
-            let push = stage.push.expect("push");
-            assert_eq!(check_layout(Push::FIELDS, push), Ok(()));
-        }
-    }
-}

@@ -17,7 +17,9 @@ use crate::passes::view::View;
 
 gpu_struct! {
     /// Camera and material of a draw.
-    pub struct Push {
+    pub struct Push: push of
+        GBUFFER_VERT, GBUFFER_FRAG, GBUFFER_LEAN_VERT, GBUFFER_LEAN_FRAG, GBUFFER_DETAILED_VERT, GBUFFER_DETAILED_FRAG
+    {
         clip_from_world: [[f32; 4]; 4],
         eye: Vec3,
         diffuse: Vec3,
@@ -253,7 +255,6 @@ impl Gbuffer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::{GpuStruct, check_layout};
 
     #[test]
     fn normals_come_back() {
@@ -270,21 +271,6 @@ mod tests {
             let decoded = Vec3::from_array(decode_normal(texel));
             let error = (decoded - Vec3::from_array(normal)).length();
             assert!(error < 1e-6, "{texel:?}: {decoded}");
-        }
-    }
-
-    #[test]
-    fn host_and_shader_agree() {
-        for stage in [
-            &shaders::GBUFFER_VERT,
-            &shaders::GBUFFER_FRAG,
-            &shaders::GBUFFER_LEAN_VERT,
-            &shaders::GBUFFER_LEAN_FRAG,
-        ] {
-            assert_eq!(
-                check_layout(Push::FIELDS, stage.push.expect("push")),
-                Ok(())
-            );
         }
     }
 }

@@ -9,6 +9,7 @@ mod measure;
 mod report;
 mod sheet;
 mod statistics;
+mod subdivide;
 mod sweep;
 mod table;
 mod work;

@@ -19,9 +19,6 @@ pub struct BenchArgs {
     /// Write the table as CSV too, every row complete: device, commit, scene, size ..
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
-    /// Draw the table as a chart too.
-    #[arg(long, value_name = "FILE.svg", value_parser = named(&["svg"]))]
-    pub svg: Option<PathBuf>,
     /// Frames to measure; 10 by default at each step of a sweep.
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1_000_000), default_value_t = 100,
           default_value_if("sweep", ArgPredicate::IsPresent, "10"))]

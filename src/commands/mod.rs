@@ -19,6 +19,7 @@ mod sky_report;
 mod sky_table;
 mod startup;
 mod tiled;
+#[cfg(feature = "window")]
 pub mod view;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -37,11 +38,14 @@ pub fn run(command: Command) -> Result<()> {
             output,
             options,
         } => render::run(scene.as_deref(), &output, &options),
+        #[cfg(feature = "window")]
         Command::View {
             scene,
             resume,
             options,
         } => view::run(scene.as_deref(), resume, options),
+        #[cfg(not(feature = "window"))]
+        Command::View { .. } => Err(crate::error::Error::NoWindow),
         Command::Bench { args, options } => bench::run(&args, options),
         Command::Sky { args, options } => sky::run(&args, options),
         Command::Bake { args, options } => bake::run(&args, options),

@@ -4,16 +4,13 @@
 //! is submitted alone and waited for. The whole frame is one submission.
 
 mod baseline;
-mod chart;
 mod hills;
 mod measure;
 mod report;
-mod routes;
 mod sheet;
 mod statistics;
 mod subdivide;
 mod sweep;
-mod sweep_chart;
 mod table;
 mod work;
 
@@ -27,11 +24,10 @@ use crate::output::{check_writable, print, write_text};
 use baseline::Baseline;
 use measure::{Bench, Subject};
 use report::{Head, Report};
-use sweep::SweepReport;
 
 impl BenchArgs {
     fn files(&self) -> impl Iterator<Item = &Path> {
-        let files = [&self.json, &self.csv, &self.svg];
+        let files = [&self.json, &self.csv];
         files.into_iter().filter_map(|file| file.as_deref())
     }
 }
@@ -49,16 +45,17 @@ pub fn run(args: &BenchArgs, mut options: OptionValues) -> Result<()> {
     if let Some(sweep) = args.sweep {
         let report = sweep::run(sweep, &job, &context, args.motion, head)?;
         context.check_validation()?;
-        write_sweep(args, &report)?;
+        write(&args.json, || report.json())?;
+        write(&args.csv, || report.csv())?;
         return print(&report.to_string());
     }
     let subject = Subject::new(&job);
     let mut bench = Bench::new(&subject, &job.scene, &context, args.motion)?;
     let measured = bench.run(args.frames)?;
-    let routes = routes::measure(&job, &context, args.frames)?;
-    let report = Report::new(head, &measured, routes);
+    let report = Report::new(head, &measured);
     context.check_validation()?;
-    write_files(args, &report)?;
+    write(&args.json, || report.json())?;
+    write(&args.csv, || sheet::csv(&report))?;
     print(&report.to_string())?;
     let Some(baseline) = baseline else {
         return Ok(());
@@ -66,18 +63,6 @@ pub fn run(args: &BenchArgs, mut options: OptionValues) -> Result<()> {
     print(&baseline.table(&report))?;
     args.fail_above
         .map_or(Ok(()), |factor| baseline.check(&report, factor))
-}
-
-fn write_files(args: &BenchArgs, report: &Report) -> Result<()> {
-    write(&args.json, || report.json())?;
-    write(&args.csv, || sheet::csv(report))?;
-    write(&args.svg, || chart::draw(report))
-}
-
-fn write_sweep(args: &BenchArgs, report: &SweepReport) -> Result<()> {
-    write(&args.json, || report.json())?;
-    write(&args.csv, || report.csv())?;
-    write(&args.svg, || sweep_chart::draw(report))
 }
 
 /// Writes a file that is wanted.

@@ -5,7 +5,7 @@
 #include "materials.glsl"
 #include "octahedral.glsl"
 #include "phong.glsl"
-#include "view.glsl"
+#include "face.glsl"
 #include "dome.glsl"
 
 // Mirror images of the sky under its visibility, rho_s V(x, r) L_sky(r) of the lecture's rendering equation: what the mirror
@@ -26,7 +26,7 @@ layout(constant_id = 2) const bool NORMALIZED = false;
 layout(constant_id = 3) const bool ALBEDO_IMAGE = true;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform usampler2D words;
+layout(set = 0, binding = 1) uniform usampler2D normal_material;
 layout(set = 0, binding = 2) uniform sampler2D albedo;         // with ALBEDO_IMAGE; else any
 layout(set = 0, binding = 3) uniform sampler2D previous_mirror;
 layout(set = 0, binding = 4) uniform sampler2D previous_lobe;
@@ -42,25 +42,24 @@ layout(push_constant, scalar) uniform Push {
     float specular_scale; // factor on every rho_s
 } push;
 
-#include "face.glsl"
-
 // Lobes narrower than the directions lie apart would show which of them is nearest.
 const float SHARPEST = 256.0;
 
 void gather(vec2 uv, float d) {
-    uvec3 own = textureLod(words, uv, 0.0).xyz;
+    vec3 ray = view_ray(uv, view.ray_scale, view.ray_offset);
+    uvec3 own = textureLod(normal_material, uv, 0.0).xyz;
     vec4 m = material_specular(materials, own.y);
     vec3 rho_s = m.rgb * (pixel_albedo(ALBEDO_IMAGE, albedo, materials, own.y, uv).a * push.specular_scale);
     if (all(lessThanEqual(rho_s, vec3(0.0)))) return;
     vec3 n = normal_unpack(own.x);
-    vec3 toward = view.world_from_view * in_view(uv, d);
+    vec3 toward = view.world_from_view * (ray * (view.near / d));
     vec3 world = view.eye + toward;
     toward = normalize(toward);
     if (FRESNEL) rho_s = grazing(rho_s, m.a, -dot(toward, n));
     vec3 r = reflect(toward, n);
     mirror.rgb = rho_s * (NORMALIZED ? sky_in_lobe(sky_radiance, r, n, m.a, push.shift)
                                      : textureLod(sky_radiance, r, 0.0).rgb);
-    vec3 face = face_normal(uv, own.z);
+    vec3 face = view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale);
     float p = clamp(m.a, 1.0, SHARPEST);
     for (int k = 0; k < DIRECTIONS; ++k) {
         vec3 w = dome.toward[k].xyz;

@@ -6,7 +6,7 @@
 #include "occlusion.glsl"
 #include "octahedral.glsl"
 #include "phong.glsl"
-#include "view.glsl"
+#include "face.glsl"
 
 // The lecture's slide "Illumination model for skylight":
 //   L_r = rho_d/pi ((n.l) V E_sun + A E_sky(n)) + rho_s ((r.l)^p V E_sun + L_sky(r))
@@ -43,7 +43,7 @@ layout(constant_id = 16) const bool PCSS = false;
 layout(constant_id = 17) const bool NORMALIZED = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform usampler2D words;
+layout(set = 0, binding = 1) uniform usampler2D normal_material;
 layout(set = 0, binding = 2) uniform sampler2D albedo;      // with ALBEDO_IMAGE; else any
 layout(set = 0, binding = 3) uniform usampler2D occlusion;
 layout(set = 0, binding = 4) uniform sampler2D shadow_map; // reversed: 1 is nearest the sun
@@ -63,7 +63,6 @@ layout(set = 0, binding = 8, scalar) uniform Sun {
 
 layout(set = 0, binding = 9) uniform sampler2D materials; // see materials.glsl
 
-#include "face.glsl"
 #include "sun_shadow.glsl"
 
 /// V of one point of the sun's disc: what is left to error is the map's texel, which the mean over many maps makes even.
@@ -107,7 +106,7 @@ void main() {
     // The depth test leaves only pixels with a surface: d > 0.
     float distance = view.near / d;
     vec3 world = view.eye + world_ray * distance;
-    uvec3 own = textureLod(words, uv, 0.0).xyz;
+    uvec3 own = textureLod(normal_material, uv, 0.0).xyz;
     vec3 n = normal_unpack(own.x);
     uint word = own.y;
     vec4 surface = pixel_albedo(ALBEDO_IMAGE, albedo, materials, word, uv);
@@ -115,7 +114,7 @@ void main() {
 
     float V = 0.0;
     if (n_dot_l > 0.0) {
-        if (PLANE_SHADOW) V = plane_visibility(world, n, face_normal(uv, own.z));
+        if (PLANE_SHADOW) V = plane_visibility(world, n, view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale));
         else if (CASCADES > 1 || PCSS) V = sun_visibility(world, n, n_dot_l);
         else V = visibility(world, n, n_dot_l);
     }

@@ -17,7 +17,7 @@ layout(constant_id = 0) const int STEPS = 12;    // on each side of the slice
 layout(constant_id = 1) const int DOWNSCALE = 2; // pixels of the G-buffer to one of the occluders, each way
 
 layout(set = 0, binding = 0) uniform usampler2D occluders;
-layout(set = 0, binding = 1) uniform usampler2D words;
+layout(set = 0, binding = 1) uniform usampler2D normal_material;
 layout(set = 0, binding = 2, scalar) uniform View { VIEW_BLOCK } view;
 
 layout(set = 0, binding = 5) uniform sampler2D depth;
@@ -65,7 +65,7 @@ uint occluder_at(vec2 texel) {
 }
 
 vec3 normal_at(vec2 texel) {
-    return normal_unpack(textureLod(words, (texel * float(DOWNSCALE) + 0.5) * pixel_size, 0.0).r) * view.world_from_view;
+    return normal_unpack(textureLod(normal_material, (texel * float(DOWNSCALE) + 0.5) * pixel_size, 0.0).r) * view.world_from_view;
 }
 
 /// Past the picture's edge that of its last pixel.
@@ -264,7 +264,7 @@ float slice_occlusion(float turn, float jitter, float dither, float distance) {
 void main() {
     ivec2 own = ivec2(gl_FragCoord.xy);
     vec2 texel = vec2(own * OCCLUSION_SPACING);
-    vec2 full_size = vec2(textureSize(words, 0));
+    vec2 full_size = vec2(textureSize(normal_material, 0));
     ray_step = 2.0 * float(DOWNSCALE) / full_size * view.ray_scale;
     ray_base = view_ray(0.5 / full_size, view.ray_scale, view.ray_offset).xy;
     texel_size = 1.0 / vec2(textureSize(occluders, 0));

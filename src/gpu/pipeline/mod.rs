@@ -16,7 +16,7 @@ use ash::vk;
 use crate::gpu::device::context::Context;
 use crate::gpu::device::fault::Call;
 use crate::gpu::error::{During, Result};
-use crate::gpu::pipeline::shader::{Binding, Field, Shader};
+use crate::gpu::pipeline::shader::{Binding, Field, Shader, Stage};
 use crate::gpu::pipeline::stages::{Constants, Modules};
 use crate::gpu::pipeline::state::{depth_state, rasterization, vertex_streams};
 use crate::gpu::record::compute;
@@ -138,7 +138,8 @@ impl Pipeline {
     /// When the driver refuses.
     ///
     /// # Panics
-    /// When the stages contradict each other or a constant is not declared: a fault of this program.
+    /// When the stages contradict each other, a constant is not declared, or a fragment shader does not write exactly the colour
+    /// attachments: a fault of this program.
     pub fn new(context: &Arc<Context>, desc: &PipelineDesc<'_>) -> Result<Self> {
         let start = Instant::now();
         let slots = merge_slots(desc.stages);
@@ -152,6 +153,14 @@ impl Pipeline {
                 declared,
                 "{}: no stage declares the constant {name}",
                 desc.name
+            );
+        }
+        for shader in desc.stages.iter().filter(|s| s.stage == Stage::Fragment) {
+            let (outputs, targets) = (shader.outputs, desc.colors.len());
+            assert_eq!(
+                outputs, targets,
+                "{}: outputs of {}",
+                desc.name, shader.name
             );
         }
         let mut pipeline = Self {

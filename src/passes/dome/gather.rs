@@ -296,7 +296,11 @@ impl Dome {
         recorder
             .pass("dome: gather", &self.gather)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample("words", &surfaces.words, Sampler::Nearest)
+            .sample(
+                "normal_material",
+                &surfaces.normal_material,
+                Sampler::Nearest,
+            )
             .sample("albedo", albedo, Sampler::Nearest)
             .sample("materials", gathered.materials, Sampler::Nearest)
             .sample("frame", gathered.frame, Sampler::Nearest)

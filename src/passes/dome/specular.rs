@@ -120,7 +120,11 @@ impl Mirror {
         recorder
             .pass("dome: mirrors", &self.gather)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample("words", &surfaces.words, Sampler::Nearest)
+            .sample(
+                "normal_material",
+                &surfaces.normal_material,
+                Sampler::Nearest,
+            )
             .sample("albedo", albedo, Sampler::Nearest)
             .sample("previous_mirror", old_mirror, Sampler::Nearest)
             .sample("previous_lobe", old_lobe, Sampler::Nearest)

@@ -312,7 +312,11 @@ impl Lighting {
         recorder
             .pass("lighting", &self.pipeline)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample("words", &surfaces.words, Sampler::Nearest)
+            .sample(
+                "normal_material",
+                &surfaces.normal_material,
+                Sampler::Nearest,
+            )
             .sample("albedo", albedo, Sampler::Nearest)
             .sample("occlusion", occlusion, Sampler::Nearest)
             .sample("shadow_map", light.shadow_map, Sampler::Nearest)

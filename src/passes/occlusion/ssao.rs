@@ -149,7 +149,11 @@ impl Ssao {
         recorder
             .pass("SSAO occluders", &self.pack)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample("words", &surfaces.words, Sampler::Nearest)
+            .sample(
+                "normal_material",
+                &surfaces.normal_material,
+                Sampler::Nearest,
+            )
             .push(&PackPush {
                 near: view.camera.near,
             })
@@ -163,7 +167,11 @@ impl Ssao {
         recorder
             .pass("SSAO", &self.trace)
             .sample("occluders", &self.occluders, Sampler::Nearest)
-            .sample("words", &surfaces.words, Sampler::Nearest)
+            .sample(
+                "normal_material",
+                &surfaces.normal_material,
+                Sampler::Nearest,
+            )
             .sample("depth", &surfaces.depth, Sampler::Nearest)
             .uniform("view", &view.block())
             .sample("cover", cover.image(), Sampler::Nearest)

@@ -69,7 +69,7 @@ pub(in crate::passes) fn surface(material: &Material) -> Surface {
         specular_map: material.specular_texture,
         normal_map: material.normal_texture,
         normal_scale: material.normal_scale,
-        mirrors: material.specular != [0.0; 3],
+        is_specular: material.specular != [0.0; 3],
         // The opacity of the material multiplies that of the map: the same test with one factor less.
         cutoff: material
             .alpha_cutoff

@@ -1,11 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "colour.glsl"
 #include "constants.glsl"
+#include "dome.glsl"
 #include "materials.glsl"
 #include "octahedral.glsl"
-#include "face.glsl"
-#include "dome.glsl"
 
 // The light of the sky by shadow maps from directions of the sky: E = 1/n sum V (n.w) L/p, and what it would be without V.
 // Both are averaged over the frames, with everything else that the frames show; their quotient is A, weighted by the light.
@@ -30,10 +30,8 @@ layout(set = 0, binding = 2) uniform sampler2D albedo;         // with ALBEDO_IM
 layout(set = 0, binding = 3) uniform sampler2D frame;          // kcd/m^2, without the sky's light
 layout(set = 0, binding = 4) uniform sampler2D previous_sky;
 layout(set = 0, binding = 5) uniform sampler2D previous_rest;
-layout(set = 0, binding = 6) uniform sampler2D maps;           // reversed: 1 is nearest the light
 layout(set = 0, binding = 7) uniform samplerCube sky_irradiance; // E of sky and ground, klx
 layout(set = 0, binding = 8, scalar) uniform View { VIEW_BLOCK } view;
-layout(set = 0, binding = 9, scalar) uniform Dome { DOME_BLOCK } dome;
 layout(set = 0, binding = 10) uniform sampler2D materials; // see materials.glsl
 
 layout(push_constant, scalar) uniform Push {
@@ -51,9 +49,7 @@ vec4 light_of_directions(vec3 world, vec3 n, vec3 face) {
         if (cosine <= 0.0) continue;
         vec3 light = dome.light[k].rgb * cosine;
         whole += luminance(light) * dome.light[k].a;
-        if (is_turned_away(face, n, dome.toward[k].xyz)) continue;
-        bool lit = is_lit_in_plane(maps, dome.clip_from_world[k], dome.planes[k], dome.window[k], dome.toward[k].a, world, face);
-        if (lit) visible += light;
+        if (is_lit_from(k, world, n, face)) visible += light;
     }
     return vec4(visible, whole);
 }

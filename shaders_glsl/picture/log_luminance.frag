@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "constants.glsl"
+#include "colour.glsl"
 
 // Reinhard et al. 2002, eq. 1: the log-average luminance, in two steps. Here: the mean of log2 L over one tile.
 

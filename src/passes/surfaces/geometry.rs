@@ -8,8 +8,7 @@ use glam::Vec3;
 use crate::gpu::{Buffer, BufferKind, Draws, Image, Recorder, Result, upload_buffer};
 use crate::scene::{self, Bounds, Cluster, Layout, Scene};
 
-use crate::passes::surfaces::culling::Cull;
-use crate::passes::surfaces::draw_runs::Runs;
+use crate::passes::surfaces::culling::{Cull, Runs};
 use crate::passes::surfaces::upload::{
     normals_and_thickness, surface, upload, upload_details, upload_materials, white,
 };
@@ -28,23 +27,23 @@ pub struct Part {
     pub casts: bool,
 }
 
-/// What the shaders of a part must do besides the plain minimum; each kind has a pipeline of its own.
+/// What the shaders of a part do; each kind has a pipeline.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Kind {
-    /// Read colours at its vertices.
+    /// Read vertex colours.
     pub colours: bool,
     /// Read a normal map.
     pub normal_map: bool,
-    /// Leave holes.
+    /// Discard by alpha.
     pub cut_out: bool,
-    /// Read a map of ρ_d.
+    /// Read a texture of ρ_d.
     pub diffuse_map: bool,
-    /// Read a map of the factor on ρ_s.
+    /// Read a texture of the factor on ρ_s.
     pub specular_map: bool,
 }
 
 impl Kind {
-    /// Whether it needs more than maps of ρ_d and ρ_s.
+    /// Whether it needs more than textures of ρ_d and ρ_s.
     pub fn is_detailed(&self) -> bool {
         self.colours || self.normal_map || self.cut_out
     }
@@ -177,13 +176,13 @@ impl Geometry {
         &self.casters
     }
 
-    /// Clusters of the whole picture of which this view is a part.
+    /// Clusters visible in the whole picture of which this view is a part.
     pub fn seen(&self, view: &View) -> impl Iterator<Item = &Cluster> {
         let cull = Cull::camera(&view.whole());
         self.clusters.iter().filter(move |c| cull.sees(c))
     }
 
-    /// Those that lie within the pyramid of a view, whichever way they face.
+    /// Clusters within the frustum of a view, back-facing ones too.
     pub fn around(&self, view: &View) -> impl Iterator<Item = &Cluster> {
         let cull = Cull::camera(&view.whole());
         self.clusters.iter().filter(move |c| cull.holds(c))
@@ -207,7 +206,7 @@ impl Geometry {
         self.kinds().any(varies)
     }
 
-    /// Draws everything that casts a shadow into what `cull` sees and has no holes, positions only.
+    /// Draws all opaque casters that `cull` keeps, positions only.
     pub fn draw_positions(&self, draws: &mut Draws<'_, '_>, cull: &Cull) {
         if self.clusters.is_empty() {
             return;
@@ -331,7 +330,7 @@ fn is_untextured(part: &Part, cluster: &Cluster) -> bool {
     part.kind == Kind::default() && cluster.is_wound
 }
 
-/// A scene's indices and layout: loading has found them, a scene that was made has none yet.
+/// A scene's indices and layout: those of its file, or new ones for a scene that was made in memory.
 fn arranged(scene: &Scene) -> (Cow<'_, [u32]>, Cow<'_, Layout>) {
     match &scene.layout {
         Some(layout) => (Cow::Borrowed(&scene.indices), Cow::Borrowed(layout)),

@@ -42,22 +42,23 @@ pub(in crate::passes) fn normals_and_thickness(scene: &Scene, layout: &Layout) -
 }
 
 /// Materials in a row of the table of materials.
-const MATERIAL_COLUMNS: usize = 1024;
+pub(in crate::passes) const MATERIAL_COLUMNS: u32 = 1024;
 
 /// The table of `include/materials.glsl`.
 pub(in crate::passes) fn upload_materials(
     recorder: &mut Recorder,
     materials: &[Material],
 ) -> Result<Image> {
-    let rows = 2 * materials.len().div_ceil(MATERIAL_COLUMNS).max(1);
-    let mut table = vec![[0.0f32; 4]; rows * MATERIAL_COLUMNS];
+    let columns = MATERIAL_COLUMNS as usize;
+    let rows = 2 * materials.len().div_ceil(columns).max(1);
+    let mut table = vec![[0.0f32; 4]; rows * columns];
     for (i, material) in materials.iter().enumerate() {
-        let at = i / MATERIAL_COLUMNS * 2 * MATERIAL_COLUMNS + i % MATERIAL_COLUMNS;
+        let at = i / columns * 2 * columns + i % columns;
         let ([r, g, b], [x, y, z]) = (material.diffuse, material.specular);
         table[at] = [r, g, b, 0.0];
-        table[at + MATERIAL_COLUMNS] = [x, y, z, material.shininess];
+        table[at + columns] = [x, y, z, material.shininess];
     }
-    let size = [MATERIAL_COLUMNS as u32, rows as u32];
+    let size = [MATERIAL_COLUMNS, rows as u32];
     let desc = ImageDesc::flat("materials", Format::R32G32B32A32_SFLOAT, size);
     upload_texture(recorder, &desc, &[bytemuck::cast_slice(&table)])
 }

@@ -35,7 +35,7 @@ impl Body {
     }
 }
 
-/// Share of the mean chord that counts of a solid. The occlusion doubles it: a little over a sphere's diameter, which is 1.5.
+/// Share of the mean chord that is a solid's thickness, for ambient occlusion.
 const SOLID: f32 = 0.8;
 
 /// Mean chord over largest extent below which a body is a sheet.

@@ -34,6 +34,8 @@ pub struct ImageDesc<'a> {
     pub kind: ImageKind,
     /// Mip levels, at least one.
     pub levels: u32,
+    /// Whether compute shaders may write it.
+    pub is_stored: bool,
 }
 
 impl<'a> ImageDesc<'a> {
@@ -45,6 +47,7 @@ impl<'a> ImageDesc<'a> {
             size,
             kind: ImageKind::Flat,
             levels: 1,
+            is_stored: false,
         }
     }
 
@@ -56,6 +59,16 @@ impl<'a> ImageDesc<'a> {
             size: [edge, edge],
             kind: ImageKind::Cube,
             levels: 1,
+            // On devices without geometry shaders.
+            is_stored: true,
+        }
+    }
+
+    /// The same for compute shaders to write.
+    pub fn stored(self) -> Self {
+        Self {
+            is_stored: true,
+            ..self
         }
     }
 
@@ -115,8 +128,7 @@ fn usage(desc: &ImageDesc<'_>) -> vk::ImageUsageFlags {
         common | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT
     } else if levels > 1 && is_block_or_srgb_texture(format) {
         common
-    } else if desc.kind == ImageKind::Cube {
-        // Compute shaders write cubes where there are no geometry shaders.
+    } else if desc.is_stored {
         common | vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE
     } else {
         common | vk::ImageUsageFlags::COLOR_ATTACHMENT

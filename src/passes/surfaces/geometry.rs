@@ -327,7 +327,7 @@ impl Geometry {
 
 /// Whether a cluster needs neither maps nor the side of its normals found out.
 fn is_untextured(part: &Part, cluster: &Cluster) -> bool {
-    part.kind == Kind::default() && cluster.is_wound
+    part.kind == Kind::default() && cluster.normals_match_winding
 }
 
 /// A scene's indices and layout: those of its file, or new ones for a scene that was made in memory.

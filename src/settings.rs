@@ -72,9 +72,9 @@ pub struct Options {
     /// [default: 55.79,12.52].
     #[arg(long, value_name = "LAT,LON|CITY", value_parser = Place::parse, allow_hyphen_values = true, help_heading = "Sun and sky")]
     pub place: Option<Place>,
-    /// Moment: with a UTC offset (2026-12-21T15:00+01:00), with a time zone ("2026-12-21 15:00 Asia/Tokyo"), or local time of
-    /// --place ("2026-12-21 15:00"): of the nearest listed city within 1000 km, else the hour of the longitude. Years -500 to
-    /// 3000 [default: 15:00 local time on 2026-06-21].
+    /// Date and time: with a UTC offset (2026-12-21T15:00+01:00), with a time zone ("2026-12-21 15:00 Asia/Tokyo"), or in local
+    /// time of --place ("2026-12-21 15:00"). A place has the time zone of the nearest listed city within 1000 km, else the
+    /// whole hour of its longitude. Years -500 to 3000 [default: 15:00 local time on 2026-06-21].
     #[arg(
         long,
         value_name = "MOMENT",

@@ -44,9 +44,9 @@ options! {
             /// Latitude and longitude, degrees, north and east positive (-33.87,151.21 or "33.87 S, 151.21 E"), or the name of a city.
             #[arg(value_name = "LAT,LON|CITY", value_parser = Place::parse, allow_hyphen_values = true, default_value_t)]
             place: Place,
-            /// Moment: with a UTC offset (2026-12-21T15:00+01:00), with a time zone ("2026-12-21 15:00 Asia/Tokyo"), or local time of
-            /// --place ("2026-12-21 15:00"): of the nearest listed city within 1000 km, else the hour of the longitude. Years -500
-            /// to 3000; by default 15:00 local time on 2026-06-21.
+            /// Date and time: with a UTC offset (2026-12-21T15:00+01:00), with a time zone ("2026-12-21 15:00 Asia/Tokyo"), or in
+            /// local time of --place ("2026-12-21 15:00"). A place has the time zone of the nearest listed city within 1000 km,
+            /// else the whole hour of its longitude. Years -500 to 3000; by default 15:00 local time on 2026-06-21.
             #[arg(value_name = "MOMENT", allow_hyphen_values = true)]
             when: Option<When>,
             /// Day of the year and solar time in hours, with the latitude of --place.

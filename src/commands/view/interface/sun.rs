@@ -339,6 +339,47 @@ mod tests {
         assert_eq!(names("a").len(), MAX_FOUND);
     }
 
+    /// The place and the moment after `text` and Enter were typed into the field.
+    fn entered(text: &str) -> (String, String) {
+        let context = egui::Context::default();
+        let (mut field, mut place) = (PlaceField::default(), Place::default());
+        let mut when = default_moment(place);
+        let key = |key| egui::Event::Key {
+            key,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers: egui::Modifiers::NONE,
+        };
+        // Tab moves the focus to the field.
+        let typed = egui::Event::Text(text.to_owned());
+        for event in [
+            None,
+            Some(key(Key::Tab)),
+            Some(typed),
+            Some(key(Key::Enter)),
+        ] {
+            let input = egui::RawInput {
+                events: event.into_iter().collect(),
+                ..egui::RawInput::default()
+            };
+            let output = context.run_ui(input, |ui| {
+                field.show(ui, &mut place.latitude, &mut place.longitude, &mut when);
+            });
+            output.drop_without_applying_deltas();
+        }
+        (place.to_string(), when.to_rfc3339())
+    }
+
+    #[test]
+    fn enter_takes_the_suggestion() {
+        let tokyo = "35.68° N, 139.69° E".to_owned();
+        let afternoon = "2026-06-21T15:00:00+09:00".to_owned();
+        assert_eq!(entered("toky"), (tokyo, afternoon));
+        assert_eq!(entered("-33.87 N, 151.21").0, "33.87° S, 151.21° E");
+        assert_eq!(entered("").0, "55.79° N, 12.52° E");
+    }
+
     #[test]
     fn sliders_keep_summer_time_and_a_clock_of_the_users_own() {
         let zone = Zone::parse("Europe/Copenhagen").expect("a zone");

@@ -321,6 +321,7 @@ fn events_text(events: &SunEvents) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::daylight::moment::default_moment;
 
     fn names(text: &str) -> Vec<String> {
         suggestions(text)

@@ -18,8 +18,17 @@ fn stage_kind(path: &Path) -> Option<ShaderKind> {
     }
 }
 
-/// Compiles the stage `name`, a path below the folder of all shaders; includes lie in that folder's `include`. With `debug` it
-/// keeps names and lines, unoptimised.
+/// Variants of a stage, as its source lists them: each line `// Variant: A B` asks for the stage with the macros A and B defined,
+/// which is called by the name of its file, `+A+B`. Specialization constants do for all that is not an interface of the stage.
+pub fn variants(source: &str) -> impl Iterator<Item = String> {
+    let listed = source
+        .lines()
+        .filter_map(|l| l.strip_prefix("// Variant: "));
+    listed.map(|macros| macros.split_whitespace().map(|m| format!("+{m}")).collect())
+}
+
+/// Compiles the stage `name`, a path below the folder of all shaders with the macros of a variant; includes lie in that folder's
+/// `include`. With `debug` it keeps names and lines, unoptimised.
 ///
 /// # Errors
 /// The compiler's lines, `file:line: message`.
@@ -29,7 +38,8 @@ pub fn compile(
     name: &str,
     debug: bool,
 ) -> Result<Vec<u32>, String> {
-    let path = &shaders.join(name);
+    let mut parts = name.split('+');
+    let path = &shaders.join(parts.next().unwrap_or_default());
     let source = fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
     let kind = stage_kind(path).ok_or_else(|| format!("{}: no stage", path.display()))?;
     let folder = shaders.join("include");
@@ -42,6 +52,9 @@ pub fn compile(
         _ => SpirvVersion::V1_6,
     });
     options.set_warnings_as_errors();
+    for defined in parts {
+        options.add_macro_definition(defined, None);
+    }
     if debug {
         options.set_generate_debug_info();
         options.set_optimization_level(OptimizationLevel::Zero);

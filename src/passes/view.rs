@@ -51,7 +51,7 @@ impl View {
         }
     }
 
-    /// The same from so many metres behind: on all sides it sees equally far beside this one.
+    /// The view from so many metres behind: it sees that far beside this one on all sides.
     pub fn from_behind(&self, metres: f32) -> Self {
         let mut view = *self;
         view.camera.eye -= view.camera.forward() * metres;

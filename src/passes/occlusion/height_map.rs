@@ -65,6 +65,7 @@ impl Cover {
         if self.serves(radius) && !std::mem::replace(&mut self.is_drawn, true) {
             let tile = Tile {
                 view: self.view,
+                mask: None,
                 origin: [0; 2],
                 edge: EDGE,
             };

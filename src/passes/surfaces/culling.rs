@@ -1,5 +1,7 @@
-//! What a view cannot see: clusters outside of its pyramid, and those of solids that turn their backs. To a light, also what
-//! shades nothing that is in the picture.
+//! What a view cannot see: clusters outside of its pyramid, and those of solids that turn their backs. To a light, also casters
+//! that shadow nothing in the picture.
+
+use std::sync::Arc;
 
 use glam::{DVec2, Mat4, Vec3};
 
@@ -7,7 +9,7 @@ use crate::gpu::{Faces, Winding};
 use crate::scene::{Bounds, Cluster};
 
 use crate::passes::sun_shadow::fit::ShadowView;
-use crate::passes::sun_shadow::receiver_mask::Shade;
+use crate::passes::sun_shadow::receiver_mask::ReceiverMask;
 use crate::passes::view::View;
 
 /// From where a view looks.
@@ -20,14 +22,14 @@ enum Viewer {
 }
 
 /// A view as culling sees it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Cull {
     /// Left, right, bottom, top, a row each: inside where the product with (p, 1) is not negative.
     sides: Mat4,
     viewer: Viewer,
     front: Winding,
-    /// Of a light: what it shades in the picture.
-    shade: Option<Shade>,
+    /// Of a light: the receivers in the picture; all of the map without one.
+    mask: Option<Arc<ReceiverMask>>,
 }
 
 impl Cull {
@@ -52,10 +54,12 @@ impl Cull {
     /// For a directional light.
     pub fn light(map: &ShadowView) -> Self {
         let viewer = Viewer::Toward(map.toward);
-        Self {
-            shade: Some(map.shade),
-            ..Self::new(map.shadow_from_world, viewer, map.inside, map.texel)
-        }
+        Self::new(map.shadow_from_world, viewer, map.inside, map.texel)
+    }
+
+    /// Leaves out casters that shadow none of these receivers.
+    pub fn masked(self, mask: Option<Arc<ReceiverMask>>) -> Self {
+        Self { mask, ..self }
     }
 
     fn new(clip_from_world: Mat4, viewer: Viewer, at: Vec3, size: f32) -> Self {
@@ -67,14 +71,14 @@ impl Cull {
             sides: sides(&clip_from_world),
             viewer,
             front: front(clip_from_world, toward, at, size),
-            shade: None,
+            mask: None,
         }
     }
 
     /// Whether some of a cluster may be seen.
     pub fn sees(&self, cluster: &Cluster) -> bool {
-        let shades = |shade: &Shade| shade.may_be_shaded_by(cluster);
-        self.holds(cluster) && !self.is_behind(cluster) && self.shade.as_ref().is_none_or(shades)
+        let casts = |mask: &Arc<ReceiverMask>| mask.is_shadowed_by(cluster);
+        self.holds(cluster) && !self.is_behind(cluster) && self.mask.as_ref().is_none_or(casts)
     }
 
     /// Whether some of it is within the view's sides.

@@ -230,6 +230,19 @@ impl Frame {
         self.drawn = Some(Drawn { index, view });
     }
 
+    /// Sets the share of the way, in log luminance, that an automatic exposure moves toward that of each following picture: 1 (the
+    /// default) adapts at once, [`crate::daylight::exposure::adaptation`] smoothly.
+    pub fn set_adaptation(&mut self, share: f64) {
+        self.exposure.set_share(share as f32);
+    }
+
+    /// Exposes the newest picture again, which adapts the exposure further. `rec` must be recording.
+    pub fn expose(&self, rec: &mut Recorder) {
+        let radiance = self.radiance();
+        let average = self.exposure.record(rec, radiance);
+        self.tone_map.record(rec, radiance, average);
+    }
+
     /// Tone maps the newest picture again, by other settings. `rec` must be recording, with no frame in flight.
     ///
     /// # Errors
@@ -239,7 +252,7 @@ impl Frame {
             tone,
             ..self.settings
         };
-        let mut tone_map = settings.tone_map(&self.context)?;
+        let tone_map = settings.tone_map(&self.context)?;
         tone_map.record(rec, self.radiance(), self.exposure.image());
         self.tone_map = tone_map;
         self.settings = settings;

@@ -48,13 +48,9 @@ pub fn load_options(options: &Options) -> LoadOptions {
     }
 }
 
-/// Where processed scenes are kept: the user's folder for what may be deleted at any time.
+/// Where processed scenes and pipelines are kept: the user's folder for files that may be deleted at any time.
 fn cache_folder() -> Option<PathBuf> {
-    let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
-    let base = set("XDG_CACHE_HOME").map(PathBuf::from);
-    let base = base.filter(|path| path.is_absolute());
-    let folder = base.or_else(|| Some(PathBuf::from(set("HOME")?).join(".cache")))?;
-    Some(folder.join("skylight"))
+    Some(dirs::cache_dir()?.join("skylight"))
 }
 
 /// How a device is to be opened.
@@ -67,8 +63,9 @@ pub fn context_options(
         device,
         validate,
         without: without.into_iter().collect(),
-        cache_folder: dirs::cache_dir().map(|folder| folder.join("skylight")),
+        cache_folder: cache_folder(),
         fault: std::env::var("SKYLIGHT_FAULT").ok(),
+        ..ContextOptions::default()
     }
 }
 
@@ -109,7 +106,7 @@ impl Job {
     /// # Errors
     /// A scene that cannot be read, or options that make no sense.
     pub fn new(path: Option<&Path>, options: Options) -> Result<Self> {
-        let loaded = scene::load_telling(path, &load_options(&options), &|_, _| ())?;
+        let loaded = scene::load_with_progress(path, &load_options(&options), &|_, _| ())?;
         let job = Self::of(path, loaded, options)?;
         if !job.settings.quiet {
             for warning in job.warnings() {

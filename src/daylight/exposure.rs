@@ -30,18 +30,71 @@ pub fn ev100_from_camera(aperture: f64, shutter_s: f64, iso: f64) -> f64 {
     (aperture * aperture / shutter_s * 100.0 / iso).log2()
 }
 
-/// Reinhard et al. 2002, eq. 1: log-average (geometric mean) of luminances, cd/m².
+/// Luminance below which a pixel is black and does not count, cd/m²: the smallest step of a half float in kcd/m².
+pub const BLACK: f64 = 1e3 / (1 << 24) as f64;
+/// Resolution of the histogram that finds the median, bins per stop.
+pub const BINS_PER_STOP: f64 = 4.0;
+/// Distance from the median to which a pixel is limited, stops.
+pub const BOUND: f64 = 4.0;
+/// Distance beyond [`BOUND`], toward black, over which a pixel's weight goes from 1 to 0, stops.
+pub const FADE: f64 = 4.0;
+/// Bins of the histogram: [`BLACK`] and 64 stops more.
+const BINS: usize = 256;
+
+/// Luminance that automatic exposure goes by, of luminances in cd/m²: Reinhard et al. 2002, eq. 1 (log average, the
+/// geometric mean), made robust as a Huber (1964) location estimate: each pixel is limited to [`BOUND`] stops around
+/// the median.
 ///
-/// Non-positive and non-finite values do not count; `None` if nothing else is there.
-pub fn log_average(luminances: impl IntoIterator<Item = f64>) -> Option<f64> {
-    let (mut sum, mut count) = (0.0, 0u64);
-    for luminance in luminances {
-        if luminance > 0.0 && luminance.is_finite() {
-            sum += luminance.ln();
-            count += 1;
-        }
+/// So the sun's disc or a lamp moves the exposure by its area only. Pixels still darker lose their weight over
+/// [`FADE`] stops: black says nothing about the light. Without limits reached this is the log average itself. `None` if
+/// every pixel is black or not a number.
+pub fn robust_log_average(luminances: &[f64]) -> Option<f64> {
+    let is_counted = |l: &&f64| **l >= BLACK;
+    let logs = || {
+        luminances
+            .iter()
+            .filter(is_counted)
+            .map(|l| l.min(1e33).log2())
+    };
+    let median = median(logs())?;
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for distance in logs().map(|log| log - median) {
+        let weight = ((distance + BOUND) / FADE + 1.0).clamp(0.0, 1.0);
+        sum += distance.clamp(-BOUND, BOUND) * weight;
+        weights += weight;
     }
-    (count > 0).then(|| (sum / count as f64).exp())
+    Some((median + sum / weights).exp2())
+}
+
+/// Median of log2 luminances by a histogram, linear within a bin.
+fn median(logs: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut bins = [0u32; BINS];
+    for log in logs {
+        let bin = (log - BLACK.log2()) * BINS_PER_STOP;
+        bins[(bin as usize).min(BINS - 1)] += 1;
+    }
+    let middle = 0.5 * f64::from(bins.iter().sum::<u32>());
+    let mut below = 0.0;
+    for (index, count) in bins.into_iter().enumerate() {
+        let count = f64::from(count);
+        if count > 0.0 && below + count >= middle {
+            let within = (middle - below) / count;
+            return Some(BLACK.log2() + (index as f64 + within) / BINS_PER_STOP);
+        }
+        below += count;
+    }
+    None
+}
+
+/// Time constant of adaptation, seconds: nine tenths of a change are made in half a second.
+const ADAPTATION_S: f64 = 0.22;
+
+/// Share of the way to a new exposure that is made in some `seconds`: 1 - e^(-t/τ), the exponential adaptation of
+/// Krawczyk et al. 2005, *Perceptual effects in real-time tone mapping*, eq. 5, here of log luminance.
+///
+/// Steps compose: two of half the time go as far as one.
+pub fn adaptation(seconds: f64) -> f64 {
+    -(-seconds / ADAPTATION_S).exp_m1()
 }
 
 /// EV100 that exposes the log-average luminance (cd/m²) to the [`KEY`] (Reinhard et al. 2002, eq. 2).
@@ -69,9 +122,50 @@ mod tests {
 
     #[test]
     fn automatic_brings_a_grey_picture_to_the_key() {
-        let average = log_average([800.0, 1250.0, 0.0, f64::NAN, f64::INFINITY]);
+        let average = robust_log_average(&[800.0, 1250.0, 0.0, f64::NAN]);
         assert!((average.unwrap() - 1000.0).abs() < 1e-9);
         assert!((factor_from_ev100(automatic(1000.0)) * 1000.0 - KEY).abs() < 1e-15);
-        assert_eq!(log_average([0.0, -1.0]), None);
+        assert_eq!(robust_log_average(&[0.0, -1.0, f64::NAN]), None);
+        assert_eq!(robust_log_average(&[]), None);
+    }
+
+    /// Stops by which `share` of all pixels moves the average when it changes from the picture's grey to `luminance`.
+    fn moved_by(share: f64, luminance: f64) -> f64 {
+        let grey = 2000.0;
+        let mut pixels = vec![grey; 3000];
+        pixels[..(share * 3000.0) as usize].fill(luminance);
+        (robust_log_average(&pixels).unwrap() / grey).log2()
+    }
+
+    #[test]
+    fn black_does_not_move_the_exposure_and_dark_things_move_it_by_their_area() {
+        for share in [0.01, 1.0 / 3.0, 0.9] {
+            assert!(moved_by(share, 0.0).abs() < 1e-9);
+        }
+        // A log average up to the bound..
+        assert!((moved_by(0.3, 2000.0 / 8.0) + 3.0 * 0.3).abs() < 1e-9);
+        // ..never more than that beyond it, and nothing at last.
+        for stops in [5, 6, 7, 8, 12, 20] {
+            let moved = moved_by(0.3, 2000.0 * 0.5f64.powi(stops));
+            assert!(moved <= 1e-9 && moved > -4.2 * 0.3, "{stops} {moved}");
+            assert!(stops <= 8 || moved > -1e-9, "{stops} {moved}");
+        }
+    }
+
+    #[test]
+    fn the_suns_disc_moves_the_exposure_by_its_area() {
+        for luminance in [1.6e9, f64::INFINITY] {
+            let moved = moved_by(0.01, luminance);
+            assert!(moved > 0.03 && moved < 0.043, "{moved}");
+        }
+    }
+
+    #[test]
+    fn adaptation_does_not_depend_on_the_frame_rate() {
+        let rest = |steps: u32| (1.0 - adaptation(0.5 / f64::from(steps))).powi(steps as i32);
+        assert!((rest(1) - 0.1).abs() < 0.005);
+        assert!((rest(1) / rest(144) - 1.0).abs() < 1e-9);
+        assert_eq!(adaptation(0.0), 0.0);
+        assert_eq!(adaptation(1e9), 1.0);
     }
 }

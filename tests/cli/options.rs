@@ -424,7 +424,7 @@ fn bad_scenes_end_with_1_and_touch_nothing() {
         (&["cut-vertex.obj"], &["cut-vertex.obj, line 5"]),
         (
             &["model.gltf"],
-            &["model.gltf", "no glTF", "export it again"],
+            &["model.gltf", "not a usable glTF", "export it again"],
         ),
         (&["text.txt"], &["text.txt", ".obj"]),
         (&["key.toml"], &["key.toml", "\"turbidty\"", "turbidity"]),

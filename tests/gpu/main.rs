@@ -28,3 +28,4 @@ mod steady_frame;
 mod timings;
 mod tone;
 mod transaction;
+mod uploads;

@@ -1,9 +1,10 @@
 //! The tone curves of the shader against `shared/reference`, in 32-bit floats,
-//! and false colours against the CPU's. Seen to fail with the white of Reinhard's curve left out, and with the rows of AgX's inset matrix transposed.
+//! and exposure and false colours against the CPU's. Seen to fail with the white of Reinhard's curve left out, and with the rows of AgX's inset matrix transposed.
 
 use crate::common::{Table, Worst};
 use crate::gpu::Device;
-use skylight::daylight::colour::srgb_oetf;
+use skylight::daylight::colour::{luminance, srgb_oetf};
+use skylight::daylight::exposure::{adaptation, robust_log_average};
 use skylight::daylight::false_colour::Range;
 use skylight::daylight::tone_curve::ToneCurve;
 use skylight::gpu::{
@@ -11,6 +12,7 @@ use skylight::gpu::{
     upload_texture,
 };
 use skylight::passes::light::lighting::Show;
+use skylight::passes::picture::exposure::Exposure;
 use skylight::passes::picture::tone_map::{Push, Scale, ToneMap, ToneSettings};
 
 /// A column of the reference, and how the shader is set to compute it.
@@ -142,7 +144,7 @@ fn the_false_colours_are_those_of_the_cpu() {
         depth_scale: 1.0,
         false_colour: Some(range),
     };
-    let mut tone_map = ToneMap::new(&device.context, size, settings).expect("a pass");
+    let tone_map = ToneMap::new(&device.context, size, settings).expect("a pass");
     let source = device
         .run(|rec| upload_texture(rec, &desc, &[bytemuck::cast_slice(&texels)]).expect("uploaded"));
     device.run(|rec| {
@@ -161,6 +163,117 @@ fn the_false_colours_are_those_of_the_cpu() {
         for (byte, expected) in pixel.iter().zip(expected) {
             worst.see(f64::from(*byte) - expected, value);
         }
+    }
+    worst.finish();
+}
+
+/// A picture of the grid on which the device samples: every pixel is a sample.
+const GRID: [u32; 2] = [128, 72];
+
+/// A repeatable value in 0..1 for a pixel.
+fn noise(pixel: u32) -> f32 {
+    (pixel.wrapping_mul(2_654_435_761) >> 8) as f32 / (1 << 24) as f32
+}
+
+fn uploaded(device: &mut Device, size: [u32; 2], texels: &[[f32; 4]]) -> Image {
+    let desc = ImageDesc::flat("picture", Format::R32G32B32A32_SFLOAT, size);
+    device.run(|rec| upload_texture(rec, &desc, &[bytemuck::cast_slice(texels)]).expect("uploaded"))
+}
+
+/// Average luminance of a picture by the device, cd/m².
+fn average(device: &mut Device, exposure: &Exposure, picture: &Image) -> f64 {
+    device.run(|rec| {
+        exposure.record(rec, picture);
+    });
+    f64::from(device.read(exposure.image())[0][0]) * 1e3
+}
+
+#[test]
+fn the_automatic_exposure_is_that_of_the_cpu() {
+    type Texel = fn(f32) -> [f32; 3];
+    let scenes: [(&str, Texel); 6] = [
+        ("grey", |_| [2.0; 3]),
+        ("12 stops", |x| [(12.0 * x - 6.0).exp2(), 1e-3, 2e-3]),
+        ("a third black", |x| {
+            [if x < 1.0 / 3.0 { 0.0 } else { x }; 3]
+        }),
+        ("nearly black, and the sun", |x| match x {
+            x if x < 0.6 => [1e-4 * x; 3],
+            x if x > 0.999 => [1.6e6; 3],
+            x => [3.0, 4.0 * x, 5.0],
+        }),
+        ("a night", |x| [1e-6 * (1.0 + x), 1e-6, 2e-6]),
+        ("no numbers", |x| match x {
+            x if x < 0.1 => [f32::NAN; 3],
+            x if x < 0.2 => [f32::INFINITY; 3],
+            x if x < 0.3 => [-1.0; 3],
+            x => [x * x, x, 1.0],
+        }),
+    ];
+    let mut device = Device::new();
+    let exposure = Exposure::new(&device.context).expect("a pass");
+    // Sums of 9216 floats.
+    let mut worst = Worst::new("automatic exposure, stops", 2e-4);
+    for (name, texel) in scenes {
+        let colours: Vec<[f32; 3]> = (0..GRID[0] * GRID[1]).map(|i| texel(noise(i))).collect();
+        let texels: Vec<[f32; 4]> = colours.iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect();
+        let picture = uploaded(&mut device, GRID, &texels);
+        let device_average = average(&mut device, &exposure, &picture);
+        let of_colour = |c: &[f32; 3]| luminance(glam::Vec3::from(*c).as_dvec3()) * 1e3;
+        let luminances: Vec<f64> = colours.iter().map(of_colour).collect();
+        let expected = robust_log_average(&luminances).expect("light");
+        worst.see((device_average / expected).log2(), name);
+    }
+    worst.finish();
+}
+
+#[test]
+fn pictures_of_any_size_are_metered_and_black_ones_too() {
+    let mut device = Device::new();
+    for size in [[1, 1], [3, 2], [1000, 1], [1, 1000], [640, 360]] {
+        let mut exposure = Exposure::new(&device.context).expect("a pass");
+        let grey = vec![[2.5; 4]; (size[0] * size[1]) as usize];
+        let picture = uploaded(&mut device, size, &grey);
+        let value = average(&mut device, &exposure, &picture);
+        assert!((value / 2500.0 - 1.0).abs() < 1e-5, "{size:?} {value}");
+        // Black keeps the exposure where there was one, and is 1000 cd/m² at first.
+        let black = uploaded(&mut device, size, &vec![[0.0; 4]; grey.len()]);
+        exposure.set_share(0.5);
+        let kept = average(&mut device, &exposure, &black);
+        assert!((kept / 2500.0 - 1.0).abs() < 1e-5, "{size:?} {kept}");
+        let first = Exposure::new(&device.context).expect("a pass");
+        assert_eq!(average(&mut device, &first, &black), 1e3);
+    }
+}
+
+#[test]
+fn the_exposure_adapts_along_the_cpus_curve_both_ways() {
+    let mut device = Device::new();
+    let mut exposure = Exposure::new(&device.context).expect("a pass");
+    let [dark, bright] = [0.25, 64.0].map(|l| uploaded(&mut device, [4, 4], &[[l; 4]; 16]));
+    let mut worst = Worst::new("adaptation, stops", 1e-4);
+    // The first picture is adapted to at once.
+    exposure.set_share(0.0);
+    worst.see(
+        (average(&mut device, &exposure, &dark) / 250.0).log2(),
+        "at first",
+    );
+    let mut log = 250f64.log2();
+    for (picture, luminance) in [(&bright, 64e3f64), (&dark, 250.0)] {
+        for seconds in [0.0, 0.01, 0.1, 0.03, 0.36] {
+            let share = adaptation(seconds);
+            exposure.set_share(share as f32);
+            log += (luminance.log2() - log) * share;
+            let value = average(&mut device, &exposure, picture);
+            worst.see(value.log2() - log, seconds);
+        }
+        assert!((log - luminance.log2()).abs() < 0.85, "a tenth of 8 stops");
+        exposure.set_share(1.0);
+        log = luminance.log2();
+        worst.see(
+            average(&mut device, &exposure, picture).log2() - log,
+            "at once",
+        );
     }
     worst.finish();
 }

@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use skylight::scene::{LoadOptions, Loaded, Scene, load, load_telling};
+use skylight::scene::{LoadOptions, Loaded, Scene, load, load_with_progress};
+
+use crate::invariants::assert_valid;
 
 /// Files of the shared folder that are rightly refused, and a part of the line that says why.
 const REFUSED: [(&str, &str); 12] = [
@@ -15,7 +17,7 @@ const REFUSED: [(&str, &str); 12] = [
     ("tinyobj_odd/invalid-relative-vertex-index.obj", "line 1"),
     (
         "tinyobj_odd/issue-140-zero-face-idx.obj",
-        "line 16: \"0/0/0\" has number 0",
+        "line 16: \"0/0/0\" has index 0",
     ),
     (
         "tinyobj_odd/issue-356-leading-spaces-newmtl.obj",
@@ -61,77 +63,6 @@ fn model_files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// What the renderer relies on without checking.
-fn assert_sound(name: &str, scene: &Scene) {
-    let vertices = scene.positions.len();
-    assert_eq!(
-        (scene.normals.len(), scene.texcoords.len()),
-        (vertices, vertices),
-        "{name}"
-    );
-    assert!(
-        scene.triangles() > 0 && scene.indices.len().is_multiple_of(3),
-        "{name}"
-    );
-    assert!(
-        scene.indices.iter().all(|i| (*i as usize) < vertices),
-        "{name}"
-    );
-    assert!(
-        scene.positions.iter().flatten().all(|v| v.is_finite()),
-        "{name}"
-    );
-    assert!(
-        scene.texcoords.iter().flatten().all(|v| v.is_finite()),
-        "{name}"
-    );
-    let streams = [scene.colours.len(), scene.tangents.len()];
-    assert!(
-        streams.iter().all(|n| [0, vertices].contains(n)),
-        "{name}: {streams:?}"
-    );
-    let length = |n: &[f32; 3]| n.iter().map(|v| v * v).sum::<f32>();
-    assert!(
-        scene.normals.iter().all(|n| (length(n) - 1.0).abs() < 1e-3),
-        "{name}: normals are unit vectors"
-    );
-    let mut next = 0;
-    for part in &scene.parts {
-        assert_eq!(part.first_index, next, "{name}: parts follow each other");
-        assert!(
-            part.index_count > 0 && (part.material as usize) < scene.materials.len(),
-            "{name}"
-        );
-        next += part.index_count;
-    }
-    assert_eq!(
-        next as usize,
-        scene.indices.len(),
-        "{name}: parts cover everything"
-    );
-    let textures = scene
-        .materials
-        .iter()
-        .flat_map(|m| [m.diffuse_texture, m.specular_texture, m.normal_texture])
-        .flatten();
-    assert!(
-        textures.max().is_none_or(|t| t < scene.textures.len()),
-        "{name}"
-    );
-    assert!(
-        scene
-            .textures
-            .iter()
-            .all(|t| t.rgba8.len() == 4 * (t.width * t.height) as usize),
-        "{name}"
-    );
-    assert!(
-        scene.warnings.iter().all(|w| w.lines().count() == 1),
-        "{name}: {:?}",
-        scene.warnings
-    );
-}
-
 /// The number in the warning about triangles without area.
 fn without_area(scene: &Scene) -> usize {
     let warning = scene
@@ -166,7 +97,7 @@ fn every_shared_model_loads_or_is_refused_with_one_right_line() {
                     loaded.scene.triangles(),
                     loaded.scene.warnings.join("; ")
                 );
-                assert_sound(&name, &loaded.scene);
+                assert_valid(&name, &loaded.scene);
                 let count = COUNTS.iter().find(|(file, _)| *file == name);
                 let all = loaded.scene.triangles() + without_area(&loaded.scene);
                 assert!(count.is_none_or(|(_, n)| *n == all), "{name}: {all}");
@@ -318,7 +249,7 @@ fn missing_helpers_are_warnings() {
         ),
         (
             &[("m.obj", obj), ("m.mtl", b"newmtl a\nKd 1\nKs 1 2\n")],
-            "1 lines are not understood",
+            "1 malformed lines ignored",
         ),
     ];
     for (files, part) in cases {
@@ -328,7 +259,7 @@ fn missing_helpers_are_warnings() {
             "{part}: {:?}",
             scene.warnings
         );
-        assert_sound(part, &scene);
+        assert_valid(part, &scene);
     }
 }
 
@@ -436,8 +367,8 @@ fn loading_tells_how_far_it_is_from_another_thread() {
     let told = std::sync::Mutex::new(Vec::new());
     let tell = |share: f32, stage: &'static str| told.lock().expect("told").push((share, stage));
     let scene = std::thread::scope(|threads| {
-        let loading =
-            threads.spawn(|| load_telling(None, &LoadOptions::default(), &tell).expect("bundled"));
+        let loading = threads
+            .spawn(|| load_with_progress(None, &LoadOptions::default(), &tell).expect("bundled"));
         loading.join().expect("loaded").scene
     });
     assert!(scene.triangles() > 0);
@@ -453,7 +384,7 @@ fn loading_tells_how_far_it_is_from_another_thread() {
 fn the_island_is_sound() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/island.toml");
     let island = load(&path, &LoadOptions::default()).expect("the island");
-    assert_sound("island", &island.scene);
+    assert_valid("island", &island.scene);
     assert_eq!(island.scene.warnings, Vec::<String>::new());
     let triangles = island.scene.triangles();
     assert!((150_000..300_000).contains(&triangles), "{triangles}");
@@ -514,6 +445,26 @@ fn a_cached_model_is_the_same_and_a_damaged_or_stale_one_is_not_trusted() {
     fs::write(folder.path().join("m.mtl"), "newmtl a\nKd 0.9 0.2 0.3\n").expect("a library");
     let changed = load(&path, &options).expect("with the new library").scene;
     assert_eq!(changed.materials[0].diffuse[0], 0.9);
+}
+
+#[test]
+fn a_cache_that_cannot_be_written_is_one_warning() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let path = large_model(folder.path());
+    let file = folder.path().join("m.mtl");
+    let options = LoadOptions {
+        cache: Some(file.join("cache")),
+        ..LoadOptions::default()
+    };
+    let plain = load(&path, &LoadOptions::default()).expect("a model").scene;
+    let mut scene = load(&path, &options).expect("a model").scene;
+    let warnings = std::mem::take(&mut scene.warnings);
+    assert!(
+        warnings.len() == 1 && warnings[0].contains("cannot be cached in"),
+        "{warnings:?}"
+    );
+    assert!(warnings[0].contains("--no-cache"), "{warnings:?}");
+    assert_eq!(scene, plain);
 }
 
 #[test]

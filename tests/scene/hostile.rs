@@ -109,7 +109,7 @@ fn pictures_that_fail_are_not_decoded_for_ever() {
     let scene = soon(&obj, 20).expect("drawn in plain colours").scene;
     let said = scene.warnings.join("\n");
     assert!(said.contains("cannot be decoded"), "{said}");
-    assert!(said.contains("too many to decode"), "{said}");
+    assert!(said.contains("exceeds the limit on decoding"), "{said}");
 }
 
 /// A GLB of this JSON and this binary chunk.

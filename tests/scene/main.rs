@@ -6,4 +6,6 @@ mod common;
 mod files;
 mod fuzz;
 mod hostile;
+mod invariants;
 mod models;
+mod tobj_oracle;

@@ -107,7 +107,7 @@ fn a_fault_that_is_none_is_refused() {
     let output = render(folder.path(), "new.png", "submit@x=device-lost");
     let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(1), "{stderr}");
-    assert!(stderr.contains("CALL@NUMBER=ANSWER"), "{stderr}");
+    assert!(stderr.contains("CALL@OCCURRENCE=ERROR"), "{stderr}");
 }
 
 #[test]

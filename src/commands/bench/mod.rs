@@ -11,6 +11,7 @@ mod report;
 mod routes;
 mod sheet;
 mod statistics;
+mod subdivide;
 mod sweep;
 mod sweep_chart;
 mod table;

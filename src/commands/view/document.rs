@@ -9,9 +9,11 @@ use crate::frame::{Frame, FrameSettings};
 use crate::gpu::{Image, Recorder};
 use crate::passes::light::lighting::Precision;
 use crate::passes::light::probe::Reading;
+use crate::passes::picture::tone_map::Scale;
 use crate::scene::{Camera, Loaded};
 use crate::settings::{Options, Settings, Size, SunInput, Visibility};
 
+use super::adaptation::Adaptation;
 use super::controls::{Controls, FlyKeys};
 use super::interface::{Notes, shift};
 use super::keys::Action;
@@ -38,6 +40,7 @@ pub(super) struct Document {
     drawn: Option<Camera>,
     /// Frames in the average.
     averaged: u32,
+    adaptation: Adaptation,
     /// Frames drawn since it was opened.
     frames: u64,
 }
@@ -74,6 +77,7 @@ impl Document {
             job,
             drawn: None,
             averaged: 0,
+            adaptation: Adaptation::default(),
             frames: 0,
         })
     }
@@ -125,6 +129,7 @@ impl Document {
     /// Lets time pass with these keys of flight held.
     pub(super) fn advance(&mut self, seconds: f64, keys: FlyKeys) {
         self.controls.advance(seconds, keys);
+        self.adaptation.advance(seconds);
         self.job.camera = self.controls.camera();
     }
 
@@ -150,6 +155,9 @@ impl Document {
     }
 
     fn try_follow(&mut self, recorder: &mut Recorder) -> Result<()> {
+        if self.job.settings.show != self.followed.show {
+            self.adaptation.cut();
+        }
         if light_of(&self.job.settings) != light_of(&self.followed) {
             self.job.relight()?;
         }
@@ -176,8 +184,13 @@ impl Document {
         self.drawn = None;
     }
 
-    /// Whether the picture is as good as it gets.
+    /// Whether the picture is as good as it gets, and the exposure has adapted to it.
     pub(super) fn is_at_rest(&self) -> bool {
+        self.is_averaged() && self.adaptation.is_done()
+    }
+
+    /// Whether the average has all its frames.
+    fn is_averaged(&self) -> bool {
         !self.is_behind() && !self.has_moved() && self.averaged >= self.job.settings.samples
     }
 
@@ -191,13 +204,26 @@ impl Document {
     }
 
     /// Records what is to be drawn of it now: a preview while it moves or its light refines, then the frames of an average,
-    /// then nothing.
+    /// then only the exposure until it has adapted, then nothing.
     pub(super) fn record(&mut self, recorder: &mut Recorder) {
         if self.is_at_rest() {
             return;
         }
         let (daylight, camera) = (&self.job.daylight, &self.job.camera);
-        if self.has_moved() || !self.frame.is_refined() {
+        let is_preview = self.has_moved() || !self.frame.is_refined();
+        if is_preview {
+            self.adaptation.restart();
+        }
+        if !matches!(self.frame.settings().tone.scale, Scale::Average(_)) {
+            self.adaptation.cut();
+        }
+        let is_last = !is_preview && self.averaged + 1 >= self.job.settings.samples;
+        self.frame.set_adaptation(self.adaptation.share(is_last));
+        if self.is_averaged() {
+            self.frame.expose(recorder);
+            return;
+        }
+        if is_preview {
             self.frame.preview(recorder, daylight, camera);
             self.averaged = 0;
         } else {

@@ -5,6 +5,7 @@
 //! - `keys` and `input`: what keys and pointer do. `interface`: what lies over the picture, panel by panel.
 //! - `loader`: scenes in the background. `capture`: pictures to files. `resume`: settings for the next time.
 
+mod adaptation;
 mod app;
 mod capture;
 pub mod controls;

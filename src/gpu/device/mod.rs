@@ -2,7 +2,6 @@
 
 pub(in crate::gpu) mod context;
 pub(in crate::gpu) mod fault;
-pub(in crate::gpu) mod heap;
 pub(in crate::gpu) mod instance;
 pub(in crate::gpu) mod select;
 pub(in crate::gpu) mod startup;

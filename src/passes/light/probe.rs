@@ -61,7 +61,7 @@ impl Probe {
     /// # Errors
     /// When the device has no memory left.
     pub fn new(context: &Arc<Context>) -> Result<Self> {
-        let bytes = (TEXELS * Texel::MOST_BYTES) as u64;
+        let bytes = (TEXELS * Texel::SLOT_BYTES) as u64;
         Ok(Self {
             buffer: Buffer::new(context, "probe", BufferKind::ReadBack, bytes)?,
             picked: None,

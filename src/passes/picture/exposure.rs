@@ -1,67 +1,99 @@
-//! The log-average luminance of a picture (Reinhard et al. 2002, eq. 1), for automatic exposure.
+//! The luminance that automatic exposure goes by, and its adaptation over time; [`crate::daylight::exposure`] is the
+//! same on the CPU.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
-use glam::IVec2;
-
+use crate::daylight::exposure::{BINS_PER_STOP, BLACK, BOUND, FADE};
 use crate::gpu::{
-    Context, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
+    Context, Depth, Format, Image, ImageDesc, Pipeline, PipelineDesc, Recorder, Result, Sampler,
+    shaders,
 };
 use crate::gpu_struct;
 
-use crate::passes::fullscreen;
-
 gpu_struct! {
-    /// Size of the tiling.
-    pub struct Push: push of LOG_LUMINANCE_FRAG {
-        tiles: IVec2,
+    /// How a picture is metered, and how far the exposure follows it.
+    pub struct Push: push of EXPOSURE_COMP {
+        black: f32,
+        bins_per_stop: f32,
+        bound: f32,
+        fade: f32,
+        share: f32,
     }
 }
 
-const TILES: [u32; 2] = [32, 18];
-
-/// The two steps and their images.
+/// The pass and its image.
 pub struct Exposure {
-    tiles_pipeline: Pipeline,
-    average_pipeline: Pipeline,
-    tiles: Image,
-    average: Image,
+    pipeline: Pipeline,
+    /// Luminances of the newest picture and of the one before.
+    luminances: [Image; 2],
+    /// Index of the newest, once there is one.
+    newest: Cell<Option<usize>>,
+    share: f32,
 }
 
 impl Exposure {
     /// # Errors
     /// When the device refuses.
     pub fn new(context: &Arc<Context>) -> Result<Self> {
-        let image =
-            |name, size| Image::new(context, &ImageDesc::flat(name, Format::R32_SFLOAT, size));
-        let tile = |name, fragment| fullscreen(context, name, fragment, Format::R32_SFLOAT, &[]);
+        let image = |name| {
+            Image::new(
+                context,
+                &ImageDesc::flat(name, Format::R32_SFLOAT, [1, 1]).stored(),
+            )
+        };
+        let pipeline = Pipeline::new(
+            context,
+            &PipelineDesc {
+                name: "exposure",
+                stages: &[&shaders::EXPOSURE_COMP],
+                vertex: &[],
+                colors: &[],
+                depth: Depth::Off,
+                constants: &[],
+            },
+        )?;
         Ok(Self {
-            tiles_pipeline: tile("log luminance", &shaders::LOG_LUMINANCE_FRAG)?,
-            average_pipeline: tile("average luminance", &shaders::AVERAGE_LUMINANCE_FRAG)?,
-            tiles: image("log luminance of tiles", TILES)?,
-            average: image("average luminance", [1, 1])?,
+            pipeline,
+            luminances: [image("average luminance 0")?, image("average luminance 1")?],
+            newest: Cell::new(None),
+            share: 1.0,
         })
     }
 
-    /// Computes the log-average luminance of a picture: one texel, kcd/m².
-    pub fn record(&mut self, recorder: &mut Recorder, radiance: &Image) -> &Image {
-        let tiles = IVec2::new(TILES[0] as i32, TILES[1] as i32);
-        recorder
-            .pass("log luminance", &self.tiles_pipeline)
-            .sample("radiance", radiance, Sampler::Nearest)
-            .push(&Push { tiles })
-            .color(&self.tiles, Load::Discard)
-            .draw();
-        recorder
-            .pass("average luminance", &self.average_pipeline)
-            .sample("log_luminance", &self.tiles, Sampler::Nearest)
-            .color(&self.average, Load::Discard)
-            .draw();
-        &self.average
+    /// Sets the share of the way, in log luminance, that each following picture moves the exposure toward its own:
+    /// 1 (the default) adapts at once.
+    pub fn set_share(&mut self, share: f32) {
+        self.share = share;
     }
 
-    /// The one texel, kcd/m².
+    /// Computes the average luminance of a picture: one texel, kcd/m².
+    pub fn record(&self, recorder: &mut Recorder, radiance: &Image) -> &Image {
+        let share = self.newest.get().map_or(1.0, |_| self.share);
+        let [previous, new] = match self.newest.get() {
+            Some(1) => [1, 0],
+            _ => [0, 1],
+        };
+        self.newest.set(Some(new));
+        let [previous, new] = [previous, new].map(|i| &self.luminances[i]);
+        recorder
+            .pass("exposure", &self.pipeline)
+            .sample("radiance", radiance, Sampler::Nearest)
+            .sample("previous_luminance", previous, Sampler::Nearest)
+            .push(&Push {
+                black: (BLACK / 1e3).log2() as f32,
+                bins_per_stop: BINS_PER_STOP as f32,
+                bound: BOUND as f32,
+                fade: FADE as f32,
+                share,
+            })
+            .store("average_luminance", new)
+            .dispatch();
+        new
+    }
+
+    /// The newest average luminance: one texel, kcd/m².
     pub fn image(&self) -> &Image {
-        &self.average
+        &self.luminances[self.newest.get().unwrap_or(0)]
     }
 }

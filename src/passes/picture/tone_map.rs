@@ -118,7 +118,7 @@ impl ToneMap {
 
     /// Maps a picture. `average_luminance` is one texel, read only for an automatic exposure.
     pub fn record(
-        &mut self,
+        &self,
         recorder: &mut Recorder,
         radiance: &Image,
         average_luminance: &Image,

@@ -1,8 +1,7 @@
 //! A scene's vertices, textures and materials as the device has them.
 
 use crate::gpu::{
-    Buffer, BufferKind, Format, Image, ImageDesc, ImageKind, Recorder, Result, upload_buffer,
-    upload_texture,
+    Buffer, BufferKind, Format, Image, ImageDesc, Recorder, Result, upload_buffer, upload_texture,
 };
 use crate::scene::{Encoding, Layout, Material, Scene, Texture};
 
@@ -92,15 +91,13 @@ pub(in crate::passes) fn upload(recorder: &mut Recorder, texture: &Texture) -> R
     let levels: Vec<&[u8]> = std::iter::once(texture.rgba8.as_slice())
         .chain(smaller.iter().map(|t| t.rgba8.as_slice()))
         .collect();
+    let format = match texture.encoding {
+        Encoding::Srgb => Format::R8G8B8A8_SRGB,
+        Encoding::Linear => Format::R8G8B8A8_UNORM,
+    };
     let desc = ImageDesc {
-        name: &texture.name,
-        format: match texture.encoding {
-            Encoding::Srgb => Format::R8G8B8A8_SRGB,
-            Encoding::Linear => Format::R8G8B8A8_UNORM,
-        },
-        size: [texture.width, texture.height],
-        kind: ImageKind::Flat,
         levels: levels.len() as u32,
+        ..ImageDesc::flat(&texture.name, format, [texture.width, texture.height])
     };
     upload_texture(recorder, &desc, &levels)
 }

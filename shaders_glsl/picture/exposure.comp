@@ -1,0 +1,91 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "constants.glsl"
+
+// The luminance that automatic exposure goes by: Reinhard et al. 2002, eq. 1, bounded around the median. The CPU's
+// twin is daylight/exposure.rs. One workgroup: a histogram, its median, then the bounded mean of log2 L.
+
+const uint THREADS = 256u;
+layout(local_size_x = 256) in;
+
+layout(set = 0, binding = 0) uniform sampler2D radiance;                       // kcd/m^2
+layout(set = 0, binding = 1) uniform sampler2D previous_luminance;             // kcd/m^2, one texel
+layout(set = 0, binding = 2) uniform writeonly image2DArray average_luminance; // kcd/m^2, one texel
+
+layout(push_constant, scalar) uniform Push {
+    float black;         // log2 of kcd/m^2: what is darker does not count
+    float bins_per_stop; // of the histogram, which starts at `black`
+    float bound;         // stops from the median to which a sample is limited
+    float fade;          // stops beyond that, toward black, in which its weight goes to 0
+    float share;         // of the way from the previous luminance to that of this picture; 1: there is no previous one
+} push;
+
+// Samples on a grid over the picture: enough for a mean, at the same cost for every resolution.
+const uvec2 GRID = uvec2(128u, 72u);
+const uint SAMPLES = GRID.x * GRID.y / THREADS; // of a thread
+
+shared uint bins[THREADS];
+shared float median; // log2 of kcd/m^2
+shared vec2 sums[THREADS]; // weighted distance from the median, weight
+
+const float NOTHING = -1e4;
+
+/// log2 of the luminance at a sample, kcd/m^2; NOTHING for black and for what is no number.
+float log_luminance(uint index) {
+    vec2 size = vec2(textureSize(radiance, 0));
+    vec2 at = (vec2(index % GRID.x, index / GRID.x) + 0.5) / vec2(GRID) * size;
+    float l = luminance(texelFetch(radiance, ivec2(min(at, size - 1.0)), 0).rgb);
+    return l >= exp2(push.black) ? log2(min(l, 1e30)) : NOTHING;
+}
+
+/// The median by the histogram, linear within a bin; NOTHING when the histogram is empty.
+float find_median() {
+    uint count = 0u;
+    for (uint i = 0u; i < THREADS; ++i) count += bins[i];
+    float middle = 0.5 * float(count);
+    uint below = 0u;
+    for (uint i = 0u; i < THREADS; ++i) {
+        if (bins[i] > 0u && float(below + bins[i]) >= middle) {
+            float within = (middle - float(below)) / float(bins[i]);
+            return push.black + (float(i) + within) / push.bins_per_stop;
+        }
+        below += bins[i];
+    }
+    return NOTHING;
+}
+
+void main() {
+    uint thread = gl_LocalInvocationIndex;
+    bins[thread] = 0u;
+    barrier();
+    float logs[SAMPLES];
+    for (uint i = 0u; i < SAMPLES; ++i) {
+        logs[i] = log_luminance(thread + i * THREADS);
+        if (logs[i] > NOTHING) {
+            float bin = (logs[i] - push.black) * push.bins_per_stop;
+            atomicAdd(bins[uint(clamp(bin, 0.0, float(THREADS - 1u)))], 1u);
+        }
+    }
+    barrier();
+    if (thread == 0u) median = find_median();
+    barrier();
+    vec2 sum = vec2(0.0);
+    for (uint i = 0u; i < SAMPLES; ++i) {
+        float distance = logs[i] - median;
+        float weight = clamp((distance + push.bound) / push.fade + 1.0, 0.0, 1.0);
+        sum += vec2(clamp(distance, -push.bound, push.bound), 1.0) * weight;
+    }
+    sums[thread] = sum;
+    barrier();
+    if (thread != 0u) return;
+    for (uint i = 1u; i < THREADS; ++i) sum += sums[i];
+    bool black = median == NOTHING;
+    // A black picture looks the same at every exposure.
+    float target = black ? 0.0 : median + sum.x / sum.y;
+    if (push.share < 1.0) {
+        float previous = log2(texelFetch(previous_luminance, ivec2(0), 0).r);
+        target = black ? previous : mix(previous, target, push.share);
+    }
+    imageStore(average_luminance, ivec3(0), vec4(exp2(target)));
+}

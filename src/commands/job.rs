@@ -9,7 +9,7 @@ use glam::UVec2;
 
 use super::light::{conditions, sun_position};
 use crate::daylight::exposure::{KEY, factor_from_ev100};
-use crate::daylight::refinement::Refinement;
+use crate::daylight::sample_count::ErrorEstimate;
 use crate::daylight::sky::Daylight;
 use crate::daylight::spectrum::LUMINOUS_EFFICACY;
 use crate::daylight::sun_position::SunPosition;
@@ -257,8 +257,8 @@ impl Job {
         let (error, most) = (s.irradiance_error / 100.0, s.irradiance_samples);
         // The estimate takes milliseconds: only where it can spare samples.
         let samples = if method.is_sampled() && error > 0.0 {
-            let refinement = Refinement::new(|direction| self.daylight.radiance(direction));
-            refinement.samples(method, error, most)
+            let estimate = ErrorEstimate::new(|direction| self.daylight.radiance(direction));
+            estimate.samples(method, error, most)
         } else {
             most
         };

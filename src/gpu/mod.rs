@@ -15,6 +15,7 @@ mod device;
 mod error;
 mod memory;
 mod pipeline;
+#[cfg(feature = "window")]
 mod present;
 mod record;
 #[cfg(feature = "hot-reload")]
@@ -24,6 +25,7 @@ pub use ash::vk::Format;
 pub use device::context::{Context, ContextOptions};
 pub use device::select::{DeviceSummary, Optional, devices};
 pub use device::startup::Step;
+#[cfg(feature = "window")]
 pub use device::surface::{Surface, WindowHandles};
 pub use error::{GpuError, Result};
 pub use memory::buffer::{Buffer, BufferKind};
@@ -34,8 +36,11 @@ pub use pipeline::cache::CacheState;
 pub use pipeline::layout::{GpuStruct, assert_layout};
 pub use pipeline::shader::{Binding, BindingKind, Field, Shader, Stage, compiled as shaders};
 pub use pipeline::{Depth, Pipeline, PipelineDesc};
-pub use present::presenter::Presenter;
-pub use present::ui::{Overlay, UiFrame};
+#[cfg(feature = "window")]
+pub use present::{
+    presenter::Presenter,
+    ui::{Overlay, UiFrame},
+};
 pub use record::access;
 pub use record::draws::{Draws, Faces, Winding};
 pub use record::pass::{Load, Pass};

@@ -334,8 +334,8 @@ fn bad_words_end_with_2_and_touch_nothing() {
             &["2026-02-30 is a date that does not exist"],
         ),
         (
-            &["render", "-o", "old.png", "--when", "2026-06-21T15:00"],
-            &["UTC offset is missing"],
+            &["render", "-o", "old.png", "--when", "2026-06-21"],
+            &["the time is missing"],
         ),
         (&["render", "-o", "old.png", "--polish", "3"], &["--polish"]),
         (

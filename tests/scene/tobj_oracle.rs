@@ -14,12 +14,14 @@
 use std::collections::{BTreeSet, HashMap};
 use std::fs;
 use std::panic::catch_unwind;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use skylight::scene::{LoadOptions, Scene, load};
+
+use crate::support::files_below;
 
 /// Points and lines left out, polygons as triangles, one index for all attributes.
 const TOBJ: tobj::LoadOptions = tobj::GPU_LOAD_OPTIONS;
@@ -368,19 +370,6 @@ const CONCAVE: &str = "concave polygons";
 const OPTIONS: &str = "scale and offset of a texture";
 const LIBRARIES: &str = "several libraries, or spaces, in one `mtllib`";
 
-fn obj_files(folder: &Path, found: &mut Vec<PathBuf>) {
-    let entries = fs::read_dir(folder).expect("a readable folder");
-    for path in entries.map(|entry| entry.expect("an entry").path()) {
-        let is_obj = |e: &std::ffi::OsStr| e.eq_ignore_ascii_case("obj");
-        if path.is_dir() {
-            obj_files(&path, found);
-        } else if path.extension().is_some_and(is_obj) {
-            found.push(path);
-        }
-    }
-    found.sort();
-}
-
 /// What tobj makes of a file; it panics on some.
 fn by_tobj(path: &Path) -> Result<(Vec<tobj::Model>, Vec<tobj::Material>), String> {
     let path = path.to_owned();
@@ -398,8 +387,7 @@ fn tobj_reads_the_same_of_every_file() {
     let mut wrong = Vec::new();
     let mut agreeing = 0;
     for root in [Some(assets), shared.clone()].into_iter().flatten() {
-        let mut paths = Vec::new();
-        obj_files(&root, &mut paths);
+        let paths = files_below(&root, &["obj"]);
         assert!(!paths.is_empty(), "{} has no OBJ file", root.display());
         for path in paths {
             let name = path

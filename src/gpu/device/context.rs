@@ -11,7 +11,9 @@ use crate::gpu::device::fault::{Call, Faults};
 use crate::gpu::device::instance::{InstanceGuard, has_instance_extension, load};
 use crate::gpu::device::select::{self, DeviceSummary, Optional};
 use crate::gpu::device::startup::{Startup, Step};
-use crate::gpu::device::surface::{self, RawSurface, Surface, WindowHandles};
+use crate::gpu::device::surface::{self, RawSurface, Window};
+#[cfg(feature = "window")]
+use crate::gpu::device::surface::{Surface, WindowHandles};
 use crate::gpu::device::validation::{Log, Messenger};
 use crate::gpu::error::{During, GpuError, Result};
 use crate::gpu::memory::image::{Sampler, create_samplers};
@@ -52,6 +54,7 @@ impl Drop for DeviceGuard {
 /// Functions of the extensions that are enabled.
 pub(in crate::gpu) struct Extensions {
     pub(in crate::gpu) push_descriptor: Option<khr::push_descriptor::Device>,
+    #[cfg(feature = "window")]
     pub(in crate::gpu) swapchain: Option<khr::swapchain::Device>,
     pub(in crate::gpu) debug: Option<ext::debug_utils::Device>,
 }
@@ -62,12 +65,13 @@ impl Extensions {
         instance: &ash::Instance,
         device: &ash::Device,
         push_descriptor: bool,
-        presents: bool,
+        #[cfg(feature = "window")] presents: bool,
     ) -> Result<Self> {
         let has_debug = has_instance_extension(entry, None, ext::debug_utils::NAME)?;
         Ok(Self {
             push_descriptor: push_descriptor
                 .then(|| khr::push_descriptor::Device::new(instance, device)),
+            #[cfg(feature = "window")]
             swapchain: presents.then(|| khr::swapchain::Device::new(instance, device)),
             debug: has_debug.then(|| ext::debug_utils::Device::new(instance, device)),
         })
@@ -94,6 +98,10 @@ pub struct Context {
     pub(in crate::gpu) reloaded: crate::gpu::pipeline::hot_reload::Reloaded,
     messenger: Option<Messenger>,
     instance: InstanceGuard,
+    #[cfg_attr(
+        not(feature = "window"),
+        expect(dead_code, reason = "keeps the loader's library loaded")
+    )]
     entry: ash::Entry,
 }
 
@@ -110,6 +118,7 @@ impl Context {
     ///
     /// # Errors
     /// As [`Context::new`]; also when no device can present to this window.
+    #[cfg(feature = "window")]
     pub fn for_window(
         options: &ContextOptions,
         window: Arc<dyn WindowHandles>,
@@ -121,7 +130,7 @@ impl Context {
 
     fn open(
         options: &ContextOptions,
-        window: Option<Arc<dyn WindowHandles>>,
+        window: Option<Window>,
     ) -> Result<(Arc<Self>, Option<RawSurface>)> {
         let mut startup = Startup::new();
         let faults = Faults::new(options.fault.as_deref())?;
@@ -148,6 +157,7 @@ impl Context {
             &instance.raw,
             &device.raw,
             chosen.summary.has(Optional::PushDescriptor),
+            #[cfg(feature = "window")]
             surface.is_some(),
         )?;
         let allocator = create_allocator(&instance.raw, &device.raw, chosen.handle)?;
@@ -179,15 +189,18 @@ impl Context {
         Ok((context, surface))
     }
 
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn entry(&self) -> &ash::Entry {
         &self.entry
     }
 
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn instance(&self) -> &ash::Instance {
         &self.instance.raw
     }
 
     /// The allocator, for a renderer that manages its own buffers. It must be dropped before the context.
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn shared_allocator(&self) -> Arc<Mutex<Allocator>> {
         Arc::clone(&self.allocator)
     }
@@ -358,10 +371,10 @@ impl Drop for Context {
 fn open_instance(
     entry: &ash::Entry,
     validate: bool,
-    window: Option<Arc<dyn WindowHandles>>,
+    window: Option<Window>,
 ) -> Result<(InstanceGuard, Option<Messenger>, Option<RawSurface>)> {
     let windows = window
-        .as_deref()
+        .as_ref()
         .map_or(Ok(&[][..]), surface::instance_extensions)?;
     let instance = InstanceGuard::new(entry, validate, windows)?;
     let messenger = validate

@@ -5,5 +5,9 @@ pub(in crate::gpu) mod fault;
 pub(in crate::gpu) mod instance;
 pub(in crate::gpu) mod select;
 pub(in crate::gpu) mod startup;
+#[cfg(feature = "window")]
+pub(in crate::gpu) mod surface;
+#[cfg(not(feature = "window"))]
+#[path = "no_surface.rs"]
 pub(in crate::gpu) mod surface;
 pub(in crate::gpu) mod validation;

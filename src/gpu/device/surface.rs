@@ -15,14 +15,15 @@ pub trait WindowHandles: HasDisplayHandle + HasWindowHandle {}
 
 impl<W: HasDisplayHandle + HasWindowHandle> WindowHandles for W {}
 
+/// The window of a surface.
+pub(in crate::gpu) type Window = Arc<dyn WindowHandles>;
+
 fn refused(error: &raw_window_handle::HandleError) -> GpuError {
     GpuError::Window(error.to_string())
 }
 
 /// Instance extensions for presentation to this window.
-pub(in crate::gpu) fn instance_extensions(
-    window: &dyn WindowHandles,
-) -> Result<&'static [*const c_char]> {
+pub(in crate::gpu) fn instance_extensions(window: &Window) -> Result<&'static [*const c_char]> {
     let display = window.display_handle().map_err(|e| refused(&e))?;
     ash_window::enumerate_required_extensions(display.as_raw())
         .during("list the extensions of the window system")
@@ -32,14 +33,14 @@ pub(in crate::gpu) fn instance_extensions(
 pub(in crate::gpu) struct RawSurface {
     loader: khr::surface::Instance,
     handle: vk::SurfaceKHR,
-    window: Arc<dyn WindowHandles>,
+    window: Window,
 }
 
 impl RawSurface {
     pub(in crate::gpu) fn new(
         entry: &ash::Entry,
         instance: &ash::Instance,
-        window: Arc<dyn WindowHandles>,
+        window: Window,
     ) -> Result<Self> {
         let display_handle = window.display_handle().map_err(|e| refused(&e))?;
         let window_handle = window.window_handle().map_err(|e| refused(&e))?;

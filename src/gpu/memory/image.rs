@@ -198,6 +198,7 @@ impl Image {
     }
 
     /// Wraps an image of a swapchain, which outlives it.
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn of_swapchain(
         context: &Arc<Context>,
         raw: vk::Image,

@@ -161,6 +161,7 @@ impl<'r> Draws<'_, 'r> {
     }
 
     /// The command buffer and the size of the target, pixels, for another renderer, which draws last.
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn foreign(&self) -> (vk::CommandBuffer, [u32; 2]) {
         (self.pass.recorder.command, self.pass.target().size())
     }

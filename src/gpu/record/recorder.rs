@@ -206,6 +206,7 @@ impl Recorder {
     }
 
     /// Makes the next submission wait for this semaphore before it writes colour attachments.
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn wait_for(&mut self, acquired: vk::Semaphore) {
         self.acquired = Some(acquired);
     }

@@ -1,8 +1,44 @@
-//! Invariants of a scene that the renderer relies on.
+//! Helpers of several modules: finding files, writing GLB, checking a scene.
+
+use std::path::{Path, PathBuf};
 
 use skylight::scene::Scene;
 
-/// Checks all invariants.
+/// All files below a folder with one of these extensions (any case), sorted.
+pub fn files_below(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let entries = std::fs::read_dir(folder).expect("a readable folder");
+    for path in entries.map(|entry| entry.expect("an entry").path()) {
+        let is_wanted = |e: &std::ffi::OsStr| extensions.iter().any(|x| e.eq_ignore_ascii_case(x));
+        if path.is_dir() {
+            found.extend(files_below(&path, extensions));
+        } else if path.extension().is_some_and(is_wanted) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// A GLB file of a JSON chunk and a binary chunk.
+pub fn glb(json: &[u8], binary: &[u8]) -> Vec<u8> {
+    let pad = |bytes: &[u8], with: u8| {
+        let mut padded = bytes.to_vec();
+        padded.resize(bytes.len().next_multiple_of(4), with);
+        padded
+    };
+    let (json, binary) = (pad(json, b' '), pad(binary, 0));
+    let total = (28 + json.len() + binary.len()) as u32;
+    let mut file = [*b"glTF", 2u32.to_le_bytes(), total.to_le_bytes()].concat();
+    for (kind, bytes) in [(b"JSON", &json), (b"BIN\0", &binary)] {
+        file.extend((bytes.len() as u32).to_le_bytes());
+        file.extend(kind);
+        file.extend(bytes);
+    }
+    file
+}
+
+/// Checks the invariants that the renderer relies on.
 pub fn assert_valid(name: &str, scene: &Scene) {
     assert_geometry(name, scene);
     assert_parts(name, scene);

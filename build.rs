@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs, process};
 
-use shader_build::{compile, declarations, variants};
+use shader_build::{compile, declarations};
 use shaderc::Compiler;
 
 const SOURCES: &str = "shaders_glsl";
@@ -94,6 +94,15 @@ fn tell_commit() {
         }
     }
     println!("cargo:rustc-env=SKYLIGHT_COMMIT={commit}");
+}
+
+/// Variants of a stage, as its source lists them: each line `// Variant: A B` asks for the stage with the macros A and B defined,
+/// which is called by the name of its file, `+A+B`. Specialization constants do for all that is not an interface of the stage.
+fn variants(source: &str) -> impl Iterator<Item = String> {
+    let listed = source
+        .lines()
+        .filter_map(|l| l.strip_prefix("// Variant: "));
+    listed.map(|macros| macros.split_whitespace().map(|m| format!("+{m}")).collect())
 }
 
 /// Every stage and its variants, as paths below the folder of all shaders with `/` between their parts. File names are unique:

@@ -18,17 +18,8 @@ fn stage_kind(path: &Path) -> Option<ShaderKind> {
     }
 }
 
-/// Variants of a stage, as its source lists them: each line `// Variant: A B` asks for the stage with the macros A and B defined,
-/// which is called by the name of its file, `+A+B`. Specialization constants do for all that is not an interface of the stage.
-pub fn variants(source: &str) -> impl Iterator<Item = String> {
-    let listed = source
-        .lines()
-        .filter_map(|l| l.strip_prefix("// Variant: "));
-    listed.map(|macros| macros.split_whitespace().map(|m| format!("+{m}")).collect())
-}
-
-/// Compiles the stage `name`, a path below the folder of all shaders with the macros of a variant; includes lie in that folder's
-/// `include`. With `debug` it keeps names and lines, unoptimised.
+/// Compiles the stage `name`, a path below the folder of all shaders, of a variant followed by its macros as `+A+B`; includes lie
+/// in that folder's `include`. With `debug` it keeps names and lines, unoptimised.
 ///
 /// # Errors
 /// The compiler's lines, `file:line: message`.

@@ -4,5 +4,5 @@
 mod compile;
 mod reflect;
 
-pub use compile::{compile, variants};
+pub use compile::compile;
 pub use reflect::declarations;

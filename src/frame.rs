@@ -16,7 +16,7 @@ use crate::gpu::{Context, Image, Recorder, Result};
 use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{Light, Show};
 use crate::passes::light::probe::{Probe, Reading};
-use crate::passes::occlusion::height_map::Cover;
+use crate::passes::occlusion::height_map::HeightMap;
 use crate::passes::occlusion::ssao::Ssao;
 use crate::passes::picture::exposure::Exposure;
 use crate::passes::picture::tone_map::{ToneMap, ToneSettings};
@@ -38,7 +38,7 @@ pub struct Frame {
     sky_cube: SkyCube,
     irradiance: Irradiance,
     gbuffer: Gbuffer,
-    height_map: Cover,
+    height_map: HeightMap,
     ssao: Ssao,
     /// Of single frames: previews, and those that the dome does not light.
     preview: Lit,
@@ -95,7 +95,7 @@ impl Frame {
             let lighting = scope.spawn(move || settings.lighting(device));
             let background = scope.spawn(move || settings.background(device));
             Ok(Self {
-                height_map: Cover::new(device, &geometry)?,
+                height_map: HeightMap::new(device, &geometry)?,
                 gbuffer: settings.gbuffer(device, &geometry)?,
                 average: Average::new(device, &geometry, &settings)?,
                 irradiance: Irradiance::new(recorder, settings.irradiance)?,

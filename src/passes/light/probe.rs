@@ -86,7 +86,7 @@ impl Probe {
         self.picked = Some(Picked {
             pixel,
             picture: copied(picture),
-            words: copied(&surfaces.words),
+            words: copied(&surfaces.normal_material),
             depth: copied(&surfaces.depth),
             albedo: surfaces.albedo.as_ref().map(copied),
             near,

@@ -23,10 +23,13 @@ pub struct Shadows {
 }
 
 impl Shadows {
-    /// Radius of the lookups around a receiver, texels: a tent after the offset along the normal, or `WIDEST` of
-    /// `include/sun_shadow.glsl` and what is compared around it.
+    /// Radius of the lookups around a receiver, texels: penumbrae, and around them the tent after the offset along the normal.
     pub(in crate::passes) fn filter_radius(&self) -> f32 {
-        if self.penumbrae { 52.0 } else { 6.0 }
+        if self.penumbrae {
+            MAX_RADIUS + 4.0
+        } else {
+            6.0
+        }
     }
 }
 
@@ -40,8 +43,12 @@ const FOUR_CASCADES_EXTENT: f32 = 1000.0;
 const NEAREST_REACH: f32 = 20.0;
 /// Texel of a cascade over that of the next, up to which it is worth its drawing.
 const MAX_TEXEL_RATIO: f32 = 0.75;
-/// Share of a cube from which on its cascade is blended into the next: that of `include/sun_shadow.glsl`.
-const BLEND_START: f32 = 0.85;
+/// Share of a cube from which on its cascade is blended into the next.
+pub(in crate::passes) const BLEND: f32 = 0.85;
+/// Largest radius of penumbrae, texels: taps farther apart miss thin casters.
+pub(in crate::passes) const MAX_RADIUS: f32 = 48.0;
+/// Texels by which receivers are lifted off their surface, along the normal, at grazing light.
+pub(in crate::passes) const NORMAL_OFFSET_TEXELS: f32 = 1.5;
 
 gpu_struct! {
     /// The cascades, for `include/sun_shadow.glsl`.
@@ -138,7 +145,7 @@ impl SunViews {
         let mut finer = 0.0;
         (0..MAX_CASCADES).filter(move |&k| {
             let is_in = farthest >= finer && nearest <= reach[k];
-            finer = BLEND_START * reach[k];
+            finer = BLEND * reach[k];
             is_in
         })
     }

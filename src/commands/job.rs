@@ -210,6 +210,7 @@ impl Job {
                 directions: s.dome_directions,
                 map_edge: s.dome_size,
                 seed: s.seed,
+                ..DomeSettings::default()
             },
         }
     }

@@ -241,17 +241,14 @@ impl Document {
         &self.frame
     }
 
-    /// Records the question what a pixel shows.
-    ///
-    /// # Errors
-    /// When memory is out.
-    pub(super) fn ask(&mut self, recorder: &mut Recorder, pixel: [u32; 2]) -> Result<()> {
-        Ok(self.frame.ask(recorder, &self.job.daylight, pixel)?)
+    /// Records the read-out of a pixel of the newest picture.
+    pub(super) fn pick(&mut self, recorder: &mut Recorder, pixel: [u32; 2]) {
+        self.frame.pick(recorder, pixel);
     }
 
-    /// The answer, when the work is done.
-    pub(super) fn reading(&mut self) -> Option<Reading> {
-        self.frame.reading()
+    /// The pixel that was picked, when the work is done.
+    pub(super) fn picked(&mut self) -> Option<Reading> {
+        self.frame.picked()
     }
 
     /// The command line that renders this picture.
@@ -289,6 +286,7 @@ fn at_rest(user: &OptionValues, size: Size) -> OptionValues {
 fn frame_settings(job: &Job) -> FrameSettings {
     let mut settings = job.frame_settings(job.settings.show, Precision::Half);
     settings.irradiance.samples = job.settings.irradiance_samples;
+    settings.sampling.dome.illuminance = true;
     // While something moves ambient occlusion is drawn; at rest the picture fades over from that.
     if settings.sampling.visibility == Visibility::Dome {
         settings.sampling.visibility = Visibility::Progressive;

@@ -9,8 +9,7 @@ use glam::{IVec2, Vec3};
 use crate::daylight::false_colour::Quantity;
 use crate::daylight::sky::Daylight;
 use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, Recorder, Result, Sampler,
-    shaders,
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
 };
 use crate::gpu_struct;
 
@@ -269,7 +268,8 @@ impl Lighting {
         })
     }
 
-    /// Lights the surfaces; other pixels are left to [`crate::passes::light::background::Background`].
+    /// Lights the surfaces; other pixels are left to [`crate::passes::light::background::Background`]. The fourth channel is the
+    /// illuminance of the surface, klx.
     pub fn record(
         &mut self,
         recorder: &mut Recorder,
@@ -279,37 +279,6 @@ impl Lighting {
         light: &Light<'_>,
         view: &View,
     ) -> &Image {
-        self.describe(recorder, surfaces, materials, occlusion, light, view)
-            .draw();
-        &self.radiance
-    }
-
-    /// Lights one pixel.
-    #[allow(clippy::too_many_arguments)]
-    pub fn record_pixel(
-        &mut self,
-        recorder: &mut Recorder,
-        surfaces: &Surfaces,
-        materials: &Image,
-        occlusion: &Image,
-        light: &Light<'_>,
-        view: &View,
-        pixel: [u32; 2],
-    ) {
-        self.describe(recorder, surfaces, materials, occlusion, light, view)
-            .only(pixel)
-            .draw();
-    }
-
-    fn describe<'r>(
-        &'r self,
-        recorder: &'r mut Recorder,
-        surfaces: &'r Surfaces,
-        materials: &'r Image,
-        occlusion: &'r Image,
-        light: &Light<'r>,
-        view: &View,
-    ) -> Pass<'r> {
         // A scene without textures has no albedo image; its pipeline reads none, but the binding must be written.
         let albedo = surfaces.albedo.as_ref().unwrap_or(materials);
         recorder
@@ -331,6 +300,8 @@ impl Lighting {
             .uniform("cascades", &light.sun_views.block())
             .color(&self.radiance, Load::Discard)
             .depth_test(&surfaces.depth)
+            .draw();
+        &self.radiance
     }
 
     fn sun_block(&self, light: &Light<'_>, view: &View) -> SunBlock {

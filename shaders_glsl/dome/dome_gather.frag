@@ -1,11 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "colour.glsl"
 #include "constants.glsl"
+#include "dome.glsl"
 #include "materials.glsl"
 #include "octahedral.glsl"
-#include "view.glsl"
-#include "dome.glsl"
 
 // The light of the sky by shadow maps from directions of the sky: E = 1/n sum V (n.w) L/p, and what it would be without V.
 // Both are averaged over the frames, with everything else that the frames show; their quotient is A, weighted by the light.
@@ -14,6 +14,14 @@
 layout(location = 0) out vec4 sky;
 // rgb: all other light, kcd/m^2; a: the luminance of the sky's light if nothing hid it, by the irradiance cube.
 layout(location = 1) out vec4 rest;
+
+// Variant: ILLUMINANCE
+#ifdef ILLUMINANCE
+// Illuminance of the surface, klx: x: by the sky; y: by the sky if nothing hid it, by the same directions, and z: by the
+// irradiance cube; w: by the sun.
+layout(location = 2) out vec4 illuminance;
+layout(set = 0, binding = 11) uniform sampler2D previous_illuminance;
+#endif
 
 // What the sky's light is shown as: the radiance reflected, the irradiance, or the share A.
 layout(constant_id = 0) const bool SHOW_IRRADIANCE = false;
@@ -25,23 +33,19 @@ layout(constant_id = 3) const int DIRECTIONS = 4;
 layout(constant_id = 4) const bool ALBEDO_IMAGE = true;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform usampler2D words;
+layout(set = 0, binding = 1) uniform usampler2D normal_material;
 layout(set = 0, binding = 2) uniform sampler2D albedo;         // with ALBEDO_IMAGE; else any
-layout(set = 0, binding = 3) uniform sampler2D frame;          // kcd/m^2, without the sky's light
+layout(set = 0, binding = 3) uniform sampler2D frame;          // kcd/m^2, without the sky's light; a: of the sun alone, klx
 layout(set = 0, binding = 4) uniform sampler2D previous_sky;
 layout(set = 0, binding = 5) uniform sampler2D previous_rest;
-layout(set = 0, binding = 6) uniform sampler2D maps;           // reversed: 1 is nearest the light
 layout(set = 0, binding = 7) uniform samplerCube sky_irradiance; // E of sky and ground, klx
 layout(set = 0, binding = 8, scalar) uniform View { VIEW_BLOCK } view;
-layout(set = 0, binding = 9, scalar) uniform Dome { DOME_BLOCK } dome;
 layout(set = 0, binding = 10) uniform sampler2D materials; // see materials.glsl
 
 layout(push_constant, scalar) uniform Push {
     vec3 ground; // radiance below the horizon, kcd/m^2
     float share; // of this frame in the means, 0..1
 } push;
-
-#include "face.glsl"
 
 /// The light of this frame's directions on a face: rgb with V; a: its luminance without V. The ground's is known without
 /// sampling where V is left out.
@@ -53,19 +57,25 @@ vec4 light_of_directions(vec3 world, vec3 n, vec3 face) {
         if (cosine <= 0.0) continue;
         vec3 light = dome.light[k].rgb * cosine;
         whole += luminance(light) * dome.light[k].a;
-        if (is_turned_away(face, n, dome.toward[k].xyz)) continue;
-        bool lit = is_lit_in_plane(maps, dome.clip_from_world[k], dome.planes[k], dome.window[k], dome.toward[k].a, world, face);
-        if (lit) visible += light;
+        if (is_lit_from(k, world, n, face)) visible += light;
     }
     return vec4(visible, whole);
 }
 
 void gather(vec2 uv, float d) {
-    uvec3 own = textureLod(words, uv, 0.0).xyz;
+    vec3 ray = view_ray(uv, view.ray_scale, view.ray_offset);
+    uvec3 own = textureLod(normal_material, uv, 0.0).xyz;
     vec3 n = normal_unpack(own.x);
-    vec3 world = view.eye + view.world_from_view * in_view(uv, d);
-    sky = light_of_directions(world, n, face_normal(uv, own.z));
+    vec3 world = view.eye + view.world_from_view * (ray * (view.near / d));
+    sky = light_of_directions(world, n, view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale));
     vec3 open = textureLod(sky_irradiance, n, 0.0).rgb;
+#ifdef ILLUMINANCE
+    illuminance.xyz = vec3(luminance(sky.rgb), sky.a, luminance(open));
+    if (!SKY) {
+        sky = vec4(0.0);
+        return;
+    }
+#endif
     if (SHOW_OCCLUSION) {
         sky.rgb = vec3(luminance(sky.rgb));
         rest.a = 1.0;
@@ -81,9 +91,18 @@ void main() {
     vec2 uv = gl_FragCoord.xy / vec2(textureSize(depth, 0));
     float d = textureLod(depth, uv, 0.0).r;
     sky = vec4(0.0);
-    rest = vec4(textureLod(frame, uv, 0.0).rgb, 0.0);
+    vec4 lit = textureLod(frame, uv, 0.0);
+    rest = vec4(lit.rgb, 0.0);
+#ifdef ILLUMINANCE
+    illuminance = vec4(0.0, 0.0, 0.0, lit.a);
+    if (d > 0.0) gather(uv, d);
+#else
     if (SKY && d > 0.0) gather(uv, d);
+#endif
     if (push.share >= 1.0) return;
     sky = mix(textureLod(previous_sky, uv, 0.0), sky, push.share);
     rest = mix(textureLod(previous_rest, uv, 0.0), rest, push.share);
+#ifdef ILLUMINANCE
+    illuminance = mix(textureLod(previous_illuminance, uv, 0.0), illuminance, push.share);
+#endif
 }

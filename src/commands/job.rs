@@ -234,6 +234,7 @@ impl Job {
                 directions: s.dome_directions,
                 map_edge: s.dome_size,
                 seed: s.seed,
+                ..DomeSettings::default()
             },
         }
     }

@@ -162,7 +162,7 @@ impl<'j> Renderer<'j> {
             ..self.frame.settings().tone
         };
         self.recorder.begin()?;
-        self.frame.develop(&mut self.recorder, tone)?;
+        self.frame.retone(&mut self.recorder, tone)?;
         self.recorder.finish()?;
         Ok(Some((quantity, range)))
     }

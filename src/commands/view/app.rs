@@ -226,8 +226,11 @@ impl App {
             self.interface.probed(None, None, None);
             return Ok(());
         };
-        stage.work(|rec| document.ask(rec, pixel))?;
-        let reading = document.reading();
+        stage.work(|rec| {
+            document.pick(rec, pixel);
+            Ok(())
+        })?;
+        let reading = document.picked();
         self.interface.probed(Some(pixel), reading, Some(document));
         Ok(())
     }

@@ -249,17 +249,14 @@ impl Document {
         &self.frame
     }
 
-    /// Records the question what a pixel shows.
-    ///
-    /// # Errors
-    /// When memory is out.
-    pub(super) fn ask(&mut self, recorder: &mut Recorder, pixel: [u32; 2]) -> Result<()> {
-        Ok(self.frame.ask(recorder, &self.job.daylight, pixel)?)
+    /// Records the read-out of a pixel of the newest picture.
+    pub(super) fn pick(&mut self, recorder: &mut Recorder, pixel: [u32; 2]) {
+        self.frame.pick(recorder, pixel);
     }
 
-    /// The answer, when the work is done.
-    pub(super) fn reading(&mut self) -> Option<Reading> {
-        self.frame.reading()
+    /// The pixel that was picked, when the work is done.
+    pub(super) fn picked(&mut self) -> Option<Reading> {
+        self.frame.picked()
     }
 
     /// The command that renders this picture, for a shell.
@@ -301,6 +298,7 @@ fn at_rest(options: Options, loaded: &Loaded) -> Options {
 fn frame_settings(job: &Job) -> FrameSettings {
     let mut settings = job.frame_settings(job.settings.show, Precision::Half);
     settings.irradiance.samples = job.settings.irradiance_samples;
+    settings.sampling.dome.illuminance = true;
     settings
 }
 

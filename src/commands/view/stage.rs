@@ -153,7 +153,7 @@ impl Stage {
         })
     }
 
-    /// Does work outside of frames, when nothing is in flight, and waits for it.
+    /// Does work outside of frames, when nothing is in flight, and waits for it. Work that fails is not submitted.
     ///
     /// # Errors
     /// Whatever `work` returns, or a lost device.
@@ -161,7 +161,10 @@ impl Stage {
         let recorder = self.presenter.idle()?;
         recorder.begin()?;
         let result = work(recorder);
-        recorder.finish()?;
+        match result {
+            Ok(_) => recorder.finish()?,
+            Err(_) => recorder.abandon()?,
+        }
         result
     }
 

@@ -1,4 +1,4 @@
-//! What is under the pointer: luminance of the pixel, illuminance of its surface.
+//! Read-out of the pixel under the pointer: its luminance, and the illuminance of its surface.
 
 use egui::{Align2, Grid, Ui};
 use glam::{DVec3, Vec2, Vec3};
@@ -10,18 +10,18 @@ use crate::passes::light::probe::{Reading, SurfaceReading};
 use crate::passes::view::View;
 use crate::scene::Scene;
 
-/// What is known of a pixel, and of which frame.
+/// The read-out of a pixel, and of which frame.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Probe {
     pixel: Option<[u32; 2]>,
     frame: u64,
     reading: Option<Reading>,
-    /// Where the surface is, metres.
+    /// The point of the surface, metres.
     point: Option<DVec3>,
 }
 
 impl Probe {
-    /// Whether it is about this pixel, and about the newest picture once that is at rest.
+    /// Whether it is of this pixel, and of the newest picture once that is at rest.
     pub(super) fn is_fresh(&self, pixel: Option<[u32; 2]>, document: Option<&Document>) -> bool {
         let is_newest = document.is_none_or(|d| !d.is_at_rest() || d.frames() == self.frame);
         pixel == self.pixel && (pixel.is_none() || is_newest)
@@ -84,7 +84,11 @@ fn picture(ui: &mut Ui, reading: &Reading) {
 }
 
 fn about(ui: &mut Ui, surface: &SurfaceReading, scene: &Scene) {
-    row(ui, "illuminance", air::illuminance(of(surface.illuminance)));
+    row(
+        ui,
+        "illuminance",
+        air::illuminance(surface.illuminance.into()),
+    );
     let material = scene.materials.get(surface.material as usize);
     let name = material.map_or("", |m| m.name.as_str());
     let name = if name.is_empty() {
@@ -98,7 +102,7 @@ fn about(ui: &mut Ui, surface: &SurfaceReading, scene: &Scene) {
     row(ui, "depth", format!("{:.2} m", surface.distance));
 }
 
-/// Where the surface of a reading is, metres.
+/// The point of the surface under a pixel, metres.
 fn point(document: &Document, reading: Reading) -> Option<DVec3> {
     let surface = reading.surface?;
     let size = document.frame().settings().size;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::daylight::sun_position::SunPositionError;
 use crate::gpu::GpuError;
-use crate::options::OptionsError;
+use crate::options::{OptionsError, ResolveError};
 use crate::scene::{SceneError, shown};
 
 /// Result of a command.
@@ -65,6 +65,15 @@ pub enum Error {
     /// Results that nobody can read.
     #[error("cannot write to standard output: {0}")]
     Stdout(String),
+}
+
+impl From<ResolveError> for Error {
+    fn from(error: ResolveError) -> Self {
+        match error {
+            ResolveError::Options(error) => Self::Options(error),
+            ResolveError::Scene(error) => Self::Scene(error),
+        }
+    }
 }
 
 impl Error {

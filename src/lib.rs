@@ -49,6 +49,8 @@
 //! | depth | reversed Z, infinite far plane |
 //! | matrices | named destination_from_source: `clip_from_view` |
 
+#![cfg_attr(not(test), warn(clippy::too_many_lines))]
+
 pub mod cli;
 pub mod commands;
 pub mod compare;

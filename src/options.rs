@@ -33,6 +33,7 @@ pub use crate::passes::light::lighting::Show;
 pub use choices::{Choice, name};
 pub(crate) use choices::{choice, choices};
 pub use given::OptionValues;
+pub use resolve::ResolveError;
 pub use sun_input::SunInput;
 pub use values::{
     AoResolution, Direction, ExposureMode, Fresnel, Penumbra, Place, Preset, Size, SolarTime,

@@ -253,7 +253,7 @@ impl Job {
     /// As [`Options::command_line`].
     pub fn command_line(&self) -> Result<String> {
         let options = self.options_in_view();
-        options.command_line(self.path.as_deref(), &self.loaded)
+        Ok(options.command_line(self.path.as_deref(), &self.loaded)?)
     }
 
     /// The options, with the camera that is in use.

@@ -4,8 +4,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use super::given::replaces;
-use super::{OptionValues, Options, OptionsError, is_flag};
-use crate::error::Error;
+use super::{OptionValues, Options, OptionsError, ResolveError, is_flag};
 use crate::scene::Loaded;
 
 /// Written even where they are the defaults: they say what the picture shows, and when.
@@ -23,7 +22,11 @@ impl Options {
     /// # Errors
     /// A value of the scene that these options lack and that no option takes back, such as a gamma; a path that is not
     /// UTF-8, or a name with a zero byte.
-    pub fn command_line(&self, scene: Option<&Path>, loaded: &Loaded) -> Result<String, Error> {
+    pub fn command_line(
+        &self,
+        scene: Option<&Path>,
+        loaded: &Loaded,
+    ) -> Result<String, ResolveError> {
         let mut line = vec!["skylight".to_owned(), "render".to_owned()];
         line.extend(scene.map(scene_word).transpose()?);
         let written = self.needed(loaded)?;
@@ -36,7 +39,7 @@ impl Options {
     }
 
     /// The values with which a user gets these options of a scene, in the order of the definition.
-    fn needed(&self, loaded: &Loaded) -> Result<OptionValues, Error> {
+    fn needed(&self, loaded: &Loaded) -> Result<OptionValues, ResolveError> {
         let wanted: Vec<_> = self.values().into_pairs();
         let mut is_written: Vec<bool> = wanted
             .iter()

@@ -7,7 +7,6 @@ use super::{
     OptionValues, Options, OptionsError, Preset, Reflections, Visibility, all_tables, long, name,
     tables,
 };
-use crate::error::Error;
 use crate::scene::{
     Bounds, Camera, DEFAULT_FOV_DEG, LoadOptions, Loaded, NamedOptions, SceneError,
 };
@@ -35,12 +34,23 @@ const LECTURE: [(&str, &str); 16] = [
     ("shadow-size", "4096"),
 ];
 
+/// Why options cannot be used: those of the user, or those of the scene file, are wrong.
+#[derive(Debug, thiserror::Error)]
+pub enum ResolveError {
+    /// The user's.
+    #[error(transparent)]
+    Options(#[from] OptionsError),
+    /// The scene file's.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+}
+
 impl Options {
     /// The user's options over the scene file's, over the preset's, over the defaults.
     ///
     /// # Errors
     /// A bad key or value in the scene file, an unknown camera or moment, options that contradict each other.
-    pub fn resolve(user: &OptionValues, loaded: &Loaded) -> Result<Self, Error> {
+    pub fn resolve(user: &OptionValues, loaded: &Loaded) -> Result<Self, ResolveError> {
         let scene_file = |e: OptionsError| SceneError::SceneFile {
             path: loaded.path.clone(),
             what: e.0,

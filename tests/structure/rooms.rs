@@ -1,5 +1,6 @@
-//! The rooms of the crate: who imports whom, where `unsafe` and barriers may be written.
+//! Which top-level module imports which, and where `unsafe` and barriers may be written.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 struct Source {
@@ -77,6 +78,54 @@ fn imports_beyond(room: &str, allowed: &[&str]) -> (usize, Vec<String>) {
         })
         .collect();
     (files.len(), faults)
+}
+
+/// The top-level modules that each one names outside of its tests.
+fn imports() -> (usize, BTreeMap<String, BTreeSet<String>>) {
+    let files = sources("src");
+    let mut imports: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for file in &files {
+        let path = file.path.trim_start_matches("src/").trim_end_matches(".rs");
+        let module = path.split('/').next().unwrap_or_default();
+        if path.ends_with("tests") || ["lib", "main"].contains(&module) {
+            continue;
+        }
+        let named = imports.entry(module.to_owned()).or_default();
+        // Tests stand at the end of a file.
+        let lines = code(file).take_while(|(_, line)| *line != "#[cfg(test)]");
+        let found = lines.flat_map(|(_, line)| rooms_named(line));
+        // The macro of `gpu` is exported at the root of the crate.
+        let found = found.map(|name| if name == "gpu_struct" { "gpu" } else { name });
+        named.extend(found.filter(|name| *name != module).map(str::to_owned));
+    }
+    (files.len(), imports)
+}
+
+#[test]
+fn imports_have_no_cycle() {
+    let (files, mut left) = imports();
+    assert!(
+        left["frame"].contains("passes"),
+        "the search finds imports: {left:?}"
+    );
+    // Takes away modules that import nothing of what is left: a cycle stays.
+    loop {
+        let names: BTreeSet<String> = left.keys().cloned().collect();
+        let before = left.len();
+        left.retain(|_, named| named.intersection(&names).next().is_some());
+        if left.len() == before {
+            break;
+        }
+    }
+    let names: BTreeSet<String> = left.keys().cloned().collect();
+    let faults: Vec<String> = left
+        .iter()
+        .map(|(module, named)| {
+            let among: Vec<&str> = named.intersection(&names).map(String::as_str).collect();
+            format!("{module} imports {}", among.join(", "))
+        })
+        .collect();
+    none("cycles of imports", files, &faults);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! `skylight bake`: the sky or its irradiance as an environment map, with a JSON file that says what it is.
+//! `skylight bake`: the sky or its irradiance as an environment map, with a JSON description.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ use crate::output::{
 };
 use crate::settings::{Options, name};
 
-/// What a map holds.
+/// Quantity of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Map {
     /// Radiance of sky and ground without the sun's disc, cd/m².
@@ -27,7 +27,7 @@ pub enum Map {
 }
 
 impl Map {
-    /// Texels along a cube face unless the user says. Irradiance is smooth, and each texel of it a sum over the sky.
+    /// Default edge of a cube face, texels. Irradiance is smooth, and each of its texels costs a sum over the sky.
     const fn default_size(self) -> u32 {
         match self {
             Self::Sky => 256,
@@ -43,31 +43,31 @@ impl Map {
     }
 }
 
-/// How the sphere is laid out.
+/// Layout of the sphere.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum Layout {
     /// 4N x 2N: first row the zenith, first column north, azimuth clockwise to the right.
     #[default]
     Equirect,
-    /// 4N x 3N: -X +Z +X -Z in the middle row, +Y above and -Y below +Z; each face as Vulkan has it.
+    /// 4N x 3N: -X +Z +X -Z in the middle row, +Y above and -Y below +Z; each face in Vulkan's orientation.
     Cross,
-    /// Six files NAME_px .. NAME_nz, N x N, each as Vulkan has it.
+    /// Six files NAME_px .. NAME_nz, N x N, each in Vulkan's orientation.
     Faces,
 }
 
-/// What to bake.
+/// Arguments of `bake`.
 #[derive(Debug, Clone, PartialEq, Args)]
 pub struct BakeWishes {
-    /// What the map holds.
+    /// Quantity of the map.
     #[arg(long, value_enum, value_name = "WHAT")]
     pub map: Map,
     /// Texels along an edge of a cube face, 4 to 4096 [default: 256 for sky, 32 for irradiance].
     #[arg(long = "size", id = "edge", value_name = "N", value_parser = clap::value_parser!(u32).range(4..=4096))]
     pub edge: Option<u32>,
-    /// How the sphere is laid out.
+    /// Layout of the sphere.
     #[arg(long, value_enum, value_name = "LAYOUT", default_value = "equirect")]
     pub layout: Layout,
-    /// Where to: .exr (32-bit floats) or .hdr (Radiance); the JSON file has the same name.
+    /// Output file: .exr (32-bit floats) or .hdr (Radiance); the JSON file has the same name.
     #[arg(short, long, value_name = "FILE", value_parser = map_path)]
     pub output: PathBuf,
 }
@@ -81,10 +81,10 @@ fn map_path(text: &str) -> std::result::Result<PathBuf, String> {
     }
 }
 
-/// Computes and writes.
+/// Computes and writes the map.
 ///
 /// # Errors
-/// Options that make no sense, or files that cannot be written; older ones are left alone then.
+/// Invalid options, or files that cannot be written; older files are left alone then.
 pub fn run(wishes: &BakeWishes, mut options: Options) -> Result<()> {
     exact_by_default(&mut options);
     let light = Light::new(options)?;
@@ -171,7 +171,7 @@ fn encode(path: &Path, picture: &Picture, map: Map, light: &Light) -> Result<Vec
     encode_exr(path, picture.size, &[layer], &metadata)
 }
 
-/// The JSON beside the map: what it takes to light a scene with it.
+/// The JSON description: everything needed to light a scene with the map.
 fn description(
     wishes: &BakeWishes,
     light: &Light,

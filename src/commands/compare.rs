@@ -1,4 +1,4 @@
-//! `skylight compare`: the distance of two pictures in numbers, and as a picture.
+//! `skylight compare`: the difference of two pictures in numbers and as a picture.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -11,20 +11,20 @@ use crate::compare::{
 use crate::error::{Error, Result};
 use crate::output::{Effort, Encoding, check_writable, print, write_png};
 
-/// What to compare, and how.
+/// Arguments of `compare`.
 #[derive(Debug, Clone, PartialEq, Args)]
 pub struct CompareWishes {
-    /// The picture that is right: .exr (scene-linear), or .png and other 8-bit files (sRGB).
+    /// Reference picture: .exr (scene-linear), or .png and other 8-bit files (sRGB).
     reference: PathBuf,
-    /// The picture in question.
+    /// Picture to test.
     test: PathBuf,
-    /// Compare only where this picture is not black, one pixel away from its edges: for instance an .exr with a depth.
+    /// Compare only where this picture is not black, except within one pixel of its edges; for instance an .exr of the depth.
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
-    /// Factor on scene-linear light before LDR-FLIP [default: brings the 75th percentile of the reference to 0.5].
+    /// Exposure factor of scene-linear pictures for LDR-FLIP [default: brings the 75th percentile of the reference to 0.5].
     #[arg(long, value_name = "FACTOR", value_parser = crate::settings::exposure_factor)]
     exposure: Option<f64>,
-    /// Write the map of FLIP, black (none) to white.
+    /// Write the FLIP map, black (0) to white (1).
     #[arg(long, value_name = "FILE.png", value_parser = png_path)]
     diff: Option<PathBuf>,
 }
@@ -37,10 +37,10 @@ fn png_path(text: &str) -> std::result::Result<PathBuf, String> {
     }
 }
 
-/// Compares and prints.
+/// Compares two pictures and prints the figures.
 ///
 /// # Errors
-/// A picture that cannot be read, or two that do not belong together.
+/// A picture cannot be read, or the two differ in size or kind.
 pub fn run(wishes: &CompareWishes) -> Result<()> {
     if let Some(path) = &wishes.diff {
         check_writable(path)?;
@@ -50,7 +50,7 @@ pub fn run(wishes: &CompareWishes) -> Result<()> {
     let mask = mask(wishes, &reference)?;
     let statistics = Statistics::new(&reference, &test, &mask)?;
     let mut text = report(&statistics);
-    let map = maps(wishes, [&reference, &test], &mask, &mut text);
+    let map = flip_map(wishes, [&reference, &test], &mask, &mut text);
     if let Some(path) = &wishes.diff {
         write_map(path, reference.size, &map)?;
     }
@@ -80,8 +80,8 @@ fn report(s: &Statistics) -> String {
     )
 }
 
-/// FLIP where the mask holds, in words; gives the map for the difference picture.
-fn maps(
+/// Appends the mean FLIP within the mask to `text`; returns the FLIP map.
+fn flip_map(
     wishes: &CompareWishes,
     [reference, test]: [&Picture; 2],
     mask: &[bool],

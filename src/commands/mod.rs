@@ -1,4 +1,4 @@
-//! The faces of the program: drivers of the same [`Frame`](crate::frame::Frame).
+//! The commands of the program: drivers of the same [`Frame`](crate::frame::Frame).
 
 mod bake;
 mod bench;
@@ -34,10 +34,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::cli::Command;
 use crate::error::Result;
 
-/// Does what the user asked for.
+/// Runs a command.
 ///
 /// # Errors
-/// Whatever keeps it from being done, in one line.
+/// The reason for the failure, in one line.
 pub fn run(command: Command) -> Result<()> {
     match command {
         Command::Render {
@@ -63,7 +63,7 @@ pub fn run(command: Command) -> Result<()> {
     }
 }
 
-/// A file name that ends in `.svg`.
+/// Parses the name of an `.svg` file.
 fn svg_path(text: &str) -> std::result::Result<PathBuf, String> {
     let path = PathBuf::from(text);
     match path.extension() {
@@ -72,7 +72,7 @@ fn svg_path(text: &str) -> std::result::Result<PathBuf, String> {
     }
 }
 
-/// A bar on a terminal, nothing in a pipe or when there is but one step.
+/// A progress bar on a terminal; hidden in a pipe, when `quiet`, and for a single step.
 fn progress(steps: u64, unit: &'static str, quiet: bool) -> ProgressBar {
     if quiet || steps < 2 {
         return ProgressBar::hidden();

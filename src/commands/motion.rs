@@ -1,4 +1,4 @@
-//! What changes from frame to frame while frames are timed.
+//! Motion of camera and sun while frames are timed.
 
 use std::borrow::Cow;
 
@@ -10,23 +10,23 @@ use super::light::conditions;
 use crate::daylight::sky::Daylight;
 use crate::scene::Camera;
 
-/// What moves while whole frames are timed.
+/// What moves between timed frames.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum Motion {
-    /// Nothing: every frame shows the same.
+    /// Nothing: all frames are equal.
     None,
-    /// The camera, every frame: nothing of the view can be reused.
+    /// The camera moves every frame: nothing that depends on the view is reused.
     #[default]
     Camera,
-    /// Camera and sun, every frame: sky, irradiance and shadow map begin anew.
+    /// Camera and sun move every frame: sky, irradiance and shadow map are redrawn.
     Sun,
 }
 
-/// Turn of the camera about its target between two frames, radians: a slow walk around.
+/// Rotation of the camera about its target per frame, radians.
 const CAMERA_STEP: f32 = 0.002;
-/// Frames after which the camera turns round, so that it stays near the view that was asked for.
+/// Frames after which the camera turns back, so that it stays near the requested view.
 const CAMERA_SWING: u32 = 64;
-/// The sun's way between two frames, degrees of azimuth: that of a minute.
+/// Movement of the sun per frame, degrees of azimuth: about that of a minute.
 const SUN_STEP_DEG: f64 = 0.25;
 
 impl Motion {
@@ -55,7 +55,7 @@ impl Motion {
         Cow::Owned(Daylight::new(&conditions(&job.settings, &sun)))
     }
 
-    /// What the row of the whole frame is called.
+    /// Name of the row of whole frames.
     pub fn frame_name(self) -> &'static str {
         match self {
             Self::None => "whole frame, nothing moves",

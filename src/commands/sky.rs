@@ -1,4 +1,4 @@
-//! `skylight sky`: the numbers of a daylight, its spectra, and how irradiance converges. No device is needed.
+//! `skylight sky`: figures of a daylight, its spectra, and the convergence of irradiance methods. Needs no device.
 
 use std::path::PathBuf;
 
@@ -14,34 +14,34 @@ use crate::error::Result;
 use crate::output::{check_writable, print, write_text};
 use crate::settings::{Direction, Options, Preset, name};
 
-/// What to tell of a daylight.
+/// Arguments of `sky`.
 #[derive(Debug, Clone, Default, PartialEq, Args)]
 pub struct SkyWishes {
-    /// Machine-readable instead of a table.
+    /// Print JSON instead of a table.
     #[arg(long)]
     pub json: bool,
-    /// Also the radiance in this direction, degrees; may be given several times.
+    /// Also print the radiance in this direction, degrees; may be repeated.
     #[arg(long = "direction", value_name = "AZ,EL", value_parser = crate::settings::direction, allow_hyphen_values = true)]
     pub directions: Vec<Direction>,
-    /// Draw the sun's spectra (or the study) as an SVG file.
+    /// Draw the sun's spectra (or the study) to an SVG file.
     #[arg(long, value_name = "FILE.svg", value_parser = svg_path)]
     pub plot: Option<PathBuf>,
-    /// Instead: error against samples for each way of computing the irradiance of this sky.
+    /// Print instead the error of each irradiance method over its number of samples for this sky.
     #[arg(long)]
     pub irradiance_study: bool,
 }
 
-/// Irradiance by the exact sum unless the user wants another way: nothing here has to be fast.
+/// Selects the exact sum for the irradiance unless the user chose a method: speed does not matter here.
 pub fn exact_by_default(options: &mut Options) {
     if options.preset != Some(Preset::Lecture) {
         options.irradiance.get_or_insert(IrradianceMethod::Exact);
     }
 }
 
-/// Prints, and draws where wanted.
+/// Prints the figures and draws the plot if requested.
 ///
 /// # Errors
-/// Options that make no sense, or a file that cannot be written.
+/// Invalid options, or a file that cannot be written.
 pub fn run(wishes: &SkyWishes, mut options: Options) -> Result<()> {
     if let Some(path) = &wishes.plot {
         check_writable(path)?;
@@ -49,9 +49,9 @@ pub fn run(wishes: &SkyWishes, mut options: Options) -> Result<()> {
     exact_by_default(&mut options);
     let light = Light::new(options)?;
     let (text, drawing) = if wishes.irradiance_study {
-        told_study(wishes, &light)
+        study_text(wishes, &light)
     } else {
-        told_numbers(wishes, &light)?
+        report_text(wishes, &light)?
     };
     if let (Some(path), Some(drawing)) = (&wishes.plot, drawing) {
         write_text(path, &drawing)?;
@@ -59,7 +59,7 @@ pub fn run(wishes: &SkyWishes, mut options: Options) -> Result<()> {
     print(&format!("{}\n", text.trim_end()))
 }
 
-fn told_numbers(wishes: &SkyWishes, light: &Light) -> Result<(String, Option<String>)> {
+fn report_text(wishes: &SkyWishes, light: &Light) -> Result<(String, Option<String>)> {
     let report = SkyReport::new(light, &wishes.directions)?;
     let text = if wishes.json {
         format!("{:#}", json!(report))
@@ -70,7 +70,7 @@ fn told_numbers(wishes: &SkyWishes, light: &Light) -> Result<(String, Option<Str
     Ok((text, drawing))
 }
 
-fn told_study(wishes: &SkyWishes, light: &Light) -> (String, Option<String>) {
+fn study_text(wishes: &SkyWishes, light: &Light) -> (String, Option<String>) {
     let rows = study(|direction| light.daylight.radiance(direction));
     let text = if wishes.json {
         study_json(&rows)

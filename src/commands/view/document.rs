@@ -83,7 +83,7 @@ impl Document {
     }
 
     /// Does what a key asks of the scene and its light; what it did goes to `notes`.
-    pub(super) fn act(&mut self, action: Action, notes: &mut Notes) {
+    pub(super) fn perform(&mut self, action: Action, notes: &mut Notes) {
         match action {
             Action::FrameAll => self.frame_all(),
             Action::SaveViewpoint => {

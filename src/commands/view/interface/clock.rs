@@ -1,10 +1,10 @@
-//! The passing day.
+//! The clock that advances the time of day.
 
 use chrono::TimeDelta;
 
 use crate::settings::SunInput;
 
-/// Speeds on offer, seconds of the day to one of the user's.
+/// Speeds to choose from: simulated seconds per second.
 pub(super) const SPEEDS: [(f64, &str); 4] = [
     (60.0, "1 min/s"),
     (600.0, "10 min/s"),
@@ -12,11 +12,11 @@ pub(super) const SPEEDS: [(f64, &str); 4] = [
     (86_400.0, "1 day/s"),
 ];
 
-/// Whether and how fast time passes.
+/// Whether and how fast the time of day advances.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Clock {
     runs: bool,
-    /// Seconds of the day to one of the user's.
+    /// Simulated seconds per second.
     pub(super) speed: f64,
 }
 
@@ -30,22 +30,22 @@ impl Default for Clock {
 }
 
 impl Clock {
-    /// Starts or stops it.
+    /// Starts or stops the clock.
     pub(super) fn toggle(&mut self) {
         self.runs = !self.runs;
     }
 
-    /// Whether it is on.
+    /// Whether the clock is running.
     pub(super) fn is_on(&self) -> bool {
         self.runs
     }
 
-    /// Whether it moves this sun: a direction has no time.
+    /// Whether the clock moves this sun; a direction has no time.
     pub(super) fn is_running(&self, sun: &SunInput) -> bool {
         self.runs && !matches!(sun, SunInput::Direction { .. })
     }
 
-    /// Lets so many seconds of the user's time pass.
+    /// Advances the sun's time by `seconds` of real time.
     pub(super) fn advance(&self, sun: &mut SunInput, seconds: f64) {
         if self.is_running(sun) {
             shift(sun, seconds * self.speed);
@@ -53,7 +53,7 @@ impl Clock {
     }
 }
 
-/// Moves the time by so many seconds; a direction stays.
+/// Shifts the sun's time by `seconds`; a direction does not change.
 pub(in crate::commands::view) fn shift(sun: &mut SunInput, seconds: f64) {
     match sun {
         SunInput::Place { when, .. } => {

@@ -8,10 +8,10 @@ use crate::settings::Settings;
 
 /// Size of the bar, points.
 const BAR: [f32; 2] = [18.0, 220.0];
-/// Steps of colour in it.
+/// Colour steps in the bar.
 const STEPS: u32 = 48;
 
-/// Of the false colours that are shown, when they are.
+/// Shows the legend when the picture is in false colours.
 pub(super) fn show(ui: &Ui, settings: &Settings) {
     let Some(quantity) = settings.false_colour.filter(|q| settings.show.holds(*q)) else {
         return;

@@ -1,4 +1,4 @@
-//! Where the sun stands: place and time, the lecture's solar time, or a direction.
+//! Position of the sun: by place and time, by solar time, or as a direction.
 
 use chrono::{
     DateTime, Datelike, FixedOffset, NaiveDate, NaiveDateTime, NaiveTime, TimeDelta, Timelike,
@@ -12,16 +12,16 @@ use crate::daylight::cities;
 use crate::daylight::sun_position::{SunEvents, SunPosition, sun_events};
 use crate::settings::{Settings, SunInput};
 
-/// Cities that a search lists at most.
+/// Most cities that a search lists.
 const MOST_FOUND: usize = 8;
-/// A city so near is the place, km.
+/// Distance within which a city names the place, km.
 const NEAR_KM: f64 = 30.0;
 
 /// The search for a place.
 #[derive(Debug, Default)]
 pub(super) struct Place {
     text: String,
-    /// The events of a day, and of which.
+    /// Sunrise, noon and sunset, cached by day.
     events: Option<(Day, SunEvents)>,
 }
 
@@ -42,9 +42,9 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, place: &mut Place, cloc
             date(ui, when);
             let events = place.events(*when, *latitude, *longitude);
             day(ui, when, events.as_ref());
-            passing(ui, clock);
+            playback(ui, clock);
             if let Some(events) = &events {
-                ui.weak(told(events));
+                ui.weak(events_text(events));
             }
         }
         SunInput::Solar {
@@ -52,17 +52,29 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, place: &mut Place, cloc
             hours,
             latitude,
         } => {
-            ui.add(Slider::new(latitude, -90.0..=90.0).text("latitude"));
+            ui.add(
+                Slider::new(latitude, -90.0..=90.0)
+                    .suffix("°")
+                    .text("latitude"),
+            );
             ui.add(Slider::new(day, 1..=365).text("day of the year"));
             ui.add(Slider::new(hours, 0.0..=24.0).text("solar time, h"));
-            passing(ui, clock);
+            playback(ui, clock);
         }
         SunInput::Direction {
             azimuth_deg,
             elevation_deg,
         } => {
-            ui.add(Slider::new(azimuth_deg, 0.0..=360.0).text("azimuth"));
-            ui.add(Slider::new(elevation_deg, -20.0..=90.0).text("elevation"));
+            ui.add(
+                Slider::new(azimuth_deg, 0.0..=360.0)
+                    .suffix("°")
+                    .text("azimuth"),
+            );
+            ui.add(
+                Slider::new(elevation_deg, -20.0..=90.0)
+                    .suffix("°")
+                    .text("elevation"),
+            );
         }
     }
     ui.label(format!(
@@ -71,7 +83,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, place: &mut Place, cloc
     ));
 }
 
-/// Changes between the three ways to say where the sun stands, keeping as much as can be kept.
+/// Switches between the three ways to set the sun, keeping as much as possible.
 fn kind(ui: &mut Ui, settings: &mut Settings, sun: &SunPosition) {
     let now = std::mem::discriminant(&settings.sun);
     let place = SunInput::Place {
@@ -144,7 +156,7 @@ impl Place {
         let hint = if km < NEAR_KM {
             format!("{}, {}", city.name, city.country)
         } else {
-            "search a city".to_owned()
+            "search for a city".to_owned()
         };
         ui.add(TextEdit::singleline(&mut self.text).hint_text(hint));
         if !self.text.trim().is_empty() {
@@ -152,7 +164,7 @@ impl Place {
                 let name = format!("{}, {}", city.name, city.country);
                 if ui.selectable_label(false, name).clicked() {
                     (*latitude, *longitude) = (city.latitude, city.longitude);
-                    // The hands of the clock stay: three in the afternoon there.
+                    // The local time stays: 15:00 there.
                     *when = city.moment(when.naive_local());
                     self.text.clear();
                     break;
@@ -165,7 +177,7 @@ impl Place {
         });
     }
 
-    /// Sunrise, noon and sunset of the day, found once a day.
+    /// Sunrise, noon and sunset of the day.
     fn events(
         &mut self,
         when: DateTime<FixedOffset>,
@@ -263,8 +275,8 @@ fn mark(ui: &Ui, left: f32, response: &Response, seconds: u32) {
     ));
 }
 
-/// Play, and how fast.
-fn passing(ui: &mut Ui, clock: &mut Clock) {
+/// The play button and the speeds.
+fn playback(ui: &mut Ui, clock: &mut Clock) {
     ui.horizontal(|ui| {
         let text = if clock.is_on() { "stop" } else { "play" };
         if ui.button(text).clicked() {
@@ -276,8 +288,8 @@ fn passing(ui: &mut Ui, clock: &mut Clock) {
     });
 }
 
-/// Sunrise, noon and sunset in words.
-fn told(events: &SunEvents) -> String {
+/// Sunrise, noon and sunset as text.
+fn events_text(events: &SunEvents) -> String {
     let clock = |event: Option<DateTime<FixedOffset>>| {
         event.map_or("none".to_owned(), |e| e.format("%H:%M").to_string())
     };

@@ -1,4 +1,4 @@
-//! What the CPU does: sky, irradiance, models, tone curves. `cargo bench`.
+//! CPU benchmarks: sky, irradiance, models, tone curves. `cargo bench`.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -25,7 +25,7 @@ fn directions() -> Vec<DVec3> {
         .collect()
 }
 
-/// The radiance of one direction.
+/// Sky radiance of one direction.
 fn sky(c: &mut Criterion) {
     let directions = directions();
     let mut group = c.benchmark_group("sky radiance");
@@ -57,7 +57,7 @@ fn irradiance(c: &mut Criterion) {
     group.bench_function("one normal of a 32² cube", |b| {
         b.iter(|| black_box(exact.at(black_box(DVec3::new(0.6, 0.64, 0.48)))));
     });
-    // 6144 normals over 6144 texels: one map takes most of a second.
+    // 6144 normals times 6144 texels: one map takes most of a second.
     group.sample_size(10);
     group.bench_function("a whole 32² cube", |b| {
         b.iter(|| black_box(CubeMap::from_fn(32, |n| exact.at(n))));
@@ -65,7 +65,7 @@ fn irradiance(c: &mut Criterion) {
     group.finish();
 }
 
-/// The bundled model from its file to an arena of vertices.
+/// Loading of the bundled model.
 fn obj(c: &mut Criterion) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/colonnade.obj");
     let options = LoadOptions::default();
@@ -82,7 +82,7 @@ fn obj(c: &mut Criterion) {
     group.finish();
 }
 
-/// Tone curves, colour by colour.
+/// Tone curves of single colours.
 fn tone(c: &mut Criterion) {
     let colours: Vec<DVec3> = (0..1024)
         .map(|i| DVec3::new(0.004, 0.003, 0.002) * f64::from(i))

@@ -1,7 +1,7 @@
-//! Makes the bundled scene: a small open temple above a pool. Run it as `cargo run --example make_colonnade`; it writes
-//! `assets/colonnade.obj` and `assets/colonnade.mtl`, always the same bytes.
+//! Writes the bundled scene, a small open temple above a pool, to `assets/colonnade.obj` and `assets/colonnade.mtl`. The
+//! output is deterministic. `cargo run --example make_colonnade`
 //!
-//! Metres, +Y up, +X east, −Z north. The temple stands on the xz plane around the origin and looks south over the pool.
+//! Metres, +Y up, +X east, −Z north. The temple stands on the xz plane around the origin and faces south over the pool.
 
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -61,7 +61,7 @@ impl Model {
         let _ = writeln!(self.text, "usemtl {name}");
     }
 
-    /// Millimetres are fine enough.
+    /// A number with three digits: millimetres.
     fn vertex(&mut self, p: Point) -> usize {
         let line = format!("v {} {} {}", short(p[0]), short(p[1]), short(p[2]));
         numbered(&mut self.text, &mut self.vertices, line)
@@ -73,7 +73,7 @@ impl Model {
         numbered(&mut self.text, &mut self.normals, format!("vn {x} {y} {z}"))
     }
 
-    /// A flat polygon, counter-clockwise; it gets its normal when it is read.
+    /// A flat polygon, counter-clockwise, without normals.
     fn flat(&mut self, points: &[Point]) {
         let numbers: Vec<usize> = points.iter().map(|p| self.vertex(*p)).collect();
         self.text.push('f');
@@ -99,8 +99,8 @@ impl Model {
         }
     }
 
-    /// A grid of points with normals as smooth quads: `at(row, column)` gives point and normal. Quads face the side from
-    /// which rows go up and columns go left to right.
+    /// A grid of smooth quads: `at(row, column)` gives point and normal. Seen from the front, rows run up and columns to the
+    /// right.
     fn surface(
         &mut self,
         rows: usize,
@@ -122,7 +122,7 @@ impl Model {
     }
 
     /// A surface of revolution around the vertical axis through `centre`; `profile` is (radius, height) from below to
-    /// above. Sharp where a point is given twice.
+    /// above. A repeated point makes a sharp edge.
     fn lathe(&mut self, centre: Point, profile: &[(f64, f64)], sides: usize) {
         for piece in smooth_pieces(profile) {
             self.surface(piece.len(), sides + 1, |row, column| {
@@ -141,7 +141,7 @@ impl Model {
     }
 }
 
-/// Splits a profile at points that are given twice.
+/// Splits a profile at repeated points.
 fn smooth_pieces(profile: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
     profile
         .chunk_by(|a, b| a != b)
@@ -161,13 +161,13 @@ fn grid(rows: usize, columns: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..rows).flat_map(move |row| (0..columns).map(move |column| (row, column)))
 }
 
-/// Rounded to a thousandth: so many digits cost bytes.
+/// Rounded to a thousandth, which keeps the file small.
 fn short(value: f64) -> f64 {
     let rounded = (value * 1e3).round() / 1e3;
     if rounded == 0.0 { 0.0 } else { rounded }
 }
 
-/// The number (from 1) of a line; it is written when it is new.
+/// The index (from 1) of a line, which is written at first use.
 fn numbered(text: &mut String, known: &mut HashMap<String, usize>, line: String) -> usize {
     if let Some(number) = known.get(&line) {
         return *number;
@@ -239,7 +239,7 @@ fn column_places() -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Meadow around, gravel near: gently rolling far from the temple, flat under it, with the pool cut out.
+/// The ground: gravel near the temple, meadow around; flat near it, rolling farther away, with a hole for the pool.
 fn ground(model: &mut Model) {
     model.material("ground");
     let (steps, size) = (72, 140.0);
@@ -273,7 +273,7 @@ fn ground(model: &mut Model) {
     );
 }
 
-/// South-west-most and north-east-most... of the water: x and z from, x and z to.
+/// Rectangle of the water, metres: smallest x and z, largest x and z.
 const POOL: [[f64; 2]; 2] = [[-4.6, 10.2], [4.6, 19.2]];
 
 /// A flat rectangle at height `y` with a rectangular hole.
@@ -289,14 +289,14 @@ fn frame(model: &mut Model, from: [f64; 2], to: [f64; 2], hole: [[f64; 2]; 2], y
     }
 }
 
-/// Three steps all round, and a polished floor.
+/// Three steps on all sides, and a polished floor.
 fn plinth(model: &mut Model) {
     model.material("limestone");
     let step = FLOOR / 3.0;
     for i in 0..3 {
         let out = 1.1 + 0.42 * (2 - i) as f64;
         let (x, z) = (HALF[0] + out, HALF[1] + out);
-        // A nosing: each tread stands a little out over its riser, and throws a line of shadow.
+        // A nosing: each tread overhangs its riser and casts a line of shadow.
         let (low, high) = (step * i as f64, step * (i + 1) as f64);
         model.cuboid([-x, low, -z], [x, high - 0.06, z]);
         model.cuboid(
@@ -357,14 +357,14 @@ fn shaft(model: &mut Model, foot: Point, from: f64, to: f64) {
             let height = from + (to - from) * row as f64 / (rows - 1) as f64;
             let s = column as f64 / facets as f64;
             let angle = -TAU * (flute as f64 + s) / FLUTES as f64;
-            // The flute runs out at both ends of the shaft.
+            // The flute ends before both ends of the shaft.
             let ends = (8.0
                 * (row as f64 / (rows - 1) as f64).min(1.0 - row as f64 / (rows - 1) as f64))
             .min(1.0);
             let depth = 0.036 * ends * (TAU / 2.0 * s).sin();
             let r = radius(height) - depth;
             let (sin, cos) = angle.sin_cos();
-            // Turned against the slope of the arc.
+            // Rotated against the slope of the arc.
             let slope =
                 -0.036 * ends * (TAU / 2.0) * (TAU / 2.0 * s).cos() / (TAU / FLUTES as f64) / r;
             let normal = [cos - slope * sin, 0.02, sin + slope * cos];
@@ -416,7 +416,7 @@ fn ring(model: &mut Model, outer: f64, narrower: f64, low: f64, high: f64) {
     }
 }
 
-/// Three upright bars on the frieze; `axis` is the one that they are counted along.
+/// Three upright bars on the frieze, in a row along `axis`.
 fn triglyph(model: &mut Model, foot: Point, axis: usize, side: f64) {
     for bar in [-0.13, 0.0, 0.13] {
         let mut from = foot;
@@ -432,7 +432,7 @@ fn triglyph(model: &mut Model, foot: Point, axis: usize, side: f64) {
     }
 }
 
-/// A low hipped roof of terracotta with an opening over the middle: the sky reaches the floor.
+/// A low hipped roof of terracotta with an opening over the centre, through which the sky lights the floor.
 fn roof(model: &mut Model) {
     let eave = FLOOR + COLUMN_HEIGHT + 1.56;
     let (x, z) = (HALF[0] + 0.95, HALF[1] + 0.95);
@@ -479,7 +479,7 @@ fn roof(model: &mut Model) {
     }
 }
 
-/// One slope with rolls of tiles running down it: `corners` are two at the eave and two at the top, `y` their heights.
+/// One slope with rolls of tiles: `corners` are two at the eave and two at the top, `y` their heights.
 fn slope_of_tiles(model: &mut Model, corners: [[f64; 2]; 4], y: [f64; 2]) {
     let [a, b, c, d] = corners;
     let length = (b[0] - a[0]).hypot(b[1] - a[1]);
@@ -568,7 +568,7 @@ fn paving(model: &mut Model) {
     }
 }
 
-/// Fallen drums and blocks in the grass, some turned.
+/// Fallen drums and blocks in the grass, some rotated.
 fn stones(model: &mut Model) {
     model.material("limestone");
     for (x, z, width, height, turn) in [
@@ -697,7 +697,7 @@ fn cypress(model: &mut Model, foot: Point, height: f64, seed: u64) {
             point(row, column),
             [foot[0], point(row, column)[1], foot[2]],
         );
-        // At the tips all points of a row are one: straight up or down.
+        // At the tips all points of a row coincide: the normal is vertical.
         let tip = if row == 0 {
             [0.0, -1.0, 0.0]
         } else {

@@ -28,6 +28,11 @@ pub enum Error {
     /// Nowhere to open a window.
     #[error("no display to open a window on ({0}); skylight render writes pictures without one")]
     NoDisplay(String),
+    /// The command `view` in a build without the feature `window`.
+    #[error(
+        "this skylight is built without the window; skylight render writes pictures, and cargo build --release builds one with it"
+    )]
+    NoWindow,
     /// A file that cannot be written.
     #[error("cannot write {}: {reason}", shown(path))]
     Write {

@@ -27,12 +27,12 @@
 //! | Sky irradiance and A | E ≈ A E_sky | [`Show::Sky`](crate::settings::Show::Sky) | `light/lighting.frag`: `ambient_occlusion` | `each_addend_is_in_the_picture_once` |
 //! | Integrating skylight | E_N = 1/N Σ L cos θ/pdf | [`monte_carlo`](crate::daylight::irradiance::monte_carlo) | `include/irradiance.glsl`: `MONTE_CARLO` | `monte_carlo_meets_its_own_standard_error` |
 //! | Integrating skylight | (θ, φ) = (acos √(1 - ξ1), 2π ξ2) | [`cosine_hemisphere`](crate::daylight::sampling::cosine_hemisphere) | `include/irradiance.glsl`: `random_direction` | `the_warps_have_the_moments_of_their_densities` |
-//! | Integrating skylight | frame of n (below) | [`frisvad`](crate::daylight::frame::frisvad), [`duff`](crate::daylight::frame::duff) | `include/frame.glsl`: `frame_from_normal` | `tangent_frames` |
+//! | Integrating skylight | frame of n (below) | [`frisvad`](crate::daylight::tangent_frame::frisvad), [`duff`](crate::daylight::tangent_frame::duff) | `include/frame.glsl`: `frame_from_normal` | `tangent_frames` |
 //! | Irradiance environment map | six faces by gl_Layer | [`IrradianceMethod`](crate::daylight::IrradianceMethod) | `sky/cube_faces.geom`: `gl_Layer` | `exact_of_a_64_cube` |
 //! | Irradiance environment map | rnd(t) | [`rnd`](crate::daylight::sampling::rnd), [`tea`](crate::daylight::sampling::tea) | `include/random.glsl`: `rnd` | `rnd_is_uniform` |
 //! | Illumination model | L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r)) | [`Show`](crate::settings::Show) | `light/lighting.frag`: `r_dot_l` | `each_addend_is_in_the_picture_once` |
 //! | Rendering equation | ρ_s V(x, r) L_sky(r), V over the lobe around r | [`Reflections::Hidden`](crate::settings::Reflections::Hidden) | `dome/dome_mirror.frag`: `along_r` | `a_mirror_on_the_floor_shows_the_sky_in_the_opening_and_nowhere_else` |
-//! | Rendering equation | V(x, ω) L_sky(ω) cos θ over the sky | [`SkyDome`](crate::daylight::dome::SkyDome) | `dome/dome_gather.frag`: `light_of_directions` | `a_room_with_an_opening_gets_the_light_of_its_configuration_factor` |
+//! | Rendering equation | V(x, ω) L_sky(ω) cos θ over the sky | [`SkySampler`](crate::daylight::sky_sampler::SkySampler) | `dome/dome_gather.frag`: `light_of_directions` | `a_room_with_an_opening_gets_the_light_of_its_configuration_factor` |
 //!
 //! # The slips, and what is done instead
 //!
@@ -92,7 +92,7 @@
 //!
 //! **Texels.** 2i/res - 1 is a texel's corner; texels here are centred at (i + ½)/N, in Vulkan's face order.
 //!
-//! **The frame.** 1/(1 + n_z) is infinite at n = (0, 0, -1) and inaccurate near it in 32 bits: [`frame`](mod@crate::daylight::frame).
+//! **The frame.** 1/(1 + n_z) is infinite at n = (0, 0, -1) and inaccurate near it in 32 bits: [`tangent_frame`](crate::daylight::tangent_frame).
 //!
 //! **E and E/π.** The mean of L over directions of density cos θ/π estimates E/π. The irradiance map holds E.
 //!

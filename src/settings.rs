@@ -8,7 +8,6 @@ mod resolve;
 mod sun_input;
 mod values;
 
-use chrono::{DateTime, FixedOffset};
 use clap::{Args, Command, FromArgMatches};
 
 pub use crate::daylight::false_colour::{Quantity, Range};
@@ -23,7 +22,7 @@ pub use resolve::{CameraParts, Exposure, Settings};
 pub use sun_input::SunInput;
 pub use values::{
     Direction, ExposureMode, Fresnel, Limits, Penumbra, Place, Preset, Show, Size, SolarTime,
-    Switch,
+    Switch, When,
 };
 pub(crate) use values::{exposure_factor, ratio, sun as direction};
 
@@ -69,12 +68,20 @@ pub struct Options {
     #[arg(long, value_enum, value_name = "NAME", help_heading = "Picture")]
     pub preset: Option<Preset>,
 
-    /// Latitude and longitude, degrees, north and east positive, or the name of a city [default: 55.79,12.52].
-    #[arg(long, value_name = "LAT,LON|CITY", value_parser = values::place, allow_hyphen_values = true, help_heading = "Sun and sky")]
+    /// Latitude and longitude, degrees, north and east positive (-33.87,151.21 or "33.87 S, 151.21 E"), or the name of a city
+    /// [default: 55.79,12.52].
+    #[arg(long, value_name = "LAT,LON|CITY", value_parser = Place::parse, allow_hyphen_values = true, help_heading = "Sun and sky")]
     pub place: Option<Place>,
-    /// Moment with its UTC offset [default: 2026-06-21T15:00+02:00].
-    #[arg(long, value_name = "MOMENT", value_parser = values::when, help_heading = "Sun and sky")]
-    pub when: Option<DateTime<FixedOffset>>,
+    /// Moment: with a UTC offset (2026-12-21T15:00+01:00), with a time zone ("2026-12-21 15:00 Asia/Tokyo"), or local time of
+    /// --place ("2026-12-21 15:00"): of the nearest listed city within 1000 km, else the hour of the longitude. Years -500 to
+    /// 3000 [default: 15:00 local time on 2026-06-21].
+    #[arg(
+        long,
+        value_name = "MOMENT",
+        allow_hyphen_values = true,
+        help_heading = "Sun and sky"
+    )]
+    pub when: Option<When>,
     /// Where the sun stands, degrees: azimuth clockwise from north, elevation above the horizon.
     #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = values::sun, allow_hyphen_values = true,
           conflicts_with_all = ["place", "when", "solar"], help_heading = "Sun and sky")]

@@ -1,11 +1,11 @@
-//! Binary glTF: meshes with materials, instances of them, pictures.
+//! A writer of binary glTF: meshes with materials, instances, pictures.
 
 use glam::{Affine3A, Quat, Vec3};
 use serde_json::{Value, json};
 
 use crate::mesh::Mesh;
 
-/// A material by its metallic-roughness numbers.
+/// A metallic-roughness material.
 pub struct Material {
     pub name: &'static str,
     /// Linear RGB.
@@ -13,24 +13,24 @@ pub struct Material {
     pub metallic: f32,
     pub roughness: f32,
     pub ior: f32,
-    /// Number of the picture of the colour.
+    /// Index of the picture of the base colour.
     pub picture: Option<usize>,
-    /// Number of the normal map, and the factor on its slopes.
+    /// Index of the normal map, and the factor on its slopes.
     pub normals: Option<(usize, f32)>,
-    /// Where alpha is less there is a hole.
+    /// There is a hole where alpha is less.
     pub cutoff: Option<f32>,
 }
 
-/// A place for a mesh.
+/// The transform of an instance.
 pub struct Node {
     pub mesh: usize,
     pub at: Vec3,
-    /// About +Y, radians.
+    /// Rotation about +Y, radians.
     pub turn: f32,
     pub scale: f32,
 }
 
-/// The file in the making.
+/// The file under construction.
 #[derive(Default)]
 pub struct Glb {
     binary: Vec<u8>,
@@ -45,7 +45,7 @@ pub struct Glb {
 }
 
 impl Glb {
-    /// Adds bytes; returns the number of their view.
+    /// Adds bytes; returns the index of their buffer view.
     fn view(&mut self, bytes: &[u8]) -> usize {
         let offset = self.binary.len();
         self.binary.extend_from_slice(bytes);
@@ -68,7 +68,7 @@ impl Glb {
         self.accessor(&bytes, kind, 5126, count)
     }
 
-    /// Adds a PNG picture; returns its number.
+    /// Adds a PNG picture; returns its index.
     pub fn picture(&mut self, name: &str, png: &[u8]) -> usize {
         let view = self.view(png);
         self.images
@@ -76,7 +76,7 @@ impl Glb {
         self.images.len() - 1
     }
 
-    /// Adds a material; returns its number.
+    /// Adds a material; returns its index.
     pub fn material(&mut self, m: &Material) -> usize {
         let [r, g, b] = m.colour;
         let mut pbr = json!({
@@ -101,7 +101,7 @@ impl Glb {
         self.materials.len() - 1
     }
 
-    /// Adds a mesh of parts with their materials; returns its number.
+    /// Adds a mesh of parts with their materials; returns its index.
     pub fn mesh(&mut self, name: &str, parts: &[(usize, &Mesh)]) -> usize {
         let drawn = parts.iter().filter(|(_, mesh)| !mesh.indices.is_empty());
         let primitives: Vec<Value> = drawn
@@ -172,7 +172,7 @@ impl Glb {
         self.accessor(&bytes, "SCALAR", 5125, count)
     }
 
-    /// Places a mesh.
+    /// Adds an instance of a mesh, upright.
     pub fn node(&mut self, node: &Node) {
         self.drawn += self.triangles[node.mesh];
         let turn = Quat::from_rotation_y(node.turn).to_array();
@@ -182,7 +182,7 @@ impl Glb {
         }));
     }
 
-    /// Places a mesh anywhere.
+    /// Adds an instance of a mesh.
     pub fn placed(&mut self, mesh: usize, place: Affine3A) {
         self.drawn += self.triangles[mesh];
         let (scale, rotation, translation) = place.to_scale_rotation_translation();
@@ -192,7 +192,7 @@ impl Glb {
         }));
     }
 
-    /// Triangles stored, and drawn with all instances.
+    /// Number of triangles stored, and of those drawn with all instances.
     pub fn triangles(&self) -> (usize, usize) {
         (self.triangles.iter().sum(), self.drawn)
     }

@@ -5,7 +5,7 @@ use glam::{Quat, Vec3};
 
 use crate::noise::Chance;
 
-/// A grammar: an axiom, and for some letters the words that may replace them.
+/// A grammar: an axiom, and for some letters their possible replacements.
 pub struct Grammar {
     pub axiom: &'static str,
     pub rules: &'static [(char, &'static [&'static str])],
@@ -32,7 +32,7 @@ impl Grammar {
     }
 }
 
-/// How the turtle walks.
+/// Parameters of the turtle.
 #[derive(Clone, Copy)]
 pub struct Walk {
     /// Length of `F`, metres; every `!` shortens it by `shorter`.
@@ -44,17 +44,17 @@ pub struct Walk {
     /// Radius at the foot, metres; every `!` thins it by `thinner`.
     pub radius: f32,
     pub thinner: f32,
-    /// How much each step bends up (or, negative, down).
+    /// How much each step bends up (negative: down).
     pub tropism: f32,
 }
 
-/// What the turtle leaves behind.
+/// The output of the turtle.
 pub struct Branch {
     pub ends: [Vec3; 2],
     pub radii: [f32; 2],
 }
 
-/// A place for leaves and the direction in which its twig grows.
+/// A position of leaves and the direction of its twig.
 pub struct Leaf {
     pub at: Vec3,
     pub along: Vec3,
@@ -68,7 +68,7 @@ struct Turtle {
     radius: f32,
 }
 
-/// Walks a word: `F` forward, `+ - & ^ / \` turns, `!` thinner and shorter, `[ ]` a side branch, `L` leaves.
+/// Interprets a word: `F` forward, `+ - & ^ / \` turns, `!` thinner and shorter, `[ ]` a side branch, `L` leaves.
 pub fn walk(word: &str, how: &Walk, chance: &mut Chance) -> (Vec<Branch>, Vec<Leaf>) {
     let (mut branches, mut leaves, mut saved) = (Vec::new(), Vec::new(), Vec::new());
     let mut turtle = Turtle {
@@ -90,7 +90,7 @@ pub fn walk(word: &str, how: &Walk, chance: &mut Chance) -> (Vec<Branch>, Vec<Le
             '-' => turtle.turn *= turn(Vec3::Z, -angle),
             '&' => turtle.turn *= turn(Vec3::X, angle),
             '^' => turtle.turn *= turn(Vec3::X, -angle),
-            // About the branch itself: never the same way round twice.
+            // A random rotation about the branch.
             '/' => {
                 turtle.turn *= turn(
                     Vec3::Y,

@@ -1,4 +1,4 @@
-//! Makes `assets/island.glb`: an island with a temple, a cottage, a pier and a calm sea.
+//! Writes `assets/island.glb`: an island with a temple, a cottage, a pier and a calm sea.
 //!
 //! ```text
 //! cargo run --release --example make_island            # writes assets/island.glb
@@ -26,7 +26,7 @@ use glam::{Affine3A, Quat, Vec3, vec3};
 use glb::{Glb, Material, Node};
 use mesh::Mesh;
 
-/// Numbers of the materials.
+/// Indices of the materials.
 struct Palette {
     ground: usize,
     sea: usize,

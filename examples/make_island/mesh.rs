@@ -1,4 +1,4 @@
-//! Triangles in the making: grids, boxes, lathes, tubes and cards.
+//! A mesh builder: grids, boxes, surfaces of revolution, tubes and cards.
 
 use glam::{Affine3A, Mat3, Quat, Vec2, Vec3, vec2, vec3};
 
@@ -8,7 +8,7 @@ pub struct Point {
     pub position: Vec3,
     pub normal: Vec3,
     pub uv: Vec2,
-    /// Linear RGB that multiplies the colour of the material.
+    /// Linear RGB factor on the colour of the material.
     pub colour: Vec3,
 }
 
@@ -17,11 +17,11 @@ pub struct Point {
 pub struct Mesh {
     pub points: Vec<Point>,
     pub indices: Vec<u32>,
-    /// Colour of what is added next.
+    /// Colour of the vertices that are added next.
     tint: Option<Vec3>,
 }
 
-/// A plain point.
+/// A white vertex.
 pub fn point(position: Vec3, normal: Vec3, uv: Vec2) -> Point {
     Point {
         position,
@@ -32,7 +32,7 @@ pub fn point(position: Vec3, normal: Vec3, uv: Vec2) -> Point {
 }
 
 impl Mesh {
-    /// Colours what is added from now on.
+    /// Sets the colour of the vertices that are added from now on.
     pub fn tint(&mut self, colour: Vec3) {
         self.tint = Some(colour);
     }
@@ -82,7 +82,7 @@ impl Mesh {
         );
     }
 
-    /// A box of half extents `half` around the origin, placed.
+    /// A box of half extents `half` around the origin, transformed.
     pub fn boxed(&mut self, place: Affine3A, half: Vec3) {
         for axis in 0..3 {
             for side in [-1.0, 1.0] {
@@ -139,7 +139,7 @@ impl Mesh {
         });
     }
 
-    /// A card: a textured quad around `centre` spanned by two half axes, with one normal for all of it.
+    /// A card: a textured quad around `centre` spanned by two half axes, with one normal.
     pub fn card(&mut self, centre: Vec3, half: [Vec3; 2], normal: Vec3, tile: [Vec2; 2]) {
         let [right, up] = half;
         self.grid(2, 2, |row, column| {
@@ -150,7 +150,7 @@ impl Mesh {
         });
     }
 
-    /// Leaves out triangles with two corners in one place: the tips of gables, lathes and balls.
+    /// Skips triangles with two equal corners: the tips of gables, surfaces of revolution and balls.
     pub fn without_degenerate(&self) -> Self {
         let at = |i: u32| self.points[i as usize].position;
         let kept = self.indices.chunks_exact(3).filter(|t| {
@@ -163,7 +163,7 @@ impl Mesh {
         }
     }
 
-    /// Adds another mesh, placed.
+    /// Adds another mesh, transformed.
     pub fn append(&mut self, other: &Mesh, place: Affine3A) {
         let first = self.points.len() as u32;
         let normals = Mat3::from(place.matrix3).inverse().transpose();

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, vec2};
 
-/// A small generator of pseudo-random numbers (xorshift64*): the same seed, the same island.
+/// A pseudo-random number generator (xorshift64*) with a fixed seed.
 #[derive(Clone)]
 pub struct Chance(u64);
 

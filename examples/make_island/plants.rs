@@ -1,4 +1,4 @@
-//! Where what grows: instances of the trees, shrubs and tufts of grass.
+//! Vegetation: instances of the trees, shrubs and tufts of grass.
 
 use glam::{Affine3A, Quat, Vec2, Vec3, vec2, vec3};
 
@@ -12,7 +12,7 @@ use crate::trees::{forest, tuft};
 /// Meshes of the species.
 struct Species([Vec<usize>; 5]);
 
-/// What stands where, so that nothing grows into its neighbour.
+/// The plants so far, so that none overlaps its neighbour.
 struct Garden<'g> {
     glb: &'g mut Glb,
     species: Species,
@@ -27,7 +27,7 @@ const PALM: usize = 3;
 const SHRUB: usize = 4;
 
 impl Garden<'_> {
-    /// Plants if there is room; `room` is the radius that it needs.
+    /// Adds a plant if there is room; `room` is the radius that it needs, metres.
     fn plant(&mut self, species: usize, p: Vec2, room: f32, size: f32) -> bool {
         let crowded = self.taken.iter().any(|(q, r)| (p - *q).length() < room + r);
         if crowded {
@@ -45,7 +45,7 @@ impl Garden<'_> {
         true
     }
 
-    /// Tries random places until so many grow.
+    /// Tries random positions until there are so many plants.
     fn scatter(
         &mut self,
         species: usize,
@@ -68,7 +68,7 @@ impl Garden<'_> {
     }
 }
 
-/// Whether woods grow there: in patches.
+/// Whether there is a wood, in patches.
 fn wooded(p: Vec2) -> bool {
     fractal(p / 26.0, 3, 0, 71) > -0.06
 }
@@ -132,7 +132,7 @@ pub fn add(glb: &mut Glb, palette: &Palette) {
     grass(garden.glb, palette, &mut garden.chance);
 }
 
-/// Tufts of grass, gathered in patches that are drawn at once.
+/// Tufts of grass, merged into patches.
 fn grass(glb: &mut Glb, palette: &Palette, chance: &mut Chance) {
     let shapes: Vec<Mesh> = (0..4).map(|seed| tuft(300 + seed)).collect();
     let mut patches: std::collections::BTreeMap<(i32, i32), Mesh> = Default::default();

@@ -6,7 +6,7 @@ use crate::mesh::{Mesh, point};
 
 /// Columns along the front and the flank.
 const COLUMNS: [usize; 2] = [6, 10];
-/// From axis to axis of the outer columns, half, metres: x is the flank.
+/// Half the distance between the axes of the outer columns, metres: x is the flank.
 const HALF: Vec2 = vec2(8.7, 4.8);
 /// Height of a column with its capital.
 pub const COLUMN: f32 = 5.0;
@@ -14,7 +14,7 @@ pub const COLUMN: f32 = 5.0;
 pub const FLOOR: f32 = 0.9;
 const FLUTES: usize = 20;
 
-/// A column that stands at the origin.
+/// A column at the origin.
 pub fn column() -> Mesh {
     let mut mesh = Mesh::default();
     shaft(&mut mesh, COLUMN - 0.5, 1.0);
@@ -44,7 +44,7 @@ pub fn stump(height: f32) -> Mesh {
     mesh
 }
 
-/// Radius of the shaft at a height: it tapers with a slight swelling.
+/// Radius of the shaft at a height: it tapers with entasis.
 fn radius(h: f32) -> f32 {
     let t = h / (COLUMN - 0.5);
     0.48 - 0.10 * t + 0.018 * (std::f32::consts::PI * t).sin()
@@ -71,7 +71,7 @@ fn shaft(mesh: &mut Mesh, height: f32, runs_out: f32) {
     }
 }
 
-/// Places of the columns, from the middle of the floor: whole ones and broken ones with their height.
+/// Positions of the columns from the centre of the floor, and the heights of broken ones.
 pub fn places() -> Vec<(Vec3, Option<f32>)> {
     let [across, along] = COLUMNS;
     let mut places = Vec::new();
@@ -82,7 +82,7 @@ pub fn places() -> Vec<(Vec3, Option<f32>)> {
             }
             let s = 2.0 * i as f32 / (along - 1) as f32 - 1.0;
             let t = 2.0 * j as f32 / (across - 1) as f32 - 1.0;
-            // The west end fell long ago.
+            // The west end is in ruins.
             let broken = match (i, j) {
                 (0, 0) => Some(1.7),
                 (0, 1) => Some(0.8),
@@ -120,7 +120,7 @@ fn hall(mesh: &mut Mesh) {
     let (low, high) = (FLOOR, FLOOR + COLUMN);
     for side in [-1.0f32, 1.0] {
         let (a, b) = (side * z, side * (z - wall));
-        // Courses of stone, each a hair narrower than the one below.
+        // Courses of stone, each slightly narrower than the one below.
         for course in 0..8 {
             let t = [course, course + 1].map(|i| low + (high - low) * i as f32 / 8.0);
             let inset = 0.012 * (course % 2) as f32;

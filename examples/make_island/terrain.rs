@@ -1,13 +1,13 @@
-//! The land: its height anywhere, its surface, and the sea around it.
+//! The terrain: its height function, its mesh, and the sea around it.
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
 use crate::mesh::{Mesh, Point, point};
 use crate::noise::{fractal, noise, smoothstep, turbulence};
 
-/// Middle and floor of the temple, metres.
+/// Centre and floor of the temple, metres.
 pub const TEMPLE: Vec3 = vec3(-24.0, 11.0, -2.0);
-/// Middle and floor of the cottage.
+/// Centre and floor of the cottage, metres.
 pub const COTTAGE: Vec3 = vec3(17.0, 3.4, 19.0);
 /// Where the pier leaves the beach, and where it ends (x and z).
 pub const PIER: [Vec2; 2] = [vec2(9.0, 33.0), vec2(3.0, 56.0)];
@@ -24,7 +24,7 @@ const PATH: [Vec2; 7] = [
     vec2(-13.0, -2.0),
 ];
 
-/// How far inside of the coast, about 0..1; negative in the sea.
+/// Distance inside the coast, about 0..1; negative in the sea.
 fn inland(p: Vec2) -> f32 {
     let warp = vec2(
         fractal(p / 42.0, 4, 0, 11),
@@ -36,7 +36,7 @@ fn inland(p: Vec2) -> f32 {
     1.0 - (q / vec2(66.0, 50.0)).length() - bay - east
 }
 
-/// Height of the land without what people have changed, metres above the sea.
+/// Height of the land before terraces and paths, metres above the sea.
 fn wild(p: Vec2) -> f32 {
     let d = inland(p);
     if d < 0.0 {
@@ -79,7 +79,7 @@ impl Ground for Vec3 {
     }
 }
 
-/// How near a point is to a rectangle around `middle`, metres; 0 inside.
+/// Distance to a rectangle around `middle`, metres; 0 inside.
 fn outside(p: Vec2, middle: Vec3, half: Vec2) -> f32 {
     ((p - middle.xz()).abs() - half).max(Vec2::ZERO).length()
 }
@@ -153,7 +153,7 @@ fn ground_colour(p: Vec2, h: f32, normal: Vec3) -> Vec3 {
     mix(colour, vec3(0.50, 0.42, 0.30), 0.85 * trodden)
 }
 
-/// The land as a grid, finest where it is seen.
+/// The land as a grid, finest where it is visible.
 pub fn land() -> Mesh {
     const CELLS: usize = 172;
     const HALF: Vec2 = vec2(82.0, 66.0);
@@ -175,7 +175,7 @@ pub fn land() -> Mesh {
     mesh
 }
 
-/// Leaves out what lies deep in the sea.
+/// Removes triangles deep in the sea.
 fn drop_drowned(mesh: &mut Mesh) {
     let points = &mesh.points;
     let kept = mesh.indices.chunks_exact(3);
@@ -196,7 +196,7 @@ pub fn sea() -> Mesh {
     let mut mesh = Mesh::default();
     mesh.grid(RINGS, SPOKES + 1, |ring, spoke| {
         let angle = std::f32::consts::TAU * spoke as f32 / SPOKES as f32;
-        // Inner rings first: seen from above, columns run counter-clockwise.
+        // Inner rings first; seen from above, columns run counter-clockwise.
         let p = vec2(angle.cos(), angle.sin()) * radius(RINGS - 1 - ring);
         Point {
             colour: sea_colour(p),

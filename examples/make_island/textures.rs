@@ -13,7 +13,7 @@ pub const FROND: [Vec2; 2] = [vec2(0.5, 0.5), vec2(0.5, 0.5)];
 const ATLAS: usize = 512;
 const TILE: f32 = 256.0;
 
-/// Linear RGB and cover.
+/// Linear RGB and coverage.
 struct Canvas {
     texels: Vec<[f32; 4]>,
 }
@@ -179,7 +179,7 @@ fn normal_map(size: usize, height: impl Fn(Vec2) -> f32) -> Vec<u8> {
         let p = vec2((i % size) as f32, (i / size) as f32) * e;
         let dx = (height(p + vec2(e, 0.0)) - height(p - vec2(e, 0.0))) / (2.0 * e);
         let dy = (height(p + vec2(0.0, e)) - height(p - vec2(0.0, e))) / (2.0 * e);
-        // Rows run downward, green points upward.
+        // Rows run downward; the green channel points upward.
         let n = vec3(-dx, dy, 1.0).normalize();
         (n * 127.5 + 127.5).round().to_array().map(|v| v as u8)
     };

@@ -1,4 +1,4 @@
-//! Species of trees: a grammar, a walk and leaves for each.
+//! Species of trees: a grammar, turtle parameters and leaves for each.
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
@@ -13,17 +13,17 @@ pub struct Tree {
     pub leaves: Mesh,
 }
 
-/// How a species carries its leaves.
+/// The leaves of a species.
 struct Foliage {
     /// Tile of the atlas.
     tile: [Vec2; 2],
     /// Half size of a card, metres.
     size: f32,
-    /// Cards at every place for leaves.
+    /// Cards at every position of leaves.
     cards: usize,
-    /// Linear RGB that multiplies the atlas.
+    /// Linear RGB factor on the atlas.
     tint: Vec3,
-    /// 0: cards lie anyhow; 1: they stand along their twigs.
+    /// 0: cards in random directions; 1: along their twigs.
     along: f32,
 }
 
@@ -106,7 +106,7 @@ fn pine() -> Species {
     }
 }
 
-/// A cypress: a straight trunk with short twigs that hug it.
+/// A cypress: a straight trunk with short twigs close to it.
 fn cypress() -> Species {
     Species {
         grammar: Grammar {
@@ -215,7 +215,7 @@ impl Foliage {
         };
         let loose = (random(chance) + vec3(0.0, 0.4, 0.0)).normalize_or(Vec3::Y);
         let up = (leaf.along * self.along + loose * (1.0 - self.along)).normalize_or(Vec3::Y);
-        // The face looks out of the crown, more or less.
+        // The card faces out of the crown, roughly.
         let face = (out.normalize_or(Vec3::Y) + random(chance) * 0.75).normalize_or(Vec3::Y);
         let right = up.cross(face).normalize_or(Vec3::X);
         let size = self.size * chance.within(0.8, 1.2);
@@ -245,7 +245,7 @@ fn palm(seed: u64) -> Tree {
     Tree { wood, leaves }
 }
 
-/// A strip of cards in the shape of a shallow gutter that bends under its weight.
+/// A strip of cards in the shape of a shallow gutter that bends down.
 fn frond(mesh: &mut Mesh, foot: Vec3, turn: f32, rise: f32, chance: &mut Chance) {
     let out = vec3(turn.cos(), 0.0, turn.sin());
     let side = vec3(-turn.sin(), 0.0, turn.cos());
@@ -286,7 +286,7 @@ pub fn tuft(seed: u64) -> Mesh {
     mesh
 }
 
-/// All trees, two or three shapes of a species: broadleaf, pine, cypress, palm, shrub.
+/// All trees, two or three variants of a species: broadleaf, pine, cypress, palm, shrub.
 pub fn forest() -> [Vec<Tree>; 5] {
     let grow = |species: &Species, seeds: &[u64]| seeds.iter().map(|s| species.grow(*s)).collect();
     [

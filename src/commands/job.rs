@@ -9,7 +9,7 @@ use glam::UVec2;
 
 use super::light::{conditions, sun_position};
 use crate::daylight::exposure::{KEY, factor_from_ev100};
-use crate::daylight::refinement::Refinement;
+use crate::daylight::sample_count::ErrorEstimate;
 use crate::daylight::sky::Daylight;
 use crate::daylight::spectrum::LUMINOUS_EFFICACY;
 use crate::daylight::sun_position::SunPosition;
@@ -48,13 +48,9 @@ pub fn load_options(options: &Options) -> LoadOptions {
     }
 }
 
-/// Where processed scenes are kept: the user's folder for what may be deleted at any time.
+/// Where processed scenes and pipelines are kept: the user's folder for files that may be deleted at any time.
 fn cache_folder() -> Option<PathBuf> {
-    let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
-    let base = set("XDG_CACHE_HOME").map(PathBuf::from);
-    let base = base.filter(|path| path.is_absolute());
-    let folder = base.or_else(|| Some(PathBuf::from(set("HOME")?).join(".cache")))?;
-    Some(folder.join("skylight"))
+    Some(dirs::cache_dir()?.join("skylight"))
 }
 
 /// How a device is to be opened.
@@ -67,8 +63,9 @@ pub fn context_options(
         device,
         validate,
         without: without.into_iter().collect(),
-        cache_folder: dirs::cache_dir().map(|folder| folder.join("skylight")),
+        cache_folder: cache_folder(),
         fault: std::env::var("SKYLIGHT_FAULT").ok(),
+        ..ContextOptions::default()
     }
 }
 
@@ -109,7 +106,7 @@ impl Job {
     /// # Errors
     /// A scene that cannot be read, or options that make no sense.
     pub fn new(path: Option<&Path>, options: Options) -> Result<Self> {
-        let loaded = scene::load_telling(path, &load_options(&options), &|_, _| ())?;
+        let loaded = scene::load_with_progress(path, &load_options(&options), &|_, _| ())?;
         let job = Self::of(path, loaded, options)?;
         if !job.settings.quiet {
             for warning in job.warnings() {
@@ -259,8 +256,8 @@ impl Job {
         let (error, most) = (s.irradiance_error / 100.0, s.irradiance_samples);
         // The estimate takes milliseconds: only where it can spare samples.
         let samples = if method.is_sampled() && error > 0.0 {
-            let refinement = Refinement::new(|direction| self.daylight.radiance(direction));
-            refinement.samples(method, error, most)
+            let estimate = ErrorEstimate::new(|direction| self.daylight.radiance(direction));
+            estimate.samples(method, error, most)
         } else {
             most
         };

@@ -19,6 +19,7 @@ mod sky_report;
 mod sky_table;
 mod startup;
 mod tiled;
+#[cfg(feature = "window")]
 pub mod view;
 
 pub use bake::{BakeWishes, Layout, Map};
@@ -45,11 +46,14 @@ pub fn run(command: Command) -> Result<()> {
             output,
             options,
         } => render::run(scene.as_deref(), &output, *options),
+        #[cfg(feature = "window")]
         Command::View {
             scene,
             resume,
             options,
         } => view::run(scene.as_deref(), resume, *options),
+        #[cfg(not(feature = "window"))]
+        Command::View { .. } => Err(crate::error::Error::NoWindow),
         Command::Bench { wishes, options } => bench::run(&wishes, *options),
         Command::Sky { wishes, options } => sky::run(&wishes, *options),
         Command::Bake { wishes, options } => bake::run(&wishes, *options),

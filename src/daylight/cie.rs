@@ -29,7 +29,7 @@ pub fn daylight_availability(cover: SkyCover, elevation_deg: f64) -> f64 {
     }
 }
 
-/// CIE standard overcast sky (Moon & Spencer 1942): L = L_z (1 + 2 sin el)/3, whatever the sun's place.
+/// CIE standard overcast sky (Moon & Spencer 1942): L = L_z (1 + 2 sin el)/3, independent of the sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overcast {
     /// Luminance of the zenith L_z, cd/m²; three times that of the horizon.

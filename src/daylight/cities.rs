@@ -1,23 +1,22 @@
-//! Cities by name, with the clock that hangs on their walls.
+//! Cities by name, with their time zones.
 //!
 //! Names are compared without case and accents: `sao` finds São Paulo, `koln` Cologne.
 
-use chrono::{DateTime, Duration, FixedOffset, NaiveDateTime, Offset, TimeZone};
 use chrono_tz::Tz;
 use deunicode::deunicode;
 
 pub use super::data::cities::CITIES;
 use super::sun_position::direction;
 
-/// Radius of the earth as a ball, km.
+/// Mean radius of the earth, km.
 const EARTH_RADIUS_KM: f64 = 6371.0;
 
 /// A city of the list.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct City {
-    /// Name in English, or as English writes it.
+    /// English name.
     pub name: &'static str,
-    /// Another name by which it is found: its own language's, or a former one; may be empty.
+    /// A second name that finds it, such as the local or a former one; may be empty.
     pub other_name: &'static str,
     /// ISO 3166-1 code of the country or territory, two letters.
     pub country: &'static str,
@@ -25,33 +24,11 @@ pub struct City {
     pub latitude: f64,
     /// Degrees, positive east.
     pub longitude: f64,
-    /// Time zone, with its history and its summer times.
+    /// Time zone of the IANA database.
     pub zone: Tz,
 }
 
 impl City {
-    /// The moment `when` by the clock of the city.
-    pub fn clock(&self, when: DateTime<FixedOffset>) -> DateTime<FixedOffset> {
-        when.with_timezone(&self.zone).fixed_offset()
-    }
-
-    /// The moment at which the city's clock shows `local`: the first where it does so twice, and where it is put
-    /// forward over `local`, as if it had not been.
-    pub fn moment(&self, local: NaiveDateTime) -> DateTime<FixedOffset> {
-        let moment = self.zone.from_local_datetime(&local).earliest();
-        moment.map_or_else(|| self.skipped(local), |moment| moment.fixed_offset())
-    }
-
-    /// A local time that the start of summer time leaves out, by the offset of the day before.
-    fn skipped(&self, local: NaiveDateTime) -> DateTime<FixedOffset> {
-        let before = local
-            .checked_sub_signed(Duration::days(1))
-            .unwrap_or(NaiveDateTime::MIN);
-        let offset = self.zone.offset_from_utc_datetime(&before).fix();
-        let moment = offset.from_local_datetime(&local).earliest();
-        self.clock(moment.unwrap_or(DateTime::<chrono::Utc>::MIN_UTC.fixed_offset()))
-    }
-
     fn names(&self) -> impl Iterator<Item = String> {
         [self.name, self.other_name]
             .into_iter()
@@ -60,13 +37,13 @@ impl City {
     }
 }
 
-/// Without case, accents and what surrounds a name.
+/// A name without case, accents and surrounding blanks.
 fn folded(text: &str) -> String {
     deunicode(text.trim()).to_lowercase()
 }
 
-/// Cities whose names begin with `text`, then those with a word that does, then those that contain it; each by name. All
-/// of them when `text` is empty.
+/// Cities whose names begin with `text`, then those with a word that begins with it, then those that contain it; each group by
+/// name. All cities for an empty text.
 pub fn search(text: &str) -> Vec<&'static City> {
     let wanted = folded(text);
     let rank = |city: &City| {
@@ -88,7 +65,7 @@ pub fn search(text: &str) -> Vec<&'static City> {
 /// The city of this name.
 ///
 /// # Errors
-/// One line that suggests the name that is most like it.
+/// One line that suggests the most similar name.
 pub fn named(text: &str) -> Result<&'static City, String> {
     let wanted = folded(text);
     if let Some(city) = CITIES
@@ -97,26 +74,32 @@ pub fn named(text: &str) -> Result<&'static City, String> {
     {
         return Ok(city);
     }
-    let likeness = |city: &City| {
-        let all = city
-            .names()
-            .map(|name| strsim::jaro_winkler(&name, &wanted));
-        all.fold(0.0, f64::max)
-    };
-    let by_spelling = CITIES
-        .iter()
-        .max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
-    let nearest = search(&wanted).first().copied().or(by_spelling);
-    let hint = nearest.map_or(String::new(), |city| {
-        format!("did you mean \"{}\"? Otherwise ", city.name)
-    });
+    let meant = search(&wanted)
+        .first()
+        .copied()
+        .unwrap_or_else(|| alike(&wanted));
     Err(format!(
-        "\"{}\" is no city of the list; {hint}write LAT,LON in degrees",
-        text.trim()
+        "\"{}\" is not a listed city; did you mean \"{}\"? Otherwise write LAT,LON in degrees",
+        text.trim(),
+        meant.name
     ))
 }
 
-/// The city nearest to a place (degrees), and how far it is, km.
+/// The city whose name is spelled most like `text` (Jaro-Winkler similarity).
+pub fn alike(text: &str) -> &'static City {
+    let wanted = folded(text);
+    let likeness = |city: &City| {
+        let names = city.names();
+        let all = names.map(|name| strsim::jaro_winkler(&name, &wanted));
+        all.fold(0.0, f64::max)
+    };
+    let best = CITIES
+        .iter()
+        .max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+    best.unwrap_or(&CITIES[0])
+}
+
+/// The city nearest to a place (degrees), and its distance, km.
 pub fn nearest(latitude: f64, longitude: f64) -> (&'static City, f64) {
     // Longitude and latitude are an azimuth and an elevation over the plane of the equator.
     let here = direction(longitude, latitude);
@@ -137,17 +120,8 @@ pub fn nearest(latitude: f64, longitude: f64) -> (&'static City, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use chrono::NaiveDate;
+    use chrono::{DateTime, Offset};
     use std::collections::HashSet;
-
-    fn moment(text: &str) -> DateTime<FixedOffset> {
-        DateTime::parse_from_rfc3339(text).unwrap()
-    }
-
-    fn local(month: u32, day: u32, hour: u32, minute: u32) -> NaiveDateTime {
-        let date = NaiveDate::from_ymd_opt(2026, month, day).unwrap();
-        date.and_hms_opt(hour, minute, 0).unwrap()
-    }
 
     fn names(text: &str) -> Vec<&'static str> {
         search(text).iter().map(|city| city.name).collect()
@@ -171,8 +145,9 @@ mod tests {
                 assert_eq!(named(&name), Ok(city));
             }
             // The meridian of a zone is at most some 45° from its cities: a slip of sign or column is farther.
-            let noon = moment("2026-01-01T12:00:00Z");
-            let offset_h = f64::from(city.clock(noon).offset().local_minus_utc()) / 3600.0;
+            let noon = DateTime::parse_from_rfc3339("2026-01-01T12:00:00Z").unwrap();
+            let offset = noon.with_timezone(&city.zone).offset().fix();
+            let offset_h = f64::from(offset.local_minus_utc()) / 3600.0;
             let off = (offset_h - city.longitude / 15.0 + 12.0).rem_euclid(24.0) - 12.0;
             let pole = city.latitude == -90.0;
             assert!(
@@ -240,44 +215,6 @@ mod tests {
                 "{error}"
             );
             assert_eq!(error.lines().count(), 1);
-        }
-    }
-
-    #[test]
-    fn clocks_keep_summer_time() {
-        let copenhagen = named("copenhagen").unwrap();
-        let offset = |when: &str| copenhagen.clock(moment(when)).offset().local_minus_utc() / 3600;
-        assert_eq!(
-            (
-                offset("2026-01-15T12:00:00Z"),
-                offset("2026-07-15T12:00:00Z")
-            ),
-            (1, 2)
-        );
-        // Clocks are put forward on 29 March and back on 25 October.
-        assert_eq!(
-            copenhagen.moment(local(3, 29, 2, 30)),
-            moment("2026-03-29T03:30:00+02:00")
-        );
-        assert_eq!(
-            copenhagen.moment(local(10, 25, 2, 30)),
-            moment("2026-10-25T02:30:00+02:00")
-        );
-        let sydney = named("sydney").unwrap();
-        assert_eq!(
-            sydney.moment(local(1, 15, 12, 0)),
-            moment("2026-01-15T12:00:00+11:00")
-        );
-        let delhi = named("delhi").unwrap();
-        assert_eq!(
-            delhi.moment(local(6, 1, 12, 0)),
-            moment("2026-06-01T12:00:00+05:30")
-        );
-        for city in CITIES {
-            let noon = local(6, 21, 12, 0);
-            assert_eq!(city.moment(noon).naive_local(), noon, "{}", city.name);
-            city.moment(NaiveDateTime::MIN);
-            city.moment(NaiveDateTime::MAX);
         }
     }
 

@@ -7,7 +7,7 @@ use super::irradiance::{
     ExactIrradiance, IrradianceMethod, SphericalHarmonics, monte_carlo, quasi,
 };
 use super::quadrature::SphereQuadrature;
-use super::refinement::normals;
+use super::sample_count::normals;
 
 /// Numbers of samples of the two sampling methods.
 pub const SAMPLES: [u32; 9] = [16, 32, 64, 128, 256, 512, 1024, 2048, 4096];

@@ -35,7 +35,7 @@ pub fn texel_direction(face: usize, i: usize, j: usize, size: usize) -> DVec3 {
     direction(face, (i as f64 + 0.5) / n, (j as f64 + 0.5) / n)
 }
 
-/// (face, s, t) that a direction meets; Vulkan 1.3, "Cube Map Face Selection" with z before y before x in ties.
+/// (face, s, t) of a direction; Vulkan 1.3, "Cube Map Face Selection" with z before y before x in ties.
 pub fn face_of(direction: DVec3) -> (usize, f64, f64) {
     let DVec3 { x, y, z } = direction;
     let a = direction.abs();

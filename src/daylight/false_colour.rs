@@ -1,19 +1,18 @@
-//! False colours: a luminance or an illuminance as a colour that can be read off a legend.
+//! False colours: luminance or illuminance on a logarithmic colour scale ([`turbo`]) with a legend.
 //!
-//! Values run logarithmically from one end of a [`Range`] to the other, and through [`turbo`]. What is below or above the
-//! range has the colour of its end; where there is no light, or no surface, it is black.
+//! Values outside of the [`Range`] have the colour of its nearer end; pixels without light or surface are black.
 
 use clap::ValueEnum;
 use glam::DVec3;
 
 use super::colour::srgb_eotf;
 
-/// Shares of the picture's values that an automatic range leaves out at each end.
+/// Fraction of the picture's values that an automatic range leaves out at each end.
 const OUTLIERS: f64 = 0.01;
-/// Decades that the ends of an automatic range are whole multiples of.
+/// The ends of an automatic range are whole multiples of this, decades.
 const STEP_DECADES: f64 = 0.5;
 
-/// What false colours show.
+/// The quantity that false colours show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Quantity {
     /// Of the light toward the eye, cd/m².
@@ -31,7 +30,7 @@ impl Quantity {
         }
     }
 
-    /// A range that holds a sunny day and its shadows: for pictures that move, whose colours must not.
+    /// A fixed range from shadows to a sunny day, for moving pictures.
     pub fn daytime(self) -> Range {
         match self {
             Self::Luminance => Range {
@@ -46,7 +45,7 @@ impl Quantity {
     }
 }
 
-/// From where to where the colours go.
+/// The values of the first and the last colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// Value of the first colour, positive, in the quantity's unit.
@@ -66,14 +65,14 @@ impl std::fmt::Display for Range {
 pub struct Tick {
     /// In the quantity's unit.
     pub value: f64,
-    /// Where it is from the first colour (0) to the last (1).
+    /// Position on the scale: 0 the first colour, 1 the last.
     pub share: f64,
     /// The value as text.
     pub label: String,
 }
 
 impl Range {
-    /// The half decades around `values`, without one percent at each end; `None` when there is no light.
+    /// The half decades around `values` less one percent at each end; `None` without a positive value.
     pub fn around(values: impl Iterator<Item = f64>) -> Option<Self> {
         let mut values: Vec<f64> = values.filter(|v| v.is_finite() && *v > 0.0).collect();
         let last = values.len().checked_sub(1)?;
@@ -82,7 +81,7 @@ impl Range {
             let (_, value, _) = values.select_nth_unstable_by(index, f64::total_cmp);
             value.log10() / STEP_DECADES
         };
-        // A value on a half decade is not to be rounded off it.
+        // Keeps a value on a half decade there despite rounding errors.
         let (low, high) = (at(OUTLIERS) + 1e-9, at(1.0 - OUTLIERS) - 1e-9);
         let low = low.floor();
         let high = high.ceil().max(low + 1.0);
@@ -93,13 +92,13 @@ impl Range {
         })
     }
 
-    /// Where `value` is from the first colour (0) to the last (1), cut there.
+    /// Position of `value` on the scale, clamped to 0..=1.
     pub fn share(&self, value: f64) -> f64 {
         let (scale, offset) = self.log2_scale();
         (value.log2() * scale + offset).clamp(0.0, 1.0)
     }
 
-    /// (a, b) such that a log₂(value) + b is the share: the form in which a shader takes a range.
+    /// (a, b) with position = a log₂(value) + b, as a shader evaluates it.
     pub fn log2_scale(&self) -> (f64, f64) {
         let scale = 1.0 / (self.max.log2() - self.min.log2());
         (scale, -self.min.log2() * scale)
@@ -119,7 +118,7 @@ impl Range {
         let decades = self.min.log10().floor() as i32..=self.max.log10().ceil() as i32;
         let round = decades.flat_map(|decade| [1, 2, 5].map(|digit| (digit, decade)));
         let round = round.map(|(digit, decade)| decimal(digit, decade));
-        // The ends of a half decade are as written, not as rounded.
+        // Tolerates rounding errors of the ends.
         let inside = |v: &f64| *v >= self.min * (1.0 - 1e-9) && *v <= self.max * (1.0 + 1e-9);
         let values: Vec<f64> = round.filter(inside).collect();
         let values = if values.len() < 2 {
@@ -143,7 +142,7 @@ fn decimal(digit: i32, decade: i32) -> f64 {
         .unwrap_or(f64::from(digit) * 10f64.powi(decade))
 }
 
-/// At most four digits that count, thousands apart.
+/// Up to four significant digits, thousands separated by blanks.
 fn label(value: f64) -> String {
     let decimals = (3 - value.abs().log10().floor() as i32).clamp(0, 12);
     let text = format!("{value:.*}", decimals as usize);

@@ -11,7 +11,7 @@ use super::spectrum::LUMINOUS_EFFICACY;
 /// Turbidities over which the model was fitted.
 pub const TURBIDITY_RANGE: (f64, f64) = (1.0, 10.0);
 
-/// The sky of one turbidity, one ground albedo and one sun, in the form a shader evaluates.
+/// The sky for one turbidity, ground albedo and position of the sun, in the form that a shader evaluates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hosek {
     /// Unit vector toward the sun.

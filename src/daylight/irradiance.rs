@@ -4,7 +4,7 @@
 //!
 //! - [`monte_carlo`]: the lecture's estimator, random directions of density cos θ/π. Its mean of L estimates E/π; the
 //!   functions here return **E**.
-//! - [`quasi`]: the same with the R2 sequence instead of random numbers; converges about as 1/N instead of 1/√N.
+//! - [`quasi`]: the same with the R2 sequence instead of random numbers; the error falls about as 1/N instead of 1/√N.
 //! - [`ExactIrradiance`]: a sum over the texels of a cube map. The radiance is taken as constant within a texel; the
 //!   cosine is then integrated *exactly* over each texel, clipped at the horizon of n, by Lambert's formula.
 //! - [`SphericalHarmonics`]: order 2, nine coefficients; fast, smooth, and off by percents of E(up).
@@ -15,7 +15,16 @@
 //! corners of a cube, largest channel, relative to E(up). Samples are directions for each normal; for `exact` the texels of a
 //! cube (of 4, 8, 16, 32 and 64 along an edge), for `sh` the nodes of its projection, both for all normals together.
 //! A low sun in clear air is worse for both sampling methods: at turbidity 2 and 10° `quasi` has 0.7 % with 1024 directions.
-//! `quasi` here is R2 with point lookups. The device filters its lookups ([`super::refinement`]): about a third of that error.
+//!
+//! # How the device's methods of the same names differ
+//!
+//! - `quasi` here: the first N points of R2, the radiance evaluated in each direction, one tangent frame per normal. On the
+//!   device: Hammersley points in golden-ratio order, lookups in the mip level of each sample's solid angle
+//!   ([`super::sample_count`]), the frame turned about the normal by an angle per texel: about a third of the error.
+//! - `exact` here: a cube of [`EXACT_CUBE_SIZE`]² texels a face, the clipped cosine integrated over each texel in closed form.
+//!   On the device: a cube of 32² texels a face, the cosine at each texel's centre times the texel's solid angle.
+//! - `monte-carlo` uses the same generator, but the device looks the radiance up in the sky cube (bilinear) and seeds by texel.
+//! - `sh` is the same; the device clamps negative channels to 0.
 //!
 //! | method | samples | rms error of E(up) |
 //! |---|---|---|
@@ -54,9 +63,9 @@ use glam::{DVec2, DVec3};
 use serde::Deserialize;
 
 use super::cube::{self, CubeMap};
-use super::frame;
 use super::quadrature::SphereQuadrature;
 use super::sampling::{cosine_hemisphere, r2, rnd, rotate, tea};
+use super::tangent_frame;
 
 /// How the irradiance map is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
@@ -83,7 +92,7 @@ impl IrradianceMethod {
 /// Texels along an edge of the cube that [`IrradianceMethod::Exact`] sums here: 2e-5 of E(up) rms, 1.3e-4 at worst.
 pub const EXACT_CUBE_SIZE: usize = 64;
 
-/// Irradiance of a radiance function by any of the methods: prepared once, asked for many normals.
+/// Irradiance of a radiance function by any of the methods: prepared once, evaluated for many normals.
 pub enum IrradianceEstimator<L> {
     /// Radiance and number of samples.
     MonteCarlo(L, u32),
@@ -152,7 +161,12 @@ fn mean_cosine(
     mut point: impl FnMut(u32) -> DVec2,
 ) -> DVec3 {
     let sum: DVec3 = (0..samples)
-        .map(|index| radiance(frame::to_world(cosine_hemisphere(point(index)), normal)))
+        .map(|index| {
+            radiance(tangent_frame::to_world(
+                cosine_hemisphere(point(index)),
+                normal,
+            ))
+        })
         .sum();
     sum * (PI / f64::from(samples.max(1)))
 }
@@ -216,8 +230,8 @@ impl Texel {
 
 /// Lambert 1760 (Arvo 1995, irradiance of a polygon): ∫ ω dω over the spherical polygon with the unit `corners`.
 ///
-/// ½ Σ θ_k Γ_k over the edges: θ the arc, Γ the unit normal of its plane. The sign follows the winding; it is
-/// turned to the side of the corners, which is right for polygons smaller than a hemisphere.
+/// ½ Σ θ_k Γ_k over the edges: θ the arc, Γ the unit normal of its plane. The sign follows the winding; here the moment is
+/// flipped to the side of the corners, which is right for polygons smaller than a hemisphere.
 fn polygon_moment(corners: &[DVec3]) -> DVec3 {
     let edge = |k: usize| {
         let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);

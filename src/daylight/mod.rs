@@ -1,18 +1,18 @@
-//! The physics of daylight in `f64`, without a device: the reference against which the shaders are tested.
+//! The physics of daylight in `f64` on the CPU: the reference against which the shaders are tested.
 //!
 //! # A tour, in the order of the light
 //!
 //! 1. [`sun_position`]: a place and a moment give the direction of the sun, by SPA or by the lecture's formulas.
-//!    [`sun_path`]: its ways over the sky, for a diagram; [`cities`]: places by name, with their clocks.
+//!    [`place`] and [`moment`] parse both; [`cities`] has places by name; [`sun_path`] the lines of a sun-path diagram.
 //! 2. [`sunlight`]: the sun's spectrum through five transmittances of the air gives its disc in cd/m² and its
 //!    illuminance in lux. [`spectrum`] integrates, [`colour`] turns XYZ into linear BT.709 RGB.
 //! 3. [`preetham`], [`hosek`], [`cie`]: the sky's radiance in a direction.
-//! 4. [`sky`]: all of it as one [`Daylight`], guarded so that no input gives a negative or infinite number; with the
-//!    ground below the horizon.
-//! 5. [`cube`]: cube maps in Vulkan's convention. [`irradiance`]: E(n) of a radiance, by four methods; [`sampling`] and
-//!    [`mod@frame`] serve them, [`quadrature`] is what they are tested against.
-//! 6. [`dome`]: the sky as directional lights, for shadow maps from its directions.
-//! 7. [`exposure`] and [`tone_curve`]: from cd/m² to a picture; [`false_colour`]: to one whose values can be read.
+//! 4. [`sky`]: all of it as one [`Daylight`] with the ground below the horizon; finite and not negative for any input.
+//! 5. [`cube`]: cube maps in Vulkan's convention. [`irradiance`]: E(n) of a radiance, by four methods, with the points of
+//!    [`sampling`] in the bases of [`tangent_frame`]; [`quadrature`] is their reference, [`convergence`] compares them, and
+//!    [`sample_count`] has the samples of the device's map.
+//! 6. [`sky_sampler`]: directional lights drawn from the sky by luminance, one shadow map each.
+//! 7. [`exposure`] and [`tone_curve`]: from cd/m² to a picture; [`false_colour`]: to a picture of readable values.
 //!
 //! # Conventions
 //!
@@ -29,21 +29,25 @@ pub mod colour;
 pub mod convergence;
 pub mod cube;
 mod data;
-pub mod dome;
+
 pub mod exposure;
 pub mod false_colour;
-pub mod frame;
+
 pub mod hosek;
 pub mod irradiance;
+pub mod moment;
+pub mod place;
 pub mod preetham;
 pub mod quadrature;
-pub mod refinement;
+pub mod sample_count;
 pub mod sampling;
 pub mod sky;
+pub mod sky_sampler;
 pub mod spectrum;
 pub mod sun_path;
 pub mod sun_position;
 pub mod sunlight;
+pub mod tangent_frame;
 pub mod tone_curve;
 
 pub use irradiance::IrradianceMethod;

@@ -99,7 +99,7 @@ impl PerezSky {
     }
 }
 
-/// The sky of one turbidity and one sun.
+/// The sky for one turbidity and one position of the sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preetham {
     sun_direction: DVec3,

@@ -1,28 +1,29 @@
-//! The ways of the sun over a place: what a sun-path diagram draws on the dome of the sky.
+//! Sun-path diagrams: the sun's paths over the sky of a place.
 //!
-//! Directions are unit vectors of the world toward the sun as an [`Observer`] sees it. A line runs only where its centre
-//! is not below the horizon, and ends on it: a day whose sun sets and rises again within the calendar day is two lines.
+//! Directions are unit vectors in world space toward the sun as an [`Observer`] sees it. Lines are clipped at the horizon by
+//! the sun's centre: a calendar day on which the sun sets and rises again has two.
 
 use chrono::{DateTime, Datelike, Duration, FixedOffset, NaiveDate, TimeZone, Timelike, Utc};
 use glam::DVec3;
 
 use super::sun_position::{
-    Polar, SunEvents, SunPosition, SunPositionError, SunPositionMethod, direction, spa, sun_events,
+    Polar, SunEvents, SunPosition, SunPositionError, SunPositionMethod, YEARS, direction, spa,
+    sun_events,
 };
 
-/// Between two points of a line, minutes: 2.5° at most, a chord 0.014° off its arc.
+/// Time between two points of a line, minutes: at most 2.5°, where the chord is 0.014° off the arc.
 const STEP_MINUTES: i64 = 10;
-/// Halvings of a step that look for the horizon: to a thousandth of a second.
+/// Bisections of a step to find the horizon: to a thousandth of a second.
 const HALVINGS: usize = 20;
-/// Hours over which the seasons are looked for, each way of their usual date.
+/// Half of the interval in which a season's start is searched, hours around the 21st.
 const SEASON_HOURS: i64 = 8 * 24;
-/// By how much the sun stands lower from the pole than from the middle of the earth at an equinox, degrees.
+/// Horizontal parallax of the sun: how much lower it stands from the pole than from the earth's centre, degrees.
 const PARALLAX_DEG: f64 = 8.794 / 3600.0;
 
-/// Directions along a way of the sun.
+/// Directions along a path of the sun.
 pub type Line = Vec<DVec3>;
 
-/// Who looks, and how the sun's position is computed for them.
+/// A place, and how the sun's position is computed there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observer {
     /// Degrees, positive north, ±90.
@@ -31,7 +32,7 @@ pub struct Observer {
     pub longitude: f64,
     /// Formulas of the sun's position.
     pub method: SunPositionMethod,
-    /// Whether the air lifts the sun.
+    /// Whether directions are apparent (with atmospheric refraction).
     pub refraction: bool,
 }
 
@@ -39,7 +40,7 @@ impl Observer {
     /// Direction toward the sun at `when`.
     ///
     /// # Errors
-    /// No such place, or a moment that the ephemeris does not cover.
+    /// Coordinates out of range, or a year outside of [`YEARS`].
     pub fn sun(&self, when: DateTime<FixedOffset>) -> Result<DVec3, SunPositionError> {
         let at = self.method.position(when, self.latitude, self.longitude)?;
         Ok(self.seen(&at))
@@ -53,7 +54,7 @@ impl Observer {
         }
     }
 
-    /// The way of the sun on the calendar day `date` of the clock `offset`, from midnight to midnight.
+    /// The sun's path on the calendar day `date` at the UTC offset `offset`, from midnight to midnight.
     ///
     /// # Errors
     /// As [`Observer::sun`].
@@ -64,7 +65,7 @@ impl Observer {
         self.above_horizon(moments)
     }
 
-    /// Where the sun stands at `hour` (0..24) of the clock `offset` over the days of `year`: the analemma.
+    /// The analemma: the sun at `hour` (0..24) at the UTC offset `offset` over the days of `year`.
     ///
     /// # Errors
     /// As [`Observer::sun`].
@@ -82,7 +83,7 @@ impl Observer {
         self.above_horizon(moments)
     }
 
-    /// The full hours of the clock `offset` on `date` at which the sun is up.
+    /// The full hours of `date` at the UTC offset `offset` at which the sun is up.
     ///
     /// # Errors
     /// As [`Observer::sun`].
@@ -102,7 +103,7 @@ impl Observer {
         Ok(marks)
     }
 
-    /// The lines through the sun's directions at `moments`, cut at the horizon.
+    /// The lines through the sun's directions at `moments`, clipped at the horizon.
     fn above_horizon(
         &self,
         moments: impl Iterator<Item = DateTime<FixedOffset>>,
@@ -129,7 +130,7 @@ impl Observer {
         Ok(lines)
     }
 
-    /// The sun on the horizon between a moment when it is up and one when it is down.
+    /// The direction on the horizon, by bisection between a moment with the sun up and one with it down.
     fn crossing(
         &self,
         mut up: DateTime<FixedOffset>,
@@ -147,17 +148,17 @@ impl Observer {
     }
 }
 
-/// A full hour on the way of the sun.
+/// A full hour on a path of the sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HourMark {
-    /// The moment, by the clock of the place.
+    /// The moment, at the UTC offset of the diagram.
     pub when: DateTime<FixedOffset>,
     /// Direction toward the sun.
     pub direction: DVec3,
 }
 
 impl HourMark {
-    /// The hour by the clock, 0..24, as it is written at the mark.
+    /// The text at the mark: the hour, 0 to 23.
     pub fn label(&self) -> String {
         self.when.hour().to_string()
     }
@@ -166,24 +167,24 @@ impl HourMark {
 /// Everything that a sun-path diagram of a place draws, for one day.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SunPath {
-    /// The way on the day itself.
+    /// The path of the day.
     pub day: Vec<Line>,
-    /// The way on the day of the June solstice of that year.
+    /// The path at the June solstice of that year.
     pub june_solstice: Vec<Line>,
-    /// The way on the day of its March equinox.
+    /// The path at its March equinox.
     pub equinox: Vec<Line>,
-    /// The way on the day of its December solstice.
+    /// The path at its December solstice.
     pub december_solstice: Vec<Line>,
-    /// The hours of the day itself.
+    /// The full hours of the day.
     pub hours: Vec<HourMark>,
-    /// Sunrise, solar noon and sunset of the day itself.
+    /// Sunrise, solar noon and sunset of the day.
     pub events: SunEvents,
-    /// Whether the sun stays up, or down, all that day.
+    /// Whether that day is polar day or night.
     pub polar: Option<Polar>,
 }
 
 impl SunPath {
-    /// The sun-path diagram of the calendar day in which `when` falls by its own clock.
+    /// The diagram of the calendar day of `when` at its own UTC offset.
     ///
     /// # Errors
     /// As [`Observer::sun`].
@@ -207,22 +208,22 @@ impl SunPath {
     }
 }
 
-/// When the seasons of a year begin, to a quarter of an hour.
+/// Equinox and solstices of a year, within a quarter of an hour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seasons {
     /// The sun crosses the equator northward.
     pub march_equinox: DateTime<Utc>,
-    /// It is farthest north.
+    /// The sun is farthest north.
     pub june_solstice: DateTime<Utc>,
-    /// It is farthest south.
+    /// The sun is farthest south.
     pub december_solstice: DateTime<Utc>,
 }
 
 impl Seasons {
-    /// Those of `year`, −500..3000.
+    /// Of a year in [`YEARS`].
     ///
     /// # Errors
-    /// A year that the ephemeris does not cover.
+    /// Another year.
     pub fn of(year: i32) -> Result<Self, SunPositionError> {
         Ok(Self {
             march_equinox: turning(year, 3, |when| Ok(declination(when)? + PARALLAX_DEG >= 0.0))?,
@@ -242,7 +243,7 @@ fn hourly_change(when: DateTime<Utc>) -> Result<f64, SunPositionError> {
     Ok(declination(when + half)? - declination(when - half)?)
 }
 
-/// The moment around the 21st of `month` from which on `over` holds.
+/// The first moment around the 21st of `month` at which `over` holds, by bisection.
 fn turning(
     year: i32,
     month: u32,
@@ -262,14 +263,14 @@ fn turning(
     Ok(usual + Duration::minutes(after))
 }
 
-/// `hour` o'clock of a date; the year is checked here, so that nearby moments can be reached by addition.
+/// `hour` o'clock of a date. Checks the year, so that adding days to the result cannot overflow.
 fn at_hour(
     date: NaiveDate,
     offset: FixedOffset,
     hour: u32,
 ) -> Result<DateTime<FixedOffset>, SunPositionError> {
     let outside = || SunPositionError::Year(date.year());
-    if !(-500..=3000).contains(&date.year()) {
+    if !YEARS.contains(&date.year()) {
         return Err(outside());
     }
     let clock = date.and_hms_opt(hour, 0, 0).ok_or_else(outside)?;
@@ -281,7 +282,7 @@ fn at_hour(
 
 fn date(year: i32, month: u32, day: u32) -> Result<NaiveDate, SunPositionError> {
     NaiveDate::from_ymd_opt(year, month, day)
-        .filter(|_| (-500..=3000).contains(&year))
+        .filter(|_| YEARS.contains(&year))
         .ok_or(SunPositionError::Year(year))
 }
 
@@ -292,5 +293,203 @@ fn to_the_hour(moment: DateTime<FixedOffset>, hour: u32) -> i64 {
 }
 
 #[cfg(test)]
-#[path = "sun_path_tests.rs"]
-mod tests;
+mod tests {
+    use super::super::sun_position::azimuth_elevation;
+    use super::*;
+
+    fn observer(latitude: f64, longitude: f64) -> Observer {
+        Observer {
+            latitude,
+            longitude,
+            method: SunPositionMethod::Spa,
+            refraction: true,
+        }
+    }
+
+    fn path(latitude: f64, longitude: f64, when: &str) -> SunPath {
+        let when = DateTime::parse_from_rfc3339(when).unwrap();
+        SunPath::new(&observer(latitude, longitude), when).unwrap()
+    }
+
+    fn azimuth(direction: DVec3) -> f64 {
+        azimuth_elevation(direction).0
+    }
+
+    fn elevation(direction: DVec3) -> f64 {
+        azimuth_elevation(direction).1
+    }
+
+    /// Smallest angle between a direction and a line, degrees.
+    fn angle_to(lines: &[Line], direction: DVec3) -> f64 {
+        let segments = lines.iter().flat_map(|line| line.windows(2));
+        let distance = |ends: &[DVec3]| {
+            let along = ends[1] - ends[0];
+            let t = (direction - ends[0]).dot(along) / along.length_squared();
+            let nearest = ends[0] + along * t.clamp(0.0, 1.0);
+            nearest.angle_between(direction).to_degrees()
+        };
+        segments.map(distance).fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn at_an_equinox_the_sun_rises_in_the_east_and_sets_in_the_west() {
+        for latitude in [-60.0, -33.9, 0.0, 40.0, 55.7, 60.0] {
+            let geometric = Observer {
+                refraction: false,
+                ..observer(latitude, 12.5)
+            };
+            let when = DateTime::parse_from_rfc3339("2026-06-01T12:00:00+01:00").unwrap();
+            let path = SunPath::new(&geometric, when).unwrap();
+            let [line] = &path.equinox[..] else {
+                panic!("{latitude}: {} lines", path.equinox.len());
+            };
+            let (rise, set) = (line[0], line[line.len() - 1]);
+            let (east, west) = (azimuth(rise), azimuth(set));
+            println!("{latitude}: rises {east:.2}°, sets {west:.2}°");
+            assert!((east - 90.0).abs() < 1.0 && (west - 270.0).abs() < 1.0);
+            assert!(elevation(rise).abs() < 1e-4 && elevation(set).abs() < 1e-4);
+            // Lifted by the air it is up earlier, so the way is no shorter.
+            let lifted = observer(latitude, 12.5).day(when.date_naive(), *when.offset());
+            assert!(lifted.unwrap()[0].len() >= path.day[0].len());
+        }
+    }
+
+    #[test]
+    fn noon_at_the_solstices_is_the_latitude_and_the_tilt() {
+        let path = path(55.68, 12.57, "2026-06-21T12:00:00+02:00");
+        let highest = |lines: &[Line]| {
+            let all = lines.iter().flatten().copied();
+            all.map(elevation).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let noon = |tilt: f64| SunPosition::from_true(180.0, 90.0 - 55.68 + tilt);
+        for (lines, tilt) in [
+            (&path.june_solstice, 23.436),
+            (&path.equinox, 0.0),
+            (&path.december_solstice, -23.436),
+        ] {
+            let expected = noon(tilt).apparent_elevation_deg;
+            // The equinox falls within half a day of noon: 0.2°.
+            let tolerance = if tilt == 0.0 { 0.2 } else { 0.02 };
+            assert!((highest(lines) - expected).abs() < tolerance, "{tilt}");
+        }
+        assert_eq!(path.day, path.june_solstice);
+    }
+
+    #[test]
+    fn polar_day_and_polar_night() {
+        let summer = path(78.22, 15.65, "2026-06-21T12:00:00+02:00");
+        assert_eq!(summer.polar, Some(Polar::Day));
+        assert_eq!((summer.day.len(), summer.hours.len()), (1, 24));
+        let line = &summer.day[0];
+        assert!(
+            line[0].angle_between(line[line.len() - 1]).to_degrees() < 0.1,
+            "closed"
+        );
+        assert!(summer.events.sunrise.is_none() && summer.events.noon.is_some());
+        assert!(summer.december_solstice.is_empty());
+        let winter = path(78.22, 15.65, "2026-12-21T12:00:00+01:00");
+        assert_eq!(winter.polar, Some(Polar::Night));
+        assert!(winter.day.is_empty() && winter.hours.is_empty());
+        let temperate = path(48.0, 15.65, "2026-12-21T12:00:00+01:00");
+        assert_eq!(temperate.polar, None);
+    }
+
+    #[test]
+    fn a_clock_far_from_the_place_cuts_the_day_in_two() {
+        let path = path(55.7, 12.5, "2026-06-21T12:00:00-12:00");
+        assert_eq!(path.day.len(), 2);
+        let ends: Vec<f64> = path
+            .day
+            .iter()
+            .flat_map(|l| [l[0], l[l.len() - 1]])
+            .map(elevation)
+            .collect();
+        // Midnight of that clock, sunset, sunrise, midnight.
+        assert!(ends[0] > 40.0 && ends[1].abs() < 1e-4 && ends[2].abs() < 1e-4 && ends[3] > 40.0);
+    }
+
+    #[test]
+    fn hours_are_on_the_line_of_the_day() {
+        let path = path(55.68, 12.57, "2026-09-03T12:00:00+02:00");
+        let labels: Vec<_> = path.hours.iter().map(HourMark::label).collect();
+        assert_eq!(labels.first().map(String::as_str), Some("7"), "{labels:?}");
+        assert_eq!(labels.last().map(String::as_str), Some("19"), "{labels:?}");
+        for mark in &path.hours {
+            let off = angle_to(&path.day, mark.direction);
+            assert!(off < 0.02, "{}: {off}°", mark.label());
+            assert!((mark.direction.length() - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_noon_of_sydney_is_in_the_north() {
+        let path = path(-33.87, 151.21, "2026-12-21T12:00:00+11:00");
+        let noon = path.events.noon.expect("a noon");
+        let sun = observer(-33.87, 151.21).sun(noon).unwrap();
+        assert!(sun.z < 0.0 && elevation(sun) > 79.0, "{sun}");
+        let turn = (azimuth(sun) + 180.0).rem_euclid(360.0) - 180.0;
+        assert!(turn.abs() < 0.1, "{turn}");
+        assert_eq!((noon.hour(), noon.minute() / 10), (12, 5));
+    }
+
+    #[test]
+    fn the_seasons_are_the_almanacs() {
+        // US Naval Observatory.
+        for (year, march, june, december) in [
+            (
+                2026,
+                "2026-03-20T14:46:00Z",
+                "2026-06-21T08:24:00Z",
+                "2026-12-21T20:50:00Z",
+            ),
+            (
+                2024,
+                "2024-03-20T03:06:00Z",
+                "2024-06-20T20:51:00Z",
+                "2024-12-21T09:21:00Z",
+            ),
+        ] {
+            let seasons = Seasons::of(year).unwrap();
+            for (ours, theirs) in [
+                (seasons.march_equinox, march),
+                (seasons.june_solstice, june),
+                (seasons.december_solstice, december),
+            ] {
+                let theirs = DateTime::parse_from_rfc3339(theirs).unwrap();
+                let off = (ours.fixed_offset() - theirs).num_minutes();
+                println!("{ours}: {off} min");
+                assert!(off.abs() <= 15, "{ours}, not {theirs}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_analemma_passes_through_the_hours_of_every_day() {
+        let observer = observer(55.68, 12.57);
+        let offset = FixedOffset::east_opt(3600).unwrap();
+        let lines = observer.analemma(2026, offset, 12).unwrap();
+        assert_eq!(lines.len(), 1, "noon is above the horizon all year");
+        let closed = lines[0][0].angle_between(lines[0][lines[0].len() - 1]);
+        assert!(closed.to_degrees() < 0.3);
+        for month in 1..=12 {
+            let day = NaiveDate::from_ymd_opt(2026, month, 17).unwrap();
+            let marks = observer.hours(day, offset).unwrap();
+            let noon = marks.iter().find(|m| m.label() == "12").unwrap();
+            assert!(angle_to(&lines, noon.direction) < 0.1, "{month}");
+        }
+        let morning = observer.analemma(2026, offset, 6).unwrap();
+        assert!(morning.iter().flatten().all(|d| d.y > -1e-6) && !morning.is_empty());
+    }
+
+    #[test]
+    fn what_the_ephemeris_does_not_cover_is_an_error() {
+        let offset = FixedOffset::east_opt(0).unwrap();
+        for year in [-501, 3001, 262_000, -262_000] {
+            let day = NaiveDate::from_ymd_opt(year, 6, 1).unwrap();
+            assert!(observer(50.0, 10.0).day(day, offset).is_err(), "{year}");
+            assert!(Seasons::of(year).is_err());
+        }
+        let june = NaiveDate::from_ymd_opt(2026, 6, 1).unwrap();
+        assert!(observer(91.0, 10.0).day(june, offset).is_err());
+    }
+}

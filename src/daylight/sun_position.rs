@@ -18,14 +18,18 @@ use glam::DVec3;
 use serde::Deserialize;
 use solar_positioning::{Horizon, Location, SolarEvents, SolarPositions, delta_t};
 use std::f64::consts::PI;
+use std::ops::RangeInclusive;
 
-/// Pressure at which [`refraction_deg`] bends the light, hPa.
+/// Years in which the formulas hold: those of the estimates of ΔT.
+pub const YEARS: RangeInclusive<i32> = -500..=3000;
+
+/// Air pressure in [`refraction_deg`], hPa.
 pub const PRESSURE_HPA: f64 = 1013.25;
 
-/// Temperature at which [`refraction_deg`] bends the light, °C.
+/// Air temperature in [`refraction_deg`], °C.
 pub const TEMPERATURE_C: f64 = 12.0;
 
-/// Which formulas turn place and moment into a sun position.
+/// Formulas of the sun's position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SunPositionMethod {
@@ -38,6 +42,9 @@ pub enum SunPositionMethod {
 
 impl SunPositionMethod {
     /// Position of the sun by this method at `when`, seen from `latitude` (±90°) and `longitude` (±180°).
+    ///
+    /// # Errors
+    /// Coordinates out of range; for SPA a year outside of [`YEARS`].
     pub fn position(
         self,
         when: DateTime<FixedOffset>,
@@ -64,10 +71,12 @@ pub enum SunPositionError {
     /// Longitude outside ±180°, or not a number.
     #[error("longitude {0} is not in -180..=180 degrees")]
     Longitude(f64),
-    /// A year the ephemeris does not cover.
-    #[error("no sun position in the year {0}; the years -500 to 3000 are known")]
+    /// A year outside of [`YEARS`].
+    #[error(
+        "no sun position for this moment: the formulas hold for the years -500 to 3000, not for {0}"
+    )]
     Year(i32),
-    /// A moment the ephemeris does not cover.
+    /// Any other failure of the algorithm.
     #[error("no sun position for this moment: {0}")]
     Moment(#[from] solar_positioning::Error),
 }
@@ -79,7 +88,7 @@ pub struct SunPosition {
     pub azimuth_deg: f64,
     /// True (geometric) elevation over the horizon, degrees in -90..=90.
     pub elevation_deg: f64,
-    /// Apparent elevation, degrees: as seen, lifted by refraction ([`refraction_deg`]).
+    /// Apparent elevation, degrees: the true one plus [`refraction_deg`].
     pub apparent_elevation_deg: f64,
 }
 
@@ -93,7 +102,7 @@ impl SunPosition {
         }
     }
 
-    /// Unit vector toward the sun as it is seen (apparent elevation), in world space.
+    /// Unit vector toward the apparent sun, in world space.
     pub fn direction(&self) -> DVec3 {
         direction(self.azimuth_deg, self.apparent_elevation_deg)
     }
@@ -121,10 +130,10 @@ pub fn azimuth_elevation(direction: DVec3) -> (f64, f64) {
     (azimuth, direction.y.atan2(horizontal).to_degrees())
 }
 
-/// Reda & Andreas 2004, eq. 42 (Sæmundsson 1986): degrees by which the air at 1013.25 hPa and 12 °C lifts the sun.
+/// Reda & Andreas 2004, eq. 42 (Sæmundsson 1986): atmospheric refraction at 1013.25 hPa and 12 °C, degrees.
 ///
-/// The algorithm drops refraction at once when the sun's upper limb has set (-0.8333°), a jump of 0.6°. Here
-/// it fades to 0 at -3° instead, so that a film of a sunset has no jump; above -0.8333° the values are SPA's.
+/// SPA sets refraction to 0 when the upper limb has set (-0.8333°), a jump of 0.6°. Here it fades to 0 at -3° instead, so that
+/// an animated sunset has no jump; above -0.8333° the values are SPA's.
 pub fn refraction_deg(true_elevation_deg: f64) -> f64 {
     const CUTOFF: f64 = -(0.266_67 + 0.566_7);
     const GONE: f64 = -3.0;
@@ -139,19 +148,43 @@ pub fn refraction_deg(true_elevation_deg: f64) -> f64 {
 
 /// Reda & Andreas 2004: NREL's Solar Position Algorithm, by the crate `solar-positioning`, at sea level.
 ///
-/// Terrestrial time is UT plus an estimated ΔT (Espenak & Meeus). Years -500 to 3000.
+/// Terrestrial time is UT plus an estimated ΔT (Espenak & Meeus). UTC stands for UT1: a leap second is the second after it.
+///
+/// # Errors
+/// A place outside of the coordinates' ranges, a year outside of [`YEARS`].
 pub fn spa(
     when: DateTime<FixedOffset>,
     latitude: f64,
     longitude: f64,
 ) -> Result<SunPosition, SunPositionError> {
     let location = check(latitude, longitude)?;
-    let delta_t = delta_t::estimate_from_date_like(&when)?;
-    let seen = SolarPositions::new().at(&when, location, 0.0, delta_t, None)?;
+    let delta_t = delta_t_s(when.date_naive())?;
+    let seen = SolarPositions::new().at(&without_leap(when), location, 0.0, delta_t, None)?;
     Ok(SunPosition::from_true(
         seen.azimuth(),
         seen.elevation_angle(),
     ))
+}
+
+/// Estimated terrestrial time less universal time, seconds, in the month of a date.
+fn delta_t_s(date: NaiveDate) -> Result<f64, SunPositionError> {
+    let year = date.year();
+    if !YEARS.contains(&year) {
+        return Err(SunPositionError::Year(year));
+    }
+    // The polynomials end when the last year begins; until its end they grow by 10 s, in which the sun moves 0.0001°.
+    if year == *YEARS.end() {
+        return Ok(delta_t::estimate(f64::from(year))?);
+    }
+    Ok(delta_t::estimate_from_date_like(&date)?)
+}
+
+/// chrono counts the nanoseconds of a leap second on from those of the second before.
+fn without_leap(when: DateTime<FixedOffset>) -> DateTime<FixedOffset> {
+    let leap = when.nanosecond() / 1_000_000_000;
+    let before = when.with_nanosecond(when.nanosecond() % 1_000_000_000);
+    let after = before.and_then(|w| w.checked_add_signed(Duration::seconds(i64::from(leap))));
+    after.unwrap_or(when)
 }
 
 fn check(latitude: f64, longitude: f64) -> Result<Location, SunPositionError> {
@@ -210,8 +243,10 @@ pub struct SolarTime {
 /// A moment with its UTC offset needs neither zone meridian nor summer time: t = UTC + EoT + L/15.
 pub fn solar_time(when: DateTime<FixedOffset>, longitude: f64) -> SolarTime {
     let seconds = longitude / 15.0 * 3600.0;
-    // Saturates for an absurd longitude; a longitude shifts the clock by at most half a day.
-    let mean_time = when.naive_utc() + Duration::milliseconds((seconds * 1000.0).round() as i64);
+    let utc = when.naive_utc();
+    let shift = Duration::milliseconds((seconds * 1000.0).round() as i64);
+    // chrono's calendar ends in the year 262 142.
+    let mean_time = utc.checked_add_signed(shift).unwrap_or(utc);
     let clock = mean_time.time();
     let hours = f64::from(clock.num_seconds_from_midnight()) / 3600.0
         + f64::from(clock.nanosecond()) / 3.6e12;
@@ -233,7 +268,7 @@ pub struct SunEvents {
     pub sunset: Option<DateTime<FixedOffset>>,
 }
 
-/// A day on which the sun neither rises nor sets.
+/// A day without sunrise and sunset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Polar {
     /// It stays up.
@@ -243,12 +278,12 @@ pub enum Polar {
 }
 
 impl SunEvents {
-    /// Which kind of day it is where the sun neither rises nor sets; `None` where it does. The place is that of the events.
+    /// Polar day or night at the place of the events; `None` on a day with sunrise or sunset.
     pub fn polar(&self, latitude: f64, longitude: f64) -> Option<Polar> {
         if self.sunrise.is_some() || self.sunset.is_some() {
             return None;
         }
-        // Looked at where it is highest.
+        // At solar noon the sun is highest.
         let noon = spa(self.noon?, latitude, longitude).ok()?;
         Some(if noon.apparent_elevation_deg > 0.0 {
             Polar::Day
@@ -266,7 +301,7 @@ pub fn sun_events(
     longitude: f64,
 ) -> Result<SunEvents, SunPositionError> {
     let location = check(latitude, longitude)?;
-    let delta_t = delta_t::estimate_from_date_like(&date)?;
+    let delta_t = delta_t_s(date)?;
     let events = SolarEvents::new();
     let day = events.for_date(date, &offset, location, delta_t, Horizon::SunriseSunset)?;
     Ok(SunEvents {
@@ -380,6 +415,51 @@ mod tests {
         );
         let polar = sun_events(day, zone, 78.2, 15.6).unwrap();
         assert!(polar.sunrise.is_none() && polar.sunset.is_none() && polar.noon.is_some());
+    }
+
+    #[test]
+    fn the_whole_of_the_last_year_and_leap_seconds_have_a_sun() {
+        let at = |text: &str| spa(moment(text), 55.79, 12.52);
+        let date = |year, month, day| NaiveDate::from_ymd_opt(year, month, day).unwrap();
+        let utc = FixedOffset::east_opt(0).unwrap();
+        // Noon: 90° - latitude + declination.
+        for (day, declination) in [
+            (date(3000, 6, 21), 23.3),
+            (date(3000, 12, 31), -23.0),
+            (date(-500, 6, 21), 23.7),
+        ] {
+            let events = sun_events(day, utc, 55.79, 12.52).unwrap();
+            let noon = spa(events.noon.unwrap(), 55.79, 12.52).unwrap();
+            let expected = 90.0 - 55.79 + declination;
+            assert!(
+                (noon.elevation_deg - expected).abs() < 0.2,
+                "{day}: {noon:?}"
+            );
+        }
+        for day in [date(3000, 12, 31), date(-500, 1, 1)] {
+            let events = sun_events(day, utc, 55.79, 12.52).unwrap();
+            assert!(events.sunrise.is_some() && events.sunset.is_some());
+        }
+        // A second turns the sun by 0.004°; the estimate of ΔT differs from month to month.
+        for (leap, second) in [
+            ("2016-12-31T23:59:60Z", "2017-01-01T00:00:00Z"),
+            ("2016-12-31T23:59:60.5Z", "2017-01-01T00:00:00.5Z"),
+        ] {
+            let [leap, second] = [leap, second].map(|text| at(text).unwrap());
+            assert!((leap.azimuth_deg - second.azimuth_deg).abs() < 1e-5);
+            assert!((leap.elevation_deg - second.elevation_deg).abs() < 1e-5);
+        }
+        for text in ["3001-01-01T00:00:00Z", "9999-01-01T00:00:00Z"] {
+            let error = at(text).unwrap_err().to_string();
+            assert!(error.contains("the years -500 to 3000"), "{error}");
+        }
+        for end in [chrono::NaiveDateTime::MIN, chrono::NaiveDateTime::MAX] {
+            let when = DateTime::from_naive_utc_and_offset(end, utc);
+            assert!(spa(when, 0.0, 0.0).is_err());
+            for longitude in [-180.0, 180.0] {
+                assert!((0.0..24.0).contains(&solar_time(when, longitude).hours));
+            }
+        }
     }
 
     #[test]

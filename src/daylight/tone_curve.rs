@@ -14,7 +14,7 @@ pub const LUMINANCE_WEIGHTS: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
 /// The smallest luminance that [`ToneCurve::Reinhard`] maps to white, in exposed units.
 pub const REINHARD_WHITE: f64 = 4.0;
 
-/// Which tone curve.
+/// Tone curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ToneCurve {

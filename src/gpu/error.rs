@@ -1,30 +1,30 @@
-//! What can go wrong on the device, each with the thing and the remedy.
+//! Errors of the device; each message names the cause and the remedy.
 
 use ash::vk;
 
-/// Result of the room.
+/// Result with a [`GpuError`].
 pub type Result<T> = std::result::Result<T, GpuError>;
 
-/// A fault of the Vulkan driver, of the choice of a device, or of memory.
+/// An error of the Vulkan driver, the choice of a device, or memory.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
     /// The Vulkan loader is not installed.
     #[error("no Vulkan loader ({0}); install it (Debian, Ubuntu: libvulkan1)")]
     NoLoader(String),
-    /// The loader works but offers no device.
+    /// The loader finds no device.
     #[error(
         "no Vulkan device; install a driver (Debian, Ubuntu: mesa-vulkan-drivers has the software device lavapipe)"
     )]
     NoDevice,
-    /// `--device` matches nothing.
+    /// No device matches `--device`.
     #[error("no device matches \"{wanted}\"; there are: {present}")]
     NoSuchDevice {
-        /// The text of the user.
+        /// The text given.
         wanted: String,
         /// Names of the devices that exist.
         present: String,
     },
-    /// The device lacks something the renderer needs.
+    /// The device lacks required features.
     #[error("{missing} not supported by \"{device}\"; choose another with --device")]
     Unsupported {
         /// Features, extensions or formats, separated by commas.
@@ -32,45 +32,42 @@ pub enum GpuError {
         /// Name of the device.
         device: String,
     },
-    /// Validation was asked for but its layer is not installed.
+    /// The validation layer is requested but not installed.
     #[error(
         "the layer VK_LAYER_KHRONOS_validation is missing; install it (Debian, Ubuntu: vulkan-validationlayers)"
     )]
     NoValidationLayer,
-    /// The validation layer complained: a fault of this program.
-    #[error("{count} validation message(s), the first: {first}")]
-    Validation {
-        /// How many there were.
-        count: usize,
-        /// Text of the first.
-        first: String,
-    },
+    /// The validation layer reported errors or warnings, a defect of this program: each message once.
+    #[error("{} validation message(s): {}", .0.len(), .0.join("\n"))]
+    Validation(Vec<String>),
     /// A Vulkan call failed.
     #[error("{what}: {}", describe(*result))]
     Vulkan {
-        /// What was being done.
+        /// The operation.
         what: &'static str,
-        /// The driver's answer.
+        /// The result code.
         result: vk::Result,
     },
-    /// Device memory could not be had.
+    /// Device memory is exhausted.
     #[error("no memory for {what}: {reason}; try a smaller --size")]
     Memory {
         /// Name of the image or buffer.
         what: String,
-        /// The allocator's words.
+        /// The message of the allocator.
         reason: String,
     },
-    /// A planned fault that names no call.
-    #[error("\"{0}\" is no fault; write CALL@NUMBER=ANSWER, for instance submit@1=device-lost")]
+    /// Text that does not describe a fault to inject.
+    #[error(
+        "\"{0}\" is not a fault; write CALL@OCCURRENCE=ERROR, for instance submit@1=device-lost"
+    )]
     BadFault(String),
-    /// Shaders that cannot be reloaded, a line each.
+    /// Shaders that cannot be reloaded, one line each.
     #[error("{0}")]
     Shaders(String),
-    /// The window's surface is of no use.
+    /// The surface of the window is unusable.
     #[error("the window cannot be drawn to: {0}")]
     Window(String),
-    /// A size beyond what the device can do.
+    /// A size beyond the limit of the device.
     #[error(
         "{what} of {asked} exceeds what \"{device}\" supports ({limit}); choose a smaller --size"
     )]
@@ -87,7 +84,7 @@ pub enum GpuError {
 }
 
 impl GpuError {
-    /// Whether the device is of no use any more.
+    /// Whether the device is lost.
     pub fn is_device_lost(&self) -> bool {
         let lost = vk::Result::ERROR_DEVICE_LOST;
         matches!(self, Self::Vulkan { result, .. } if *result == lost)
@@ -105,7 +102,7 @@ fn describe(result: vk::Result) -> String {
     }
 }
 
-/// Says what was being done when a Vulkan call failed.
+/// Names the operation of a failed Vulkan call.
 pub(super) trait During<T> {
     fn during(self, what: &'static str) -> Result<T>;
 }

@@ -1,21 +1,21 @@
-//! Vulkan nouns: device, images, buffers, pipelines, command recording. Knows no pass by name and imports
-//! nothing of the rest of the crate.
+//! Vulkan objects: device, images, buffers, pipelines, command recording. The module knows no pass by name and imports
+//! nothing else of the crate.
 //!
-//! Everything `unsafe` of the program is in this room. Each raw handle is owned by a `Drop` type from the line
-//! that creates it; every resource keeps its [`Context`] alive.
+//! All `unsafe` code of the program is here. Each raw handle is owned by a `Drop` type from the line that creates it; every
+//! resource keeps its [`Context`] alive.
 //!
-//! The three things to know:
-//! - an [`Image`] remembers its last [`Use`]; [`access::barrier`] turns (last use, next use) into a barrier, so
-//!   no pass writes a stage or an access mask;
-//! - a [`Shader`] carries what it declares (build.rs reads it from the SPIR-V), and [`Recorder::pass`] checks each
-//!   bound name against it;
-//! - a [`Recorder`] records, submits and waits; the name given to `pass` labels and times it.
+//! - An [`Image`] tracks its last [`ImageAccess`](access::ImageAccess), and [`access::barrier`] turns (last access, next
+//!   access) into a barrier: no pass writes a stage or an access mask.
+//! - A [`Shader`] carries its declarations, which build.rs reads from the SPIR-V; [`Recorder::pass`] checks each binding
+//!   against them.
+//! - A [`Recorder`] records, submits and waits; the name given to `pass` labels and times the pass.
 #![allow(unsafe_code)]
 
 mod device;
 mod error;
 mod memory;
 mod pipeline;
+#[cfg(feature = "window")]
 mod present;
 mod record;
 #[cfg(feature = "hot-reload")]
@@ -25,21 +25,23 @@ pub use ash::vk::Format;
 pub use device::context::{Context, ContextOptions};
 pub use device::select::{DeviceSummary, Optional, devices};
 pub use device::startup::Step;
+#[cfg(feature = "window")]
 pub use device::surface::{Surface, WindowHandles};
 pub use error::{GpuError, Result};
 pub use memory::buffer::{Buffer, BufferKind};
-pub use memory::image::{Image, ImageDesc, ImageKind};
+pub use memory::image::{Image, ImageDesc, ImageKind, Sampler};
 pub use memory::read_back::{Pixels, Texel, copy_texel, read_back};
-pub use memory::sampler::Sampler;
 pub use memory::upload::{upload_buffer, upload_texture};
 pub use pipeline::cache::CacheState;
 pub use pipeline::layout::{GpuStruct, assert_layout};
 pub use pipeline::shader::{Binding, BindingKind, Field, Shader, Stage, compiled as shaders};
 pub use pipeline::{Depth, Pipeline, PipelineDesc};
-pub use present::presenter::Presenter;
-pub use present::ui::{Overlay, UiFrame};
+#[cfg(feature = "window")]
+pub use present::{
+    presenter::Presenter,
+    ui::{Overlay, UiFrame},
+};
 pub use record::access;
-pub use record::access::Use;
 pub use record::draws::{Draws, Faces, Winding};
 pub use record::pass::{Load, Pass};
 pub use record::recorder::Recorder;

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// An axis-aligned box in world space, metres. `min > max` on every axis means that it holds nothing.
+/// An axis-aligned box in world space, metres. `min > max` on every axis means that it is empty.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Bounds {
     /// Smallest coordinates, metres.
@@ -13,7 +13,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box of no points: the neutral element of [`Bounds::union`].
+    /// The empty box, the neutral element of [`Bounds::union`].
     pub const EMPTY: Self = Self {
         min: Vec3::INFINITY,
         max: Vec3::NEG_INFINITY,
@@ -24,7 +24,7 @@ impl Bounds {
         points.into_iter().fold(Self::EMPTY, Self::with)
     }
 
-    /// This box grown to hold `point`.
+    /// The smallest box around this one and `point`.
     #[must_use]
     pub fn with(self, point: Vec3) -> Self {
         Self {
@@ -42,12 +42,12 @@ impl Bounds {
         }
     }
 
-    /// Whether it holds no point at all.
+    /// Whether it contains no point.
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
     }
 
-    /// The middle, metres; the origin for an empty box.
+    /// Centre, metres; the origin for an empty box.
     pub fn centre(&self) -> Vec3 {
         if self.is_empty() {
             return Vec3::ZERO;
@@ -68,7 +68,7 @@ impl Bounds {
         self.extent().length()
     }
 
-    /// The eight corners; bit 0, 1, 2 of the index chooses `max` along x, y, z.
+    /// The eight corners, metres; bits 0, 1, 2 of the index choose `max` along x, y, z.
     pub fn corners(&self) -> [Vec3; 8] {
         std::array::from_fn(|i| {
             let pick = |axis: usize| {
@@ -88,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn holds_exactly_its_points() {
+    fn is_the_smallest_box_around_its_points() {
         let bounds = Bounds::of([Vec3::new(1.0, -2.0, 3.0), Vec3::new(-1.0, 5.0, 0.0)]);
         assert_eq!(bounds.min, Vec3::new(-1.0, -2.0, 0.0));
         assert_eq!(bounds.max, Vec3::new(1.0, 5.0, 3.0));
@@ -98,10 +98,10 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_empty_and_neutral() {
+    fn the_empty_box_is_neutral() {
         let one = Bounds::of([Vec3::ONE]);
         assert!(Bounds::EMPTY.is_empty());
-        assert!(!one.is_empty(), "a point has a box");
+        assert!(!one.is_empty(), "a box of one point");
         assert_eq!(Bounds::EMPTY.union(one), one);
         assert_eq!(Bounds::EMPTY.diagonal(), 0.0);
         assert_eq!(Bounds::EMPTY.centre(), Vec3::ZERO);

@@ -1,29 +1,29 @@
-//! The scene while it is being put together.
+//! A scene under construction.
 
 use std::collections::HashMap;
 use std::path::Path;
 
 use crate::scene::error::{SceneError, printable};
 use crate::scene::files::Files;
-use crate::scene::material::Material;
+use crate::scene::material::{Material, MaterialKey};
 use crate::scene::progress::Reporter;
-use crate::scene::texture::picture::{TextureStore, Wanted};
+use crate::scene::texture::picture::{TextureKey, TextureStore};
 use crate::scene::{LoadOptions, Scene};
 
-/// Warnings beyond these are left out: a hostile file could ask for millions.
+/// Most warnings of a scene: a hostile file could cause millions.
 const MAX_WARNINGS: usize = 100;
 
-/// A scene in the making, and where its files come from.
+/// A scene under construction and the source of its files.
 #[derive(Debug)]
 pub(super) struct Builder<'p> {
     pub scene: Scene,
     pub files: Files,
     pub textures: TextureStore,
-    /// Of the model that is being added.
+    /// For the model that is being added.
     pub progress: Reporter<'p>,
     /// Threads to use, at least 1.
     pub threads: usize,
-    materials: HashMap<String, u32>,
+    materials: HashMap<MaterialKey, u32>,
     allow_outside: bool,
     max_triangles: usize,
 }
@@ -43,19 +43,19 @@ impl<'p> Builder<'p> {
         }
     }
 
-    /// What is read next belongs to this model: its libraries and pictures must lie in its folder tree.
+    /// Starts a model: its libraries and pictures must lie in its folder tree, unless `allow_outside` is set.
     pub fn begin_model(&mut self, path: &Path) {
         if !self.allow_outside {
             self.files.confine_to(path);
         }
     }
 
-    /// Notes something odd about a file that is no reason to stop.
+    /// Adds a warning about a file.
     pub fn warn(&mut self, path: &Path, what: &str) {
         if self.scene.warnings.len() >= MAX_WARNINGS {
             if self.scene.warnings.len() == MAX_WARNINGS {
-                let more = "more warnings are left out".to_owned();
-                self.scene.warnings.push(more);
+                let omitted = "further warnings are omitted".to_owned();
+                self.scene.warnings.push(omitted);
             }
             return;
         }
@@ -67,22 +67,22 @@ impl<'p> Builder<'p> {
         self.scene.warnings.push(line);
     }
 
-    /// Notes that a file was left alone.
+    /// Adds a warning about a file that was not read.
     pub fn warn_outside(&mut self, owner: &Path, path: &Path) {
         let what = format!(
-            "{} lies outside of the model's folder and is not read; allow it with --allow-outside",
+            "{} is outside the model's folder and was not read; pass --allow-outside to allow it",
             path.display()
         );
         self.warn(owner, &what);
     }
 
-    /// Whether this many more triangles may be added.
+    /// Checks that this many more triangles may be added to the scene.
     ///
     /// # Errors
-    /// When they are too many.
-    pub fn check_room(&self, path: &Path, triangles: usize) -> Result<(), SceneError> {
+    /// They exceed the limit.
+    pub fn check_triangles(&self, path: &Path, triangles: usize) -> Result<(), SceneError> {
         let all = self.scene.triangles().saturating_add(triangles);
-        if all <= self.max_triangles && self.scene.has_room_for(triangles.saturating_mul(3)) {
+        if all <= self.max_triangles && self.scene.has_indices_for(triangles.saturating_mul(3)) {
             return Ok(());
         }
         Err(SceneError::TooMany {
@@ -92,10 +92,10 @@ impl<'p> Builder<'p> {
         })
     }
 
-    /// Whether this many triangles may be read, drawn or not: a file may name the same ones again and again.
+    /// Checks that this many triangles may be read, drawn or not: a file may name the same ones many times.
     ///
     /// # Errors
-    /// When they are too many.
+    /// They exceed the limit.
     pub fn check_read(&self, path: &Path, triangles: usize) -> Result<(), SceneError> {
         if triangles <= self.max_triangles {
             return Ok(());
@@ -107,28 +107,26 @@ impl<'p> Builder<'p> {
         })
     }
 
-    /// Corners of triangles that may still be added.
+    /// How many corners of triangles may still be added.
     pub fn corners_left(&self) -> usize {
         let triangles = self.max_triangles.saturating_sub(self.scene.triangles());
         triangles.saturating_mul(3)
     }
 
-    /// The number of the material in the scene; equal ones share it.
+    /// Adds a material, unless there is an equal one; returns its index.
     pub fn add_material(&mut self, material: Material) -> u32 {
         let materials = &mut self.scene.materials;
-        // The text of a material tells all about it, but has a hash.
-        let key = format!("{material:?}");
-        *self.materials.entry(key).or_insert_with(|| {
+        *self.materials.entry(material.key()).or_insert_with(|| {
             materials.push(material);
             (materials.len() - 1) as u32
         })
     }
 
-    /// The number of a texture in the scene, made at first use; none (and a warning) if that fails.
-    pub fn texture(&mut self, owner: &Path, wanted: Wanted) -> Option<usize> {
+    /// The index of a texture, made at first use; none (and a warning) if that fails.
+    pub fn texture(&mut self, owner: &Path, key: TextureKey) -> Option<usize> {
         let textures = &mut self.scene.textures;
-        match self.textures.get(&self.files, wanted, textures) {
-            Ok(number) => number,
+        match self.textures.get(&self.files, key, textures) {
+            Ok(index) => index,
             Err(what) => {
                 self.warn(owner, &what);
                 None
@@ -136,7 +134,7 @@ impl<'p> Builder<'p> {
         }
     }
 
-    /// The mean of a picture, 0..1; 1 (and a warning) if that fails.
+    /// The mean red, green and blue of a picture, 0..1 as encoded; 1 (and a warning) if that fails.
     pub fn mean(&mut self, owner: &Path, path: &Path) -> [f32; 3] {
         let mean = self.textures.mean(&self.files, path);
         mean.unwrap_or_else(|what| {

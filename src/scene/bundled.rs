@@ -1,11 +1,12 @@
-//! The scenes that are built into the program.
+//! Scenes that are compiled into the program.
 
 use std::path::Path;
 
 use crate::scene::files::Files;
-use crate::scene::{LoadOptions, Loaded, Progress, SceneError, load_from};
+use crate::scene::load::load_from;
+use crate::scene::{LoadOptions, Loaded, Progress, SceneError};
 
-/// Their files; `examples/make_colonnade.rs` and `examples/make_island` make the models.
+/// Their files by name; `examples/make_colonnade.rs` and `examples/make_island` write the models.
 static FILES: &[(&str, &[u8])] = &[
     (
         "colonnade.toml",
@@ -23,18 +24,18 @@ static FILES: &[(&str, &[u8])] = &[
     ("island.glb", include_bytes!("../../assets/island.glb")),
 ];
 
-/// By which names they are asked for; the first is shown when none is.
+/// Names of the bundled scenes; the first is the default.
 pub const BUNDLED: [&str; 2] = ["colonnade", "island"];
 
-/// The scene that is shown when none is asked for: a small colonnade with steps, a pool and a low sun. It needs no file on the disk.
+/// The default scene: a small colonnade with steps, a pool and a low sun.
 ///
 /// # Errors
-/// None with the files of the project; a test loads it.
+/// Limits in `options` that are too low for it.
 pub fn bundled(options: &LoadOptions) -> Result<Loaded, SceneError> {
     load_bundled(BUNDLED[0], options, &|_, _| ())
 }
 
-/// The bundled scene that a path asks for: one of [`BUNDLED`], where nothing on the disk is called so.
+/// The bundled scene of this name, unless a file of this name exists.
 pub fn bundled_name(path: &Path) -> Option<&'static str> {
     let name = BUNDLED.into_iter().find(|name| path == Path::new(name))?;
     (!path.exists()).then_some(name)
@@ -54,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_bundled_scene_is_sound() {
+    fn the_default_scene_is_valid() {
         let loaded = bundled(&LoadOptions::default()).expect("the bundled scene loads");
         assert_eq!(loaded.scene.warnings, Vec::<String>::new());
         assert!(
@@ -64,7 +65,7 @@ mod tests {
         );
         assert!(
             loaded.scene.materials.iter().any(|m| m.specular[0] > 0.0),
-            "something glossy mirrors the sky"
+            "one material is glossy"
         );
         assert!(loaded.options.iter().any(|(key, _)| key == "eye"));
         for (name, most) in [("colonnade", 3_000_000), ("island", 5_500_000)] {
@@ -84,7 +85,7 @@ mod tests {
             assert_eq!(loaded.cameras.len(), 3, "{name}");
         }
         assert_eq!(bundled_name(Path::new("colonnade.toml")), None);
-        // This folder is there.
+        // A folder of this name exists.
         assert_eq!(bundled_name(Path::new("src")), None);
     }
 }

@@ -1,33 +1,34 @@
-//! Processed scenes on disk, so that a large model starts quickly the second time.
+//! A disk cache of processed scenes, so that a large model loads quickly the second time.
 //!
-//! An entry is found by the content of the model, its path and the options; it names every other file that was read, with
-//! its content, and ends with a checksum. Whatever does not agree is not trusted: the model is read again and the entry
-//! written anew.
+//! The key of an entry is the content of the model, its path and the options. An entry lists every other file that was read
+//! with the hash of its content, and ends with a checksum. If anything does not match, the model is read again and the
+//! entry is replaced.
 
 use std::fs;
-use std::io::{Read, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use crate::scene::bounds::Bounds;
-use crate::scene::culling::cached_layout::{FlatLayout, clusters, ranges};
+use crate::scene::culling::layout::{FlatLayout, clusters, ranges};
 use crate::scene::files::{Digest, ReadFile, digest};
 use crate::scene::material::Material;
 use crate::scene::scene_file::NamedOptions;
 use crate::scene::texture::{Encoding, Texture};
 use crate::scene::{Layout, LoadOptions, Loaded, Part, Scene};
 
-/// Changes with the form of entries and with what reading a model makes of it.
+/// Version of the format of entries and of the result of loading a model.
 const VERSION: u32 = 3;
-/// Models below this size are read as fast as an entry, bytes.
-pub(super) const SMALLEST: u64 = 4 << 20;
-/// Most that all entries together may take, bytes; the oldest go first.
-const MOST: u64 = 4 << 30;
+/// Smallest model that is cached, bytes: smaller ones load as fast as an entry.
+pub(super) const MIN_MODEL_BYTES: u64 = 4 << 20;
+/// Limit on the size of all entries together, bytes.
+const MAX_BYTES: u64 = 4 << 30;
 
+/// Arrays of an entry, without those of textures.
 const ARRAYS: usize = 9;
 
-/// What an entry says before its arrays.
+/// The start of an entry, before its arrays.
 #[derive(Serialize, Deserialize)]
 struct Head {
     version: u32,
@@ -40,8 +41,8 @@ struct Head {
     options: Vec<(String, String)>,
     cameras: Vec<NamedOptions>,
     moments: Vec<NamedOptions>,
-    /// Numbers of positions, normals, texture coordinates, colours, tangents, indices, and of the layout's clusters, parts
-    /// and thicknesses.
+    /// Lengths of the arrays: positions, normals, texture coordinates, colours, tangents, indices; clusters, parts and
+    /// thicknesses of the layout.
     lengths: [usize; ARRAYS],
 }
 
@@ -53,14 +54,19 @@ struct Picture {
     encoding: Encoding,
 }
 
-/// Where the entry of a model is.
-pub(super) fn place(folder: &Path, path: &Path, model: Digest, options: &LoadOptions) -> PathBuf {
-    let asked = LoadOptions {
+/// Path of the entry of a model.
+pub(super) fn entry_path(
+    folder: &Path,
+    path: &Path,
+    model: Digest,
+    options: &LoadOptions,
+) -> PathBuf {
+    let options = LoadOptions {
         cache: None,
         ..options.clone()
     };
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    let key = format!("{VERSION} {model:?} {path:?} {asked:?}");
+    let key = format!("{VERSION} {model:?} {path:?} {options:?}");
     let name: String = digest(key.as_bytes())[..16]
         .iter()
         .map(|byte| format!("{byte:02x}"))
@@ -68,7 +74,7 @@ pub(super) fn place(folder: &Path, path: &Path, model: Digest, options: &LoadOpt
     folder.join(format!("{name}.scene"))
 }
 
-/// The scene of an entry; none if there is no entry, if it is damaged or if a file that it depends on has changed.
+/// Reads an entry; none if it does not exist, is damaged, or depends on a file that has changed.
 pub(super) fn read(entry: &Path, path: &Path) -> Option<Loaded> {
     let mut entry = Entry::open(entry)?;
     let [length] = entry.numbers::<u64>(1)?[..] else {
@@ -80,7 +86,7 @@ pub(super) fn read(entry: &Path, path: &Path) -> Option<Loaded> {
         return None;
     }
     let scene = head.scene(&mut entry)?;
-    let agrees = entry.ends_well() && head.files.iter().all(ReadFile::is_unchanged);
+    let agrees = entry.checksum_agrees() && head.files.iter().all(ReadFile::is_unchanged);
     (agrees && is_sound(&scene)).then(|| Loaded {
         path: path.to_owned(),
         scene,
@@ -90,16 +96,16 @@ pub(super) fn read(entry: &Path, path: &Path) -> Option<Loaded> {
     })
 }
 
-/// An entry that is being read: what is taken from it is not to be trusted before it has ended well.
+/// An entry that is being read. Its content must not be used before [`Entry::checksum_agrees`].
 struct Entry {
     file: fs::File,
-    /// Bytes before the checksum that were not taken yet.
+    /// Unread bytes before the checksum.
     left: u64,
     hasher: blake3::Hasher,
 }
 
 impl Entry {
-    /// Bytes that are read and hashed at a time: they fit into a core's cache.
+    /// Bytes that are read and hashed at a time: they fit into the cache of a core.
     const STEP: usize = 1 << 18;
 
     fn open(path: &Path) -> Option<Self> {
@@ -112,10 +118,10 @@ impl Entry {
         })
     }
 
-    /// The next numbers, read to where they stay.
+    /// Reads the next `count` numbers.
     fn numbers<T: bytemuck::Pod>(&mut self, count: usize) -> Option<Vec<T>> {
         let bytes = count.checked_mul(size_of::<T>())?;
-        // Before memory is taken: a damaged entry may claim anything.
+        // Before allocating: a damaged entry may claim any length.
         self.left = self.left.checked_sub(bytes as u64)?;
         let mut values = vec![T::zeroed(); count];
         for step in bytemuck::cast_slice_mut(&mut values).chunks_mut(Self::STEP) {
@@ -125,25 +131,30 @@ impl Entry {
         Some(values)
     }
 
-    /// Whether nothing is left but the checksum, and it agrees.
-    fn ends_well(&mut self) -> bool {
+    /// Whether all bytes have been read and the checksum matches.
+    fn checksum_agrees(&mut self) -> bool {
         let mut checksum = Digest::default();
         let read = self.file.read_exact(&mut checksum);
         self.left == 0 && read.is_ok() && self.hasher.finalize() == checksum
     }
 }
 
-/// Writes an entry, whole or not at all. A cache that cannot be written is no reason to stop.
-pub(super) fn write(entry: &Path, loaded: &Loaded, mut files: Vec<ReadFile>) -> Option<()> {
-    // The place of the entry tells the model itself.
-    files.retain(|file| file.path != loaded.path);
-    let folder = entry.parent()?;
-    fs::create_dir_all(folder).ok()?;
-    make_room(folder);
+/// Writes an entry, atomically.
+///
+/// # Errors
+/// The folder cannot be written.
+pub(super) fn write(entry: &Path, loaded: &Loaded, mut files: Vec<ReadFile>) -> io::Result<()> {
     let scene = &loaded.scene;
-    let layout = FlatLayout::of(scene.layout.as_ref()?);
-    let head = serde_json::to_vec(&Head::of(loaded, files, &layout)).ok()?;
-    let mut file = tempfile::NamedTempFile::new_in(folder).ok()?;
+    let (Some(folder), Some(layout)) = (entry.parent(), scene.layout.as_ref()) else {
+        return Ok(());
+    };
+    // The key of the entry covers the model itself.
+    files.retain(|file| file.path != loaded.path);
+    fs::create_dir_all(folder)?;
+    remove_oldest(folder);
+    let layout = FlatLayout::of(layout);
+    let head = serde_json::to_vec(&Head::of(loaded, files, &layout))?;
+    let mut file = tempfile::NamedTempFile::new_in(folder)?;
     let mut hasher = blake3::Hasher::new();
     let length = (head.len() as u64).to_le_bytes();
     let start = [&length[..], &head];
@@ -151,14 +162,14 @@ pub(super) fn write(entry: &Path, loaded: &Loaded, mut files: Vec<ReadFile>) -> 
     let textures = scene.textures.iter().map(|t| t.rgba8.as_slice());
     for bytes in start.into_iter().chain(arrays).chain(textures) {
         hasher.update(bytes);
-        file.write_all(bytes).ok()?;
+        file.write_all(bytes)?;
     }
-    file.write_all(hasher.finalize().as_bytes()).ok()?;
-    file.persist(entry).ok()?;
-    Some(())
+    file.write_all(hasher.finalize().as_bytes())?;
+    file.persist(entry)?;
+    Ok(())
 }
 
-/// The bytes of each array, and how many numbers they are.
+/// The bytes and the length of each array.
 fn arrays<'s>(scene: &'s Scene, layout: &'s FlatLayout<'s>) -> [(&'s [u8], usize); ARRAYS] {
     fn array<T: bytemuck::Pod>(values: &[T]) -> (&[u8], usize) {
         (bytemuck::cast_slice(values), values.len())
@@ -176,8 +187,8 @@ fn arrays<'s>(scene: &'s Scene, layout: &'s FlatLayout<'s>) -> [(&'s [u8], usize
     ]
 }
 
-/// Removes the oldest entries while all together take more than [`MOST`].
-fn make_room(folder: &Path) {
+/// Removes the oldest entries while all together exceed [`MAX_BYTES`].
+fn remove_oldest(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;
     };
@@ -192,10 +203,10 @@ fn make_room(folder: &Path) {
     entries.sort();
     let mut all: u64 = entries.iter().map(|(_, bytes, _)| bytes).sum();
     for (_, bytes, path) in entries {
-        if all <= MOST {
+        if all <= MAX_BYTES {
             break;
         }
-        // One that another process removed is gone as well.
+        // Another process may have removed it already.
         let _ = fs::remove_file(path);
         all -= bytes;
     }
@@ -266,7 +277,7 @@ impl Picture {
     }
 }
 
-/// What the renderer relies on: numbers in range, streams of one length.
+/// Whether the invariants of a scene hold: indices in range, attributes of the same length.
 fn is_sound(scene: &Scene) -> bool {
     let vertices = scene.positions.len();
     let whole = |n: usize| n == vertices;

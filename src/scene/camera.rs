@@ -1,4 +1,4 @@
-//! The camera: where it stands, what it sees, and its matrices.
+//! The camera: its position, field of view and matrices.
 //!
 //! View space is right-handed with +Y up and −Z forward. Clip space is Vulkan's (y down, depth 0..1) with reversed Z and
 //! an infinite far plane: depth 1 at `near`, 0 at infinity.
@@ -8,22 +8,22 @@ use glam::{Mat4, Vec3};
 
 use crate::scene::bounds::Bounds;
 
-/// Vertical field of view of a camera that was given none, degrees.
+/// Default vertical field of view, degrees.
 pub const DEFAULT_FOV_DEG: f32 = 45.0;
 
-/// Where the default view stands: degrees clockwise from north, so south-south-east.
+/// Direction from the model to the eye of the default view, degrees clockwise from north: south-south-east.
 const FRAMING_AZIMUTH_DEG: f32 = 152.0;
-/// How far above the horizon of the model's centre the default view stands, degrees.
+/// Elevation of the eye of the default view above the model's centre, degrees.
 const FRAMING_ELEVATION_DEG: f32 = 14.0;
-/// Room left around the model, as a share of the distance that would just fit it.
+/// Distance of the default view as a factor on the distance that just fits the model.
 const FRAMING_MARGIN: f32 = 1.05;
 
-/// A perspective camera that stands upright (+Y up).
+/// A perspective camera without roll (+Y up).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// Where the eye is, metres.
+    /// Position of the eye, metres.
     pub eye: Vec3,
-    /// What the eye looks at, metres; never the same point as `eye`.
+    /// Point that the eye looks at, metres; never equal to `eye`.
     pub target: Vec3,
     /// Vertical field of view, degrees, within (0, 180).
     pub fov_deg: f32,
@@ -32,10 +32,10 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The camera that these parts describe; what is missing is chosen so that the model within `bounds` is in view.
+    /// A camera of these parts; missing parts are chosen so that the model within `bounds` is in view.
     ///
-    /// With an eye and no target it looks at the middle of the model; with a target and no eye it stands in the
-    /// direction of the default view, far enough to see all of it. `aspect` is width / height.
+    /// Without a target it looks at the centre of the model; without an eye it views the target from the direction and the
+    /// distance of the default view. `aspect` is width / height.
     pub fn from_parts(
         eye: Option<Vec3>,
         target: Option<Vec3>,
@@ -50,7 +50,7 @@ impl Camera {
             (None, Some(target)) => (target + framed.eye - framed.target, target),
             (None, None) => (framed.eye, framed.target),
         };
-        // A camera that looks at itself has no direction: let it look north.
+        // Without a direction it looks north.
         let target = if eye == target {
             eye + Vec3::NEG_Z
         } else {
@@ -63,7 +63,7 @@ impl Camera {
         }
     }
 
-    /// A view of everything within `bounds` from the south-south-east, slightly above the model's middle.
+    /// A view of everything within `bounds` from the south-south-east, slightly above the centre.
     ///
     /// `fov_deg` is the vertical field of view in degrees, within (0, 180); `aspect` is width / height.
     pub fn framing(bounds: &Bounds, fov_deg: f32, aspect: f32) -> Self {
@@ -71,23 +71,23 @@ impl Camera {
         Self::framing_from(bounds, toward_eye, fov_deg, aspect)
     }
 
-    /// A view of everything within `bounds` from the side of its middle where `toward_eye` points: a unit vector that is
-    /// not vertical. The other arguments are those of [`Camera::framing`].
+    /// A view of everything within `bounds`; `toward_eye` is the unit vector from the centre to the eye and not vertical. The
+    /// other arguments are those of [`Camera::framing`].
     pub fn framing_from(bounds: &Bounds, toward_eye: Vec3, fov_deg: f32, aspect: f32) -> Self {
         let target = bounds.centre();
         let right = Vec3::Y.cross(toward_eye).normalize();
         let up = toward_eye.cross(right);
         let tan_y = (0.5 * fov_deg).to_radians().tan();
         let tan_x = tan_y * aspect;
-        // The corner q is inside the frame when |x| <= (distance - depth) tan, so each asks for its own distance.
+        // The corner q is in view if |x| <= (distance - depth) tan: each corner needs a distance of its own.
         let distance = bounds.corners().map(|corner| {
             let q = if bounds.is_empty() {
                 Vec3::ZERO
             } else {
                 corner - target
             };
-            let sideways = (q.dot(right).abs() / tan_x).max(q.dot(up).abs() / tan_y);
-            q.dot(toward_eye) + sideways
+            let lateral = (q.dot(right).abs() / tan_x).max(q.dot(up).abs() / tan_y);
+            q.dot(toward_eye) + lateral
         });
         let distance = distance.into_iter().fold(0.0, f32::max) * FRAMING_MARGIN;
         let near = near_plane(bounds);
@@ -114,12 +114,12 @@ impl Camera {
         vulkan::perspective_infinite_reverse(self.fov_deg.to_radians(), aspect, self.near)
     }
 
-    /// Unit vector of the line of sight.
+    /// View direction, unit.
     pub fn forward(&self) -> Vec3 {
         (self.target - self.eye).normalize_or(Vec3::NEG_Z)
     }
 
-    /// +Y, or north when the camera looks straight up or down, where +Y is no direction in the picture.
+    /// +Y, or north if the camera looks straight up or down.
     fn up(&self) -> Vec3 {
         if self.forward().y.abs() > 0.999_999 {
             Vec3::NEG_Z
@@ -136,8 +136,8 @@ fn direction(azimuth_deg: f32, elevation_deg: f32) -> Vec3 {
     Vec3::new(sin_az * cos_el, sin_el, -cos_az * cos_el)
 }
 
-/// Reversed float depth keeps its relative precision at any distance, so the near plane may be very close; it only
-/// has to shrink with small models.
+/// Distance of the near plane, metres. Reversed float depth keeps its relative precision at any distance, so the near plane
+/// may be very close; it only has to shrink with small models.
 fn near_plane(bounds: &Bounds) -> f32 {
     (1e-3 * bounds.diagonal()).clamp(1e-5, 0.05)
 }
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn framing_stands_south_east_and_above() {
+    fn framing_views_from_south_east_and_above() {
         let camera = Camera::framing(&boxes()[0], 45.0, 1.5);
         let offset = camera.eye - camera.target;
         assert!(
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_fill_in_what_is_missing() {
+    fn missing_parts_are_filled_in() {
         let bounds = boxes()[0];
         let eye = Vec3::new(9.0, 2.0, 9.0);
         let looks = Camera::from_parts(Some(eye), None, Some(30.0), &bounds, 1.0);

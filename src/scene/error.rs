@@ -1,8 +1,8 @@
-//! What can be wrong with a scene: one line each, with the thing and the remedy.
+//! Errors of loading a scene: one line each, which names the file and the remedy.
 
 use std::path::{Path, PathBuf};
 
-/// Why a scene cannot be shown. Its text is one line that names the file and says what to do.
+/// Why a scene cannot be loaded. The message is one line that names the file and the remedy.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// No such file.
@@ -14,12 +14,12 @@ pub enum SceneError {
     /// A pipe, a device, a socket.
     #[error("{} is not a regular file; save it to disk first", shown(.0))]
     NotAFile(PathBuf),
-    /// The system refused to read it.
+    /// The system cannot read it.
     #[error("{}: cannot be read ({reason}); check its permissions", shown(path))]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// The system's words.
+        /// The message of the system.
         reason: String,
     },
     /// Larger than [`LoadOptions::max_file_bytes`](crate::scene::LoadOptions::max_file_bytes).
@@ -35,18 +35,18 @@ pub enum SceneError {
         /// The limit, bytes.
         limit: u64,
     },
-    /// All files together are larger than [`LoadOptions::max_file_bytes`](crate::scene::LoadOptions::max_file_bytes).
+    /// All files of the scene together are larger than [`LoadOptions::max_file_bytes`](crate::scene::LoadOptions::max_file_bytes).
     #[error(
-        "{}: with it the files of the scene have more than {limit} bytes; name fewer or raise --max-file-mib",
+        "{}: with this file the scene exceeds {limit} bytes; use fewer files or raise --max-file-mib",
         shown(path)
     )]
     TooMuch {
-        /// The file that is too much.
+        /// The file that exceeds the limit.
         path: PathBuf,
         /// The limit, bytes.
         limit: u64,
     },
-    /// More triangles than [`LoadOptions::max_triangles`](crate::scene::LoadOptions::max_triangles) or than 32-bit numbers count.
+    /// More triangles than [`LoadOptions::max_triangles`](crate::scene::LoadOptions::max_triangles) or than 32-bit indices allow.
     #[error(
         "{}: {triangles} triangles, the limit is {limit}; simplify it or raise --max-triangles",
         shown(path)
@@ -54,30 +54,30 @@ pub enum SceneError {
     TooMany {
         /// The file.
         path: PathBuf,
-        /// Of the whole scene.
+        /// Triangles of the whole scene.
         triangles: usize,
         /// The limit.
         limit: usize,
     },
-    /// A kind of file that is not read (yet).
+    /// An unsupported file, or an unsupported feature of one.
     #[error("{}: {what}", shown(path))]
     Unsupported {
         /// The file.
         path: PathBuf,
-        /// What is not supported, and what is.
+        /// What is not supported, and the remedy.
         what: String,
     },
-    /// A line of a model that makes no sense.
+    /// A malformed line of a model.
     #[error("{}, line {line}: {what}", shown(path))]
     Malformed {
         /// The file.
         path: PathBuf,
-        /// Counted from 1.
+        /// Number of the line, from 1.
         line: usize,
         /// What is wrong with it.
         what: String,
     },
-    /// Nothing to draw; `why` is empty or says what was left out, in brackets.
+    /// Nothing to draw; `why` is empty or lists in brackets what was dropped.
     #[error("{} has no triangles{why}; export it with faces", shown(path))]
     NoTriangles {
         /// The file.
@@ -85,22 +85,22 @@ pub enum SceneError {
         /// What was dropped.
         why: String,
     },
-    /// A key or value of a scene file that makes no sense.
+    /// An invalid key or value of a scene file.
     #[error("{}: {what}", shown(path))]
     SceneFile {
         /// The file.
         path: PathBuf,
-        /// What is wrong, with the known words.
+        /// What is wrong, with the valid words.
         what: String,
     },
 }
 
-/// A path for a message: names may hold line breaks and worse.
+/// A path for a message: file names may contain line breaks and control characters.
 pub(crate) fn shown(path: &Path) -> String {
     printable(&path.display().to_string())
 }
 
-/// Text for one line of a terminal.
+/// Text for one line of a terminal: control characters are escaped.
 pub(crate) fn printable(text: &str) -> String {
     let letter = |c: char| {
         let escaped = c.is_control().then(|| c.escape_default());
@@ -108,4 +108,9 @@ pub(crate) fn printable(text: &str) -> String {
         escaped.into_iter().flatten().chain(plain)
     };
     text.chars().flat_map(letter).collect()
+}
+
+/// A message of another crate as one line.
+pub(super) fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -1,4 +1,4 @@
-//! Where files come from: the disk, or the ones that are built into the program.
+//! Sources of files: the disk, or the files that are compiled into the program.
 
 use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
@@ -16,7 +16,7 @@ pub(super) fn digest(bytes: &[u8]) -> Digest {
     *blake3::hash(bytes).as_bytes()
 }
 
-/// A file that was read, and what it held.
+/// A file that was read, and the hash of its content.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct ReadFile {
     pub path: PathBuf,
@@ -24,7 +24,7 @@ pub(super) struct ReadFile {
 }
 
 impl ReadFile {
-    /// Whether it holds the same still.
+    /// Whether its content is still the same.
     pub fn is_unchanged(&self) -> bool {
         std::fs::read(&self.path).is_ok_and(|bytes| digest(&bytes) == self.digest)
     }
@@ -34,33 +34,33 @@ impl ReadFile {
 #[derive(Debug, Clone)]
 pub(super) struct Files {
     source: Source,
-    /// What was read, if anybody wants to know.
+    /// Files read since [`Files::start_record`].
     record: Option<RefCell<Vec<ReadFile>>>,
-    /// Bytes that may still be read: however often a scene names its files, loading it ends.
+    /// Bytes that may still be read: bounds the work for a scene that names its files many times.
     left: Cell<u64>,
-    /// Of a model: what it names must lie in this folder tree. None: anywhere.
+    /// Folder tree in which the files of a model must lie; none for anywhere.
     confined_to: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Copy)]
 enum Source {
-    /// The file system; no file larger than this many bytes is read.
+    /// The file system; larger files are not read.
     Disk { max_bytes: u64 },
-    /// Built-in files by name.
+    /// Compiled-in files by name.
     Embedded(&'static [(&'static str, &'static [u8])]),
 }
 
-/// Where a file that a model names is.
+/// The file that a name in a model refers to.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum Lookup {
     Found(PathBuf),
     Missing(PathBuf),
-    /// It is there, but the model has no business with it.
+    /// It exists outside the folder tree of the model and may not be read.
     Outside(PathBuf),
 }
 
 impl Files {
-    /// The file system; no file larger than this many bytes is read.
+    /// The file system; reads at most `max_bytes` of one file and of all files together.
     pub fn disk(max_bytes: u64) -> Self {
         Self {
             source: Source::Disk { max_bytes },
@@ -70,7 +70,7 @@ impl Files {
         }
     }
 
-    /// Built-in files by name.
+    /// Compiled-in files by name.
     pub fn embedded(files: &'static [(&'static str, &'static [u8])]) -> Self {
         Self {
             source: Source::Embedded(files),
@@ -80,12 +80,12 @@ impl Files {
         }
     }
 
-    /// Keeps a record of what is read from now on.
+    /// Records the files that are read from now on.
     pub fn start_record(&mut self) {
         self.record = Some(RefCell::default());
     }
 
-    /// What was read since [`Files::start_record`].
+    /// The files read since [`Files::start_record`].
     pub fn take_record(&mut self) -> Vec<ReadFile> {
         self.record
             .take()
@@ -93,7 +93,7 @@ impl Files {
             .unwrap_or_default()
     }
 
-    /// From now on [`Files::find`] finds only what lies in the folder tree of `model`.
+    /// Confines [`Files::find`] to the folder tree of `model`.
     pub fn confine_to(&mut self, model: &Path) {
         let folder = model.parent().unwrap_or(Path::new(""));
         let folder = if folder.as_os_str().is_empty() {
@@ -104,9 +104,9 @@ impl Files {
         self.confined_to = folder.canonicalize().ok();
     }
 
-    /// The file that a name in a model means: beside the model as written, with back-slashes as separators, or, for the
-    /// absolute paths of somebody else's machine, its last part.
-    pub fn find(&self, folder: &Path, name: &str) -> Place {
+    /// The file that a name in a model refers to, in the folder of the model: by the name as written, with backslashes as
+    /// separators, or by its last component (for absolute paths of another machine).
+    pub fn find(&self, folder: &Path, name: &str) -> Lookup {
         let forward: Cow<str> = if name.contains('\\') {
             name.replace('\\', "/").into()
         } else {
@@ -116,18 +116,18 @@ impl Files {
         let candidates = [folder.join(name), folder.join(&*forward), folder.join(last)];
         let mut there = candidates.iter().filter(|path| self.has(path));
         match there.clone().find(|path| self.is_inside(path)) {
-            Some(path) => Place::Found(self.one_name(path)),
+            Some(path) => Lookup::Found(self.canonical_name(path)),
             None => there
                 .next()
-                .map_or(Place::Missing(candidates[1].clone()), |path| {
-                    Place::Outside(path.clone())
+                .map_or(Lookup::Missing(candidates[1].clone()), |path| {
+                    Lookup::Outside(path.clone())
                 }),
         }
     }
 
-    /// The one name of a file that can be spelled in many ways: a hostile model could have it read once for each.
-    fn one_name(&self, path: &Path) -> PathBuf {
-        // Without doubled separators and single dots.
+    /// One name for all spellings of a path, so that a hostile model cannot have the same file read once for each.
+    fn canonical_name(&self, path: &Path) -> PathBuf {
+        // Drops doubled separators and single dots.
         let plain: PathBuf = path.components().collect();
         let Source::Disk { .. } = self.source else {
             return plain;
@@ -138,7 +138,7 @@ impl Files {
         }
     }
 
-    /// Links are followed: one that leads out is outside.
+    /// Symbolic links are followed: a link out of the folder tree is outside.
     fn is_inside(&self, path: &Path) -> bool {
         let Some(root) = &self.confined_to else {
             return true;
@@ -149,10 +149,10 @@ impl Files {
         }
     }
 
-    /// The whole file.
+    /// The content of a file.
     ///
     /// # Errors
-    /// One that names the file when it is missing, no regular file, too large or unreadable.
+    /// A file that is missing, not regular, too large or unreadable.
     pub fn read(&self, path: &Path) -> Result<Vec<u8>, SceneError> {
         match self.source {
             Source::Disk { max_bytes } => {
@@ -178,7 +178,7 @@ impl Files {
         }
     }
 
-    /// BLAKE3 of a file's content, without holding it.
+    /// BLAKE3 of a file's content, without keeping it in memory.
     ///
     /// # Errors
     /// As [`Files::read`].
@@ -189,18 +189,18 @@ impl Files {
         }
     }
 
-    /// The whole file as text; bytes that are not UTF-8 (old exporters' names) become replacement characters.
+    /// The content of a file as text. Bytes that are not UTF-8 (names by old exporters) become replacement characters.
     pub fn read_text(&self, path: &Path) -> Result<String, SceneError> {
         let bytes = self.read(path)?;
         if let Some(rest) = bytes.strip_prefix(b"\xEF\xBB\xBF") {
             return Ok(String::from_utf8_lossy(rest).into_owned());
         }
-        // Without a copy where it is sound: models are large.
+        // Valid UTF-8 needs no copy: models are large.
         Ok(String::from_utf8(bytes)
             .unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned()))
     }
 
-    /// Only whether [`Files::read`] would find a file there.
+    /// Whether [`Files::read`] would find a file there, without reading it.
     pub fn probe(&self, path: &Path) -> Result<(), SceneError> {
         match std::fs::metadata(path) {
             Ok(meta) if meta.is_dir() => Err(SceneError::Directory(path.to_owned())),
@@ -211,7 +211,7 @@ impl Files {
         }
     }
 
-    /// Whether there is such a file.
+    /// Whether the file exists.
     pub fn has(&self, path: &Path) -> bool {
         match self.source {
             Source::Disk { .. } => path.is_file(),
@@ -220,7 +220,7 @@ impl Files {
     }
 }
 
-/// Opens a file of at most `limit` bytes; gives its length too.
+/// Opens a file of at most `limit` bytes; also gives its length, bytes.
 fn open_disk(path: &Path, limit: u64) -> Result<(std::fs::File, u64), SceneError> {
     let failed = |error: std::io::Error| unreadable(path, &error);
     let meta = std::fs::metadata(path).map_err(failed)?;
@@ -261,7 +261,7 @@ fn read_disk(path: &Path, limit: u64) -> Result<Vec<u8>, SceneError> {
     bytes
         .try_reserve_exact(length as usize)
         .map_err(|error| failed(error.into()))?;
-    // The length above is a promise that files in /proc and growing ones do not keep.
+    // The length above is wrong for files in /proc and for growing files.
     let read = file
         .take(limit.saturating_add(1))
         .read_to_end(&mut bytes)

@@ -1,8 +1,8 @@
-//! Materials as the lecture's ρ_d, ρ_s and p, and the rules that lead there from other models.
+//! Materials as the lecture's ρ_d, ρ_s and p, and the conversion from metallic-roughness.
 
 use serde::{Deserialize, Serialize};
 
-/// How a surface reflects: Lambert plus a Phong lobe. Every surface is seen from both sides.
+/// Reflection of a surface: Lambertian plus a Phong lobe. All surfaces are two-sided.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// Name in its file.
@@ -15,19 +15,19 @@ pub struct Material {
     pub shininess: f32,
     /// Opacity (MTL `d`, or 1 − `Tr`), 0..1. Materials below 0.5 without `alpha_cutoff` are not drawn at all.
     pub dissolve: f32,
-    /// Of a cut-out: where `dissolve` x alpha of `diffuse_texture` x alpha of the vertices is less, there is a hole. 0..1.
+    /// For cut-outs: there is a hole where `dissolve` x alpha of `diffuse_texture` x alpha of the vertices is less. 0..1.
     pub alpha_cutoff: Option<f32>,
-    /// Number of the texture of ρ_d in [`Scene::textures`](crate::scene::Scene::textures).
+    /// Index of the texture of ρ_d in [`Scene::textures`](crate::scene::Scene::textures).
     pub diffuse_texture: Option<usize>,
-    /// Number of the texture of ρ_s in [`Scene::textures`](crate::scene::Scene::textures).
+    /// Index of the texture of ρ_s in [`Scene::textures`](crate::scene::Scene::textures).
     pub specular_texture: Option<usize>,
-    /// Number of the normal map in [`Scene::textures`](crate::scene::Scene::textures).
+    /// Index of the normal map in [`Scene::textures`](crate::scene::Scene::textures).
     pub normal_texture: Option<usize>,
     /// Factor on the slopes of the normal map.
     pub normal_scale: f32,
 }
 
-/// The material of a model without materials: a 0.5 grey Lambert body.
+/// The material of a model without materials: Lambertian, reflectance 0.5.
 pub(super) const MTL_DEFAULT: Material = Material {
     name: String::new(),
     diffuse: [0.5; 3],
@@ -47,14 +47,58 @@ impl Default for Material {
     }
 }
 
+/// A material by its name and the bits of its values.
+#[derive(Debug, PartialEq, Eq, Hash)]
+pub(super) struct MaterialKey {
+    name: String,
+    /// ρ_d, ρ_s, p, opacity, cut-off (negative without one), factor of the normal map.
+    values: [u32; 10],
+    textures: [Option<usize>; 3],
+}
+
 impl Material {
-    /// Whether anything of it can be seen.
+    /// Equal for equal materials.
+    pub(super) fn key(&self) -> MaterialKey {
+        // Without `..`: a new field does not compile until it is part of the key.
+        let Self {
+            name,
+            diffuse: [r, g, b],
+            specular: [sr, sg, sb],
+            shininess,
+            dissolve,
+            alpha_cutoff,
+            diffuse_texture,
+            specular_texture,
+            normal_texture,
+            normal_scale,
+        } = self;
+        let cutoff = alpha_cutoff.unwrap_or(-1.0);
+        let values = [
+            *r,
+            *g,
+            *b,
+            *sr,
+            *sg,
+            *sb,
+            *shininess,
+            *dissolve,
+            cutoff,
+            *normal_scale,
+        ];
+        MaterialKey {
+            name: name.clone(),
+            values: values.map(f32::to_bits),
+            textures: [*diffuse_texture, *specular_texture, *normal_texture],
+        }
+    }
+
+    /// Whether it is opaque enough to be drawn.
     pub(super) fn is_drawn(&self) -> bool {
         self.dissolve >= self.alpha_cutoff.unwrap_or(0.5)
     }
 }
 
-/// A surface by the metallic-roughness model of glTF and of MTL's PBR keys.
+/// A surface in the metallic-roughness model of glTF and of MTL's PBR keys.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct MetallicRoughness {
     /// Base colour, linear RGB, 0..1.
@@ -73,10 +117,10 @@ pub(super) struct MetallicRoughness {
 ///
 /// With F0 = ((ior − 1)/(ior + 1))² for a dielectric and the base colour for a metal, and gloss g = (1 − roughness)²:
 ///
-/// - ρ_s = g F0: here ρ_s mirrors the sky sharply whatever p is, so a rough surface, which would blur the sky beyond
-///   recognition, keeps only the share g of it;
-/// - ρ_d = base (1 − metallic g): what a rough metal does not mirror it scatters in its colour, and a dielectric keeps its
-///   whole base colour;
+/// - ρ_s = g F0: ρ_s reflects the sky sharply whatever p is, so a rough surface, which would blur the sky, keeps only the
+///   share g;
+/// - ρ_d = base (1 − metallic g): a rough metal scatters in its colour what it does not reflect specularly, and a dielectric
+///   keeps its base colour;
 /// - p = 2/α² − 2 with α = roughness² (Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces": the
 ///   Phong lobe of the same width), 1..100 000.
 pub(super) fn phong_of(surface: &MetallicRoughness) -> ([f32; 3], [f32; 3], f32) {
@@ -120,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_smooth_dielectric_mirrors_four_percent() {
+    fn a_smooth_dielectric_reflects_four_percent() {
         let (diffuse, specular, shininess) = phong_of(&MetallicRoughness {
             roughness: 0.0,
             ..PLASTIC
@@ -131,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn metals_share_their_colour_between_mirror_and_lambert() {
+    fn metals_share_their_colour_between_specular_and_diffuse() {
         for roughness in [0.0, 0.3, 0.7, 1.0] {
             let metal = MetallicRoughness {
                 metallic: 1.0,
@@ -146,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_gives_bounded_values() {
+    fn invalid_values_give_bounded_ones() {
         let (diffuse, specular, shininess) = phong_of(&MetallicRoughness {
             base: [f32::NAN, 9.0, -1.0],
             metallic: f32::INFINITY,

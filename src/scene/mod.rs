@@ -1,7 +1,7 @@
 //! Models, materials, textures, cameras and scene files, without a device.
 //!
-//! [`load`] turns a scene file or a model into one [`Scene`]: every mesh in world space, in one arena of vertices and
-//! indices, ready to be uploaded. World space is right-handed, metres, +Y up, +X east, −Z north.
+//! [`load`] reads a scene file or a model into a [`Scene`]: all meshes in world space, in one arena of vertices and indices,
+//! ready for upload. World space is right-handed, in metres, +Y up, +X east, −Z north.
 
 mod bounds;
 mod builder;
@@ -12,6 +12,8 @@ mod culling;
 mod error;
 mod files;
 mod gltf;
+mod hills;
+mod load;
 mod material;
 mod mesh;
 mod obj;
@@ -19,9 +21,6 @@ mod progress;
 mod scene_file;
 mod texture;
 
-use std::path::{Path, PathBuf};
-
-use glam::Affine3A;
 use serde::{Deserialize, Serialize};
 
 pub use bounds::Bounds;
@@ -32,57 +31,55 @@ pub use culling::clusters::{Cluster, Clusters, Solid};
 pub use culling::layout::Layout;
 pub use error::SceneError;
 pub(crate) use error::shown;
+pub use hills::hills;
+pub use load::{LoadOptions, Loaded, load, load_with_progress};
 pub use material::Material;
 pub use progress::Progress;
 pub use scene_file::{NamedCamera, NamedMoment, NamedOptions};
 pub use texture::{Encoding, Texture};
 
-use builder::Builder;
-use files::Files;
-use obj::{Placement, append_obj};
-use progress::Reporter;
-use scene_file::Said;
+use load::append_model;
 
-/// Everything there is to see: one arena of vertices, the parts that draw them, and what they look like.
+/// A scene: one arena of vertices, the parts that draw them, materials and textures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// Vertex positions in world space, metres.
     pub positions: Vec<[f32; 3]>,
     /// Unit normals in world space, one for each position.
     pub normals: Vec<[f32; 3]>,
-    /// Texture coordinates, one for each position; (0, 0) is the corner of the first row and first texel.
+    /// Texture coordinates, one for each position; (0, 0) is the corner of the first texel of the first row.
     pub texcoords: Vec<[f32; 2]>,
-    /// Linear RGBA that multiplies ρ_d and opacity, 0..65535 for 0..1: one for each position, or none at all.
+    /// Linear RGBA factors on ρ_d and opacity, 0..65535 for 0..1: one for each position, or empty.
     pub colours: Vec<[u16; 4]>,
-    /// For normal maps: unit tangent toward growing u, then the sign of the bitangent (normal x tangent x sign points
-    /// toward the upper rows of the picture), −32767..32767 for −1..1: one for each position, or none at all.
+    /// For normal maps: unit tangent toward increasing u, then the sign of the bitangent (normal x tangent x sign points
+    /// toward the upper rows of the texture), −32767..32767 for −1..1: one for each position, or empty.
     pub tangents: Vec<[i16; 4]>,
-    /// Three for each triangle, counter-clockwise seen from the front; numbers of `positions`.
+    /// Three for each triangle, counter-clockwise seen from the front; into `positions`.
     pub indices: Vec<u32>,
-    /// What is drawn with one material; together they cover `indices` without gaps.
+    /// Runs of triangles with one material; together they cover `indices` without gaps.
     pub parts: Vec<Part>,
-    /// Looked up by [`Part::material`].
+    /// Indexed by [`Part::material`].
     pub materials: Vec<Material>,
-    /// Looked up by the texture numbers of [`Material`].
+    /// Indexed by the textures of [`Material`].
     pub textures: Vec<Texture>,
-    /// Around everything.
+    /// Around all parts, metres.
     pub bounds: Bounds,
-    /// What was odd but no reason to stop, one line each.
+    /// Warnings of the importers, one line each.
     pub warnings: Vec<String>,
-    /// How it is drawn, if that is known already. It holds for the indices as they are.
+    /// Draw layout, if it has been computed; it holds for the current order of `indices`.
     pub layout: Option<Layout>,
 }
 
 /// A run of triangles of one mesh with one material.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Part {
-    /// Where it starts in [`Scene::indices`].
+    /// Its start in [`Scene::indices`].
     pub first_index: u32,
     /// A multiple of three, not zero.
     pub index_count: u32,
-    /// Number of its material in [`Scene::materials`].
+    /// Index of its material in [`Scene::materials`].
     pub material: u32,
-    /// Whether its vertices have colours of their own.
+    /// Whether its vertices have colours.
     pub has_colours: bool,
     /// Around its triangles, metres.
     pub bounds: Bounds,
@@ -108,7 +105,7 @@ impl Default for Scene {
 }
 
 impl Scene {
-    /// Colours and tangents have an entry for each vertex, or none at all.
+    /// Pads colours and tangents to one for each vertex, unless they are empty.
     fn fill_streams(&mut self) {
         let vertices = self.positions.len();
         if !self.colours.is_empty() {
@@ -119,15 +116,15 @@ impl Scene {
         }
     }
 
-    /// Finds out how it is drawn, and brings its indices into that order.
+    /// Computes the draw layout and reorders the indices accordingly.
     pub fn arrange(&mut self) {
         let (indices, layout) = Layout::of(self);
         self.indices = indices;
         self.layout = Some(layout);
     }
 
-    /// Which parts may cast a shadow: all but a flat ground (or sea) below the middle of all else and more than four times
-    /// as wide. Drawing it would spread a shadow map over kilometres where there is nothing to shade.
+    /// For each part whether it casts a shadow: all but a flat ground (or sea) that lies below the centre of all else and is
+    /// more than four times as wide. It would stretch the shadow map over kilometres without receivers.
     pub fn casting(&self) -> Vec<bool> {
         let flat = |part: &Part| {
             let extent = part.bounds.extent();
@@ -146,7 +143,7 @@ impl Scene {
         self.parts.iter().map(casts).collect()
     }
 
-    /// Around all parts that may cast a shadow.
+    /// Bounds of all parts that cast a shadow, metres.
     pub fn casters(&self) -> Bounds {
         let parts = self.parts.iter().zip(self.casting());
         let casting = parts.filter(|(_, casts)| *casts);
@@ -156,182 +153,6 @@ impl Scene {
     /// Number of triangles.
     pub fn triangles(&self) -> usize {
         self.indices.len() / 3
-    }
-}
-
-/// What [`load`] may do.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LoadOptions {
-    /// Smooths corners that have no normal below this crease angle, degrees 0..180. None: smoothing groups, else flat.
-    /// A mesh of a scene file with its own `smooth` goes by that.
-    pub smooth_deg: Option<f32>,
-    /// Pictures with a longer edge are not decoded, texels. 16 384 by default.
-    pub max_texture_edge: u32,
-    /// Most that all decoded pictures together may take, bytes. 1 GiB by default.
-    pub max_texture_bytes: u64,
-    /// Larger files are not read, bytes. 4 GiB by default.
-    pub max_file_bytes: u64,
-    /// Most triangles of a scene, instances counted. 64 million by default.
-    pub max_triangles: usize,
-    /// Whether a model may name libraries, pictures and buffers outside of its own folder tree. False by default: a
-    /// downloaded model has no business with other files.
-    pub allow_outside: bool,
-    /// Folder for processed scenes: a large model starts quickly the second time. None by default.
-    pub cache: Option<PathBuf>,
-}
-
-impl Default for LoadOptions {
-    fn default() -> Self {
-        Self {
-            smooth_deg: None,
-            max_texture_edge: 16_384,
-            max_texture_bytes: 1 << 30,
-            max_file_bytes: 1 << 32,
-            max_triangles: 64 << 20,
-            allow_outside: false,
-            cache: None,
-        }
-    }
-}
-
-/// A scene and what its file asks for besides.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Loaded {
-    /// Where from, for messages.
-    pub path: PathBuf,
-    /// What is seen.
-    pub scene: Scene,
-    /// Options of the scene file as the command line would have them, without dashes: `("turbidity", "3")`. The
-    /// nameless `[camera]` is among them. For a model: its first camera, if it has any.
-    pub options: Vec<(String, String)>,
-    /// The named cameras, in the order of the file.
-    pub cameras: Vec<NamedCamera>,
-    /// The named moments, in the order of the file.
-    pub moments: Vec<NamedMoment>,
-}
-
-/// Reads a scene file (`.toml`) or a model (`.obj`, `.gltf`, `.glb`).
-///
-/// # Errors
-/// One line that names the file, for whatever keeps the scene from being shown. A missing material library or texture is
-/// a line in [`Scene::warnings`] instead.
-pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
-    load_telling(Some(path), options, &|_, _| ())
-}
-
-/// As [`load`], or a bundled scene by its name ([`BUNDLED`]) or, without a path, the first of them, telling how far it is. It needs
-/// no device and may run on any thread, so that an event loop can go on meanwhile.
-///
-/// # Errors
-/// As [`load`].
-pub fn load_telling(
-    path: Option<&Path>,
-    options: &LoadOptions,
-    progress: Progress<'_>,
-) -> Result<Loaded, SceneError> {
-    let disk = Files::disk(options.max_file_bytes);
-    let name = match path.map(|path| (path, bundled_name(path))) {
-        Some((path, None)) => return load_by_cache(disk, path, options, progress),
-        Some((_, Some(name))) => name,
-        None => BUNDLED[0],
-    };
-    bundled::load_bundled(name, options, progress)
-}
-
-/// From the cache if there is one, the model is large and its entry sound; else from the files, and into the cache.
-fn load_by_cache(
-    mut files: Files,
-    path: &Path,
-    options: &LoadOptions,
-    progress: Progress<'_>,
-) -> Result<Loaded, SceneError> {
-    let large = std::fs::metadata(path).is_ok_and(|meta| meta.len() >= cache::SMALLEST);
-    let Some(folder) = options.cache.as_deref().filter(|_| large) else {
-        return load_from(&mut files, path, options, progress);
-    };
-    progress(0.0, "looking in the cache");
-    let content = files.digest(path)?;
-    let entry = cache::place(folder, path, content, options);
-    if let Some(loaded) = cache::read(&entry, path) {
-        progress(1.0, "loaded");
-        return Ok(loaded);
-    }
-    files.start_record();
-    let loaded = load_from(&mut files, path, options, progress)?;
-    cache::write(&entry, &loaded, files.take_record());
-    Ok(loaded)
-}
-
-/// Share of loading that comes before the layout.
-const READING: f32 = 0.9;
-
-fn load_from(
-    files: &mut Files,
-    path: &Path,
-    options: &LoadOptions,
-    progress: Progress<'_>,
-) -> Result<Loaded, SceneError> {
-    let reading = Reporter::new(progress).up_to(READING);
-    let mut builder = Builder::new(files.clone(), options, reading);
-    let extension = path
-        .extension()
-        .map(|e| e.to_string_lossy().to_ascii_lowercase());
-    let said = match extension.as_deref() {
-        Some("toml") => scene_file::append_scene(&mut builder, path, options)?,
-        _ => {
-            let placement = Placement {
-                world_from_mesh: Affine3A::IDENTITY,
-                smooth_deg: options.smooth_deg,
-            };
-            let cameras = append_model(&mut builder, path, &placement)?;
-            let first = cameras.first().map(|c| c.options.clone());
-            Said {
-                options: first.unwrap_or_default(),
-                cameras,
-                moments: Vec::new(),
-            }
-        }
-    };
-    builder.scene.fill_streams();
-    *files = builder.files;
-    progress(READING, "sorting");
-    builder.scene.arrange();
-    progress(1.0, "loaded");
-    Ok(Loaded {
-        path: path.to_owned(),
-        scene: builder.scene,
-        options: said.options,
-        cameras: said.cameras,
-        moments: said.moments,
-    })
-}
-
-/// Adds a model of any known format; returns its cameras.
-fn append_model(
-    builder: &mut Builder<'_>,
-    path: &Path,
-    placement: &Placement,
-) -> Result<Vec<NamedCamera>, SceneError> {
-    builder.begin_model(path);
-    let unsupported = |what: String| {
-        Err(SceneError::Unsupported {
-            path: path.to_owned(),
-            what,
-        })
-    };
-    let extension = path
-        .extension()
-        .map(|e| e.to_string_lossy().to_ascii_lowercase());
-    match extension.as_deref() {
-        Some("obj") => append_obj(builder, path, placement).map(|()| Vec::new()),
-        Some("gltf" | "glb") => gltf::append_gltf(builder, path, placement),
-        // A missing file or a directory is the better news than its extension.
-        _ => match builder.files.probe(path) {
-            Err(error @ (SceneError::Missing(_) | SceneError::Directory(_))) => Err(error),
-            _ => unsupported(
-                "is no scene file (.toml) and no model (.obj, .gltf, .glb); convert it".to_owned(),
-            ),
-        },
     }
 }
 
@@ -354,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wide_ground_casts_nothing_but_a_roof_does() {
+    fn a_wide_ground_casts_no_shadow_but_a_roof_does() {
         let house = part([-5.0, 0.0, -5.0], [5.0, 6.0, 5.0]);
         let sea = part([-900.0, 0.1, -900.0], [900.0, 0.1, 900.0]);
         let lawn = part([-9.0, 0.0, -9.0], [9.0, 0.0, 9.0]);
@@ -365,7 +186,7 @@ mod tests {
         };
         assert_eq!(scene(&[house, sea, lawn]).casting(), [true, false, true]);
         assert_eq!(scene(&[house, sail]).casting(), [true, true]);
-        assert_eq!(scene(&[sea]).casting(), [true], "nothing else is there");
+        assert_eq!(scene(&[sea]).casting(), [true], "the only part");
         assert_eq!(scene(&[house, sea]).casters().max, Vec3::new(5.0, 6.0, 5.0));
     }
 }

@@ -1,13 +1,13 @@
-//! How far loading is: a fraction and a stage, told to whoever waits.
+//! Progress of loading: a fraction and a stage.
 
-/// Told the fraction done, 0..=1 and never falling, and the stage by name. It is called on the thread that loads and
-/// often, so it should be quick: set a value that the waiting thread reads.
+/// Receives the fraction done, 0..=1 and never decreasing, and the name of the stage. It is called often, on the loading
+/// thread, so it should be quick: store a value that another thread reads.
 pub type Progress<'p> = &'p (dyn Fn(f32, &'static str) + Sync);
 
-/// Tells the progress of one part of the work as a stretch of the whole.
+/// Reports the progress of one part of the work as a range of the whole.
 #[derive(Clone, Copy)]
 pub(super) struct Reporter<'p> {
-    tell: Progress<'p>,
+    report: Progress<'p>,
     from: f32,
     to: f32,
 }
@@ -19,22 +19,22 @@ impl std::fmt::Debug for Reporter<'_> {
 }
 
 impl<'p> Reporter<'p> {
-    /// The whole work.
-    pub fn new(tell: Progress<'p>) -> Self {
+    /// For the whole work.
+    pub fn new(report: Progress<'p>) -> Self {
         Self {
-            tell,
+            report,
             from: 0.0,
             to: 1.0,
         }
     }
 
-    /// Its first share, 0..=1.
+    /// For the first `share` of the work, 0..=1.
     pub fn up_to(self, share: f32) -> Self {
         let to = self.from + (self.to - self.from) * share;
         Self { to, ..self }
     }
 
-    /// Part `index` of `count` equal parts.
+    /// For part `index` of `count` equal parts.
     pub fn part(self, index: usize, count: usize) -> Self {
         let at = |i: usize| self.from + (self.to - self.from) * i as f32 / count.max(1) as f32;
         Self {
@@ -44,9 +44,9 @@ impl<'p> Reporter<'p> {
         }
     }
 
-    /// This share of the part, 0..=1, is done; the next thing is `stage`.
+    /// Reports that this share of the part, 0..=1, is done, and what comes next.
     pub fn at(&self, share: f32, stage: &'static str) {
-        (self.tell)(self.from + (self.to - self.from) * share, stage);
+        (self.report)(self.from + (self.to - self.from) * share, stage);
     }
 }
 

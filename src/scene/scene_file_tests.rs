@@ -1,6 +1,7 @@
 use super::*;
+use crate::scene::Loaded;
 use crate::scene::files::Files;
-use crate::scene::{Loaded, load_from};
+use crate::scene::load::load_from;
 
 const OBJ: &[u8] = b"v 1 0 0\nv 0 0 2\nv 0 1 0\nf 1 2 3\n";
 

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use super::super::{
     AoResolution, Direction, ExposureMode, Filter, Fresnel, Optional, Penumbra, Phong, Place,
     Preset, Quantity, Range, Reflections, Show, Size, SkyModel, SolarTime, SunPositionMethod,
-    Switch, ToneCurve, Visibility,
+    Switch, ToneCurve, Visibility, When,
 };
 use super::*;
 use crate::cli::{Command, parse};
@@ -125,7 +125,7 @@ impl Random {
                     longitude: r.within(-180.0, 180.0),
                 })
                 .filter(|_| kind != 0),
-            when: (kind == 1).then(|| self.moment()),
+            when: (kind == 1).then(|| When::Moment(self.moment())),
             sun: (kind == 0).then(|| Direction {
                 azimuth_deg: self.within(0.0, 359.9),
                 elevation_deg: self.within(-90.0, 90.0),

@@ -1,4 +1,3 @@
-use super::super::sun_input::DEFAULT_WHEN;
 use super::*;
 use crate::scene::{NamedCamera, Scene};
 
@@ -30,7 +29,7 @@ fn sun(user: &[(&str, &str)], file: &[(&str, &str)]) -> SunInput {
 
 #[test]
 fn nothing_given_is_a_summer_afternoon() {
-    let when = chrono::DateTime::parse_from_rfc3339(DEFAULT_WHEN).expect("a moment");
+    let when = chrono::DateTime::parse_from_rfc3339("2026-06-21T15:00:00+02:00").expect("a moment");
     assert_eq!(
         sun(&[], &[]),
         SunInput::Place {
@@ -38,6 +37,28 @@ fn nothing_given_is_a_summer_afternoon() {
             longitude: 12.52,
             when
         }
+    );
+}
+
+#[test]
+fn local_times_are_those_of_the_place_that_is_used() {
+    let when = |user: &[(&str, &str)], file: &[(&str, &str)]| match sun(user, file) {
+        SunInput::Place { when, .. } => when.to_rfc3339(),
+        other => panic!("{other:?}"),
+    };
+    let tokyo = ("place", "tokyo");
+    assert_eq!(when(&[tokyo], &[]), "2026-06-21T15:00:00+09:00");
+    assert_eq!(when(&[], &[tokyo]), "2026-06-21T15:00:00+09:00");
+    let winter = ("when", "2026-12-21T15:00");
+    for (user, file) in [([tokyo], [winter]), ([winter], [tokyo])] {
+        assert_eq!(when(&user, &file), "2026-12-21T15:00:00+09:00");
+    }
+    assert_eq!(when(&[winter], &[]), "2026-12-21T15:00:00+01:00");
+    let error = resolve(&[("when", "2026-10-25 02:30")], &[("place", "oslo")]);
+    let error = error.expect_err("two readings");
+    assert!(
+        error.starts_with("--when: 2026-10-25 02:30 occurs twice") && error.lines().count() == 1,
+        "{error}"
     );
 }
 

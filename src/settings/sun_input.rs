@@ -2,15 +2,8 @@
 
 use chrono::{DateTime, FixedOffset};
 
-use super::{Direction, Options, Place, SettingsError, SolarTime, values};
-
-/// The default place: the lecture's university, degrees.
-const DEFAULT_PLACE: Place = Place {
-    latitude: 55.79,
-    longitude: 12.52,
-};
-/// The default moment: a summer afternoon there.
-pub(super) const DEFAULT_WHEN: &str = "2026-06-21T15:00:00+02:00";
+use super::{Direction, Options, Place, SettingsError, SolarTime};
+use crate::daylight::moment::default_moment;
 
 /// Where the sun comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,10 +38,11 @@ pub enum SunInput {
 impl SunInput {
     /// What the options say of it, or the default place and moment.
     pub(super) fn of(o: &Options) -> Result<Self, SettingsError> {
+        let place = o.place.unwrap_or_default();
         let Place {
             latitude,
             longitude,
-        } = o.place.unwrap_or(DEFAULT_PLACE);
+        } = place;
         if let Some(Direction {
             azimuth_deg,
             elevation_deg,
@@ -66,10 +60,11 @@ impl SunInput {
                 latitude,
             });
         }
-        let when = o
-            .when
-            .map_or_else(|| values::when(DEFAULT_WHEN), Ok)
-            .map_err(SettingsError)?;
+        let wrong = |what: String| SettingsError(format!("--when: {what}"));
+        let when = match o.when {
+            Some(when) => when.at(place).map_err(wrong)?,
+            None => default_moment(place),
+        };
         Ok(Self::Place {
             latitude,
             longitude,

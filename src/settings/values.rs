@@ -2,11 +2,11 @@
 
 use std::ops::RangeInclusive;
 
-use chrono::{DateTime, FixedOffset, NaiveDate};
 use clap::ValueEnum;
 
-use crate::daylight::cities;
 use crate::daylight::false_colour::Range;
+pub use crate::daylight::moment::When;
+pub use crate::daylight::place::Place;
 pub use crate::passes::light::lighting::Show;
 
 /// Width and height of a picture, pixels, 1..16 384 each.
@@ -16,15 +16,6 @@ pub struct Size {
     pub width: u32,
     /// Rows.
     pub height: u32,
-}
-
-/// A place on the earth.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
-    /// Degrees, north positive, −90..90.
-    pub latitude: f64,
-    /// Degrees, east positive, −180..180.
-    pub longitude: f64,
 }
 
 /// The lecture's inputs.
@@ -173,24 +164,6 @@ pub(super) fn point(text: &str) -> Result<[f64; 3], String> {
     Ok(point)
 }
 
-/// `LAT,LON`, degrees, or the name of a city.
-pub(super) fn place(text: &str) -> Result<Place, String> {
-    if text.trim().starts_with(char::is_alphabetic) {
-        let city = cities::named(text)?;
-        return Ok(Place {
-            latitude: city.latitude,
-            longitude: city.longitude,
-        });
-    }
-    let [latitude, longitude] = list(text, "LAT,LON in degrees, for instance 55.79,12.52")?;
-    within("latitude", "degrees", -90.0..=90.0, latitude)?;
-    within("longitude", "degrees", -180.0..=180.0, longitude)?;
-    Ok(Place {
-        latitude,
-        longitude,
-    })
-}
-
 /// `MIN,MAX` of false colours.
 pub(super) fn colour_range(text: &str) -> Result<Range, String> {
     let [min, max] = list(text, "MIN,MAX, for instance 100,10000")?;
@@ -243,81 +216,9 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
     Ok(Size { width, height })
 }
 
-/// RFC 3339 with its offset; seconds may be missing.
-pub(super) fn when(text: &str) -> Result<DateTime<FixedOffset>, String> {
-    let text = text.trim();
-    let zulu = text
-        .strip_suffix(['Z', 'z'])
-        .map(|head| format!("{head}+00:00"));
-    let text = zulu.as_deref().unwrap_or(text);
-    let short = || DateTime::parse_from_str(text, "%Y-%m-%dT%H:%M%:z");
-    let parsed = DateTime::parse_from_rfc3339(text).or_else(|_| short());
-    parsed.map_err(|_| what_is_wrong(text))
-}
-
-fn what_is_wrong(text: &str) -> String {
-    let form = "write a date, a time and its UTC offset, for instance 2026-06-21T15:00+02:00";
-    let (date, time) = text.split_once(['T', 't', ' ']).unwrap_or((text, ""));
-    let parts: Option<Vec<u32>> = date.split('-').map(|part| part.parse().ok()).collect();
-    let Some(&[year, month, day]) = parts.as_deref() else {
-        return form.to_owned();
-    };
-    if NaiveDate::from_ymd_opt(year as i32, month, day).is_none() {
-        return format!("{date} is a date that does not exist");
-    }
-    if time.is_empty() {
-        return format!("the time is missing; {form}");
-    }
-    let (clock, offset) = match time.rfind(['+', '-']) {
-        Some(at) => time.split_at(at),
-        None => (time, ""),
-    };
-    if offset.is_empty() {
-        return format!("the UTC offset is missing; {form}");
-    }
-    let clock: Option<Vec<f64>> = clock.split(':').map(|part| part.parse().ok()).collect();
-    match clock.as_deref() {
-        Some([hour, rest @ ..]) if *hour >= 24.0 || rest.iter().any(|part| *part >= 60.0) => {
-            format!("{time} is a time that does not exist")
-        }
-        _ => form.to_owned(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn moments_need_an_offset_and_may_lack_seconds() {
-        let expected = DateTime::parse_from_rfc3339("2026-06-21T12:00:00Z").expect("a moment");
-        for text in [
-            "2026-06-21T14:00+02:00",
-            "2026-06-21T14:00:00+02:00",
-            "2026-06-21T12:00Z",
-            "2026-06-21 14:00:00+02:00",
-        ] {
-            assert_eq!(when(text), Ok(expected), "{text}");
-        }
-        for (text, part) in [
-            (
-                "2026-02-30T12:00+01:00",
-                "2026-02-30 is a date that does not exist",
-            ),
-            ("2025-02-29T12:00:00Z", "does not exist"),
-            ("2026-13-01T12:00Z", "does not exist"),
-            ("2026-06-21T25:00+02:00", "a time that does not exist"),
-            ("2026-06-21T14:00", "offset is missing"),
-            ("2026-06-21", "time is missing"),
-            ("tomorrow", "write a date"),
-            ("", "write a date"),
-            ("99999999999-01-01T00:00Z", "write a date"),
-            ("2026-06-21T14:00+99:00", "write a date"),
-        ] {
-            let error = when(text).expect_err(text);
-            assert!(error.contains(part), "{text}: {error}");
-        }
-    }
 
     #[test]
     fn numbers_are_finite_and_in_range() {
@@ -359,15 +260,6 @@ mod tests {
         ] {
             assert!(point(text).is_err(), "{text}");
         }
-        for text in ["91,0", "0,181", "NaN,0", "1", "-90.1,0"] {
-            assert!(place(text).is_err(), "{text}");
-        }
-        let lisbon = Place {
-            latitude: 38.72,
-            longitude: -9.14,
-        };
-        assert_eq!(place(" lisboa"), Ok(lisbon));
-        assert_eq!(place("38.72,-9.14"), Ok(lisbon));
         assert_eq!(
             colour_range("10,2e3"),
             Ok(Range {

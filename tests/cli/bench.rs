@@ -21,12 +21,7 @@ fn bench(folder: &Path, words: &str) -> Output {
     Command::new(env!("CARGO_BIN_EXE_skylight"))
         .current_dir(folder)
         .args(["bench", "m.obj", "--frames", "2", "--size", "64x36"])
-        .args(if words.contains("--irradiance-samples") {
-            &[][..]
-        } else {
-            &["--irradiance-samples", "64"]
-        })
-        .arg("--quiet")
+        .args(["--irradiance-samples", "64", "--quiet"])
         .args(words.split_whitespace())
         .output()
         .expect("the program starts")
@@ -151,12 +146,9 @@ fn bytes_come_from_formats_and_sizes_and_counters_from_the_device() {
 }
 
 #[test]
-fn csv_and_svg_hold_every_pass_and_frame() {
+fn csv_holds_every_pass_and_frame() {
     let folder = place();
-    succeeded(&bench(
-        folder.path(),
-        "--json t.json --csv t.csv --svg t.svg",
-    ));
+    succeeded(&bench(folder.path(), "--json t.json --csv t.csv"));
     let report: Value = serde_json::from_str(&read(folder.path(), "t.json")).expect("JSON");
     let rows = report["passes"].as_array().expect("a list").len() + 2;
     let sheet = read(folder.path(), "t.csv");
@@ -173,32 +165,6 @@ fn csv_and_svg_hold_every_pass_and_frame() {
             &line[column("device")],
             report["device"]["name"].as_str().expect("text")
         );
-    }
-    let svg = read(folder.path(), "t.svg");
-    let document = roxmltree::Document::parse(&svg).expect("well-formed");
-    let words: String = document.descendants().filter_map(|n| n.text()).collect();
-    for line in &lines {
-        let name = &line[column("name")];
-        assert!(words.contains(name), "no {name} in the chart");
-    }
-}
-
-#[test]
-fn irradiance_is_timed_by_three_routes_side_by_side() {
-    let folder = place();
-    let words = "--json t.json --irradiance-samples 1024";
-    let table = succeeded(&bench(folder.path(), words));
-    for part in ["geometry shader", "compute shader", "exact sum", "rms %"] {
-        assert!(table.contains(part), "no {part}: {table}");
-    }
-    let report: Value = serde_json::from_str(&read(folder.path(), "t.json")).expect("JSON");
-    let routes = report["irradiance_routes"].as_array().expect("routes");
-    assert_eq!(routes.len(), 3);
-    for route in routes {
-        println!("{route}");
-        let rms = route["rms"].as_f64().expect("a number");
-        assert!(rms <= 2e-3, "{route}");
-        assert!(route["median_ms"].as_f64() > Some(0.0), "{route}");
     }
 }
 
@@ -226,8 +192,7 @@ fn a_device_without_geometry_shaders_is_enough_and_says_so() {
     let told = succeeded(&run("info --without geometry-shader"));
     assert!(told.contains("geometryShader: no"), "{told}");
     assert!(told.contains("nothing that skylight needs"), "{told}");
-    let table = succeeded(&bench(folder.path(), "--without geometry-shader"));
-    assert!(!table.contains("geometry shader  ") && table.contains("compute shader"));
+    succeeded(&bench(folder.path(), "--without geometry-shader"));
 }
 
 #[test]
@@ -298,10 +263,7 @@ fn what_differs_from_the_earlier_run_is_said() {
 #[test]
 fn a_sweep_shows_how_cost_grows() {
     let folder = place();
-    let output = bench(
-        folder.path(),
-        "--sweep shadow --json s.json --csv s.csv --svg s.svg",
-    );
+    let output = bench(folder.path(), "--sweep shadow --json s.json --csv s.csv");
     let table = succeeded(&output);
     for part in ["exponent", "256²", "4096²", "shadow map", "whole frame"] {
         assert!(table.contains(part), "no {part}: {table}");
@@ -316,9 +278,6 @@ fn a_sweep_shows_how_cost_grows() {
     }
     let mut sheet = csv::Reader::from_path(folder.path().join("s.csv")).expect("a file");
     assert_eq!(sheet.records().count(), sizes * rows.len());
-    let svg = read(folder.path(), "s.svg");
-    roxmltree::Document::parse(&svg).expect("well-formed");
-    assert!(svg.contains("shadow map: size^"), "{svg}");
 }
 
 #[test]
@@ -333,7 +292,6 @@ fn bad_yardsticks_are_named() {
         ("--compare bad.json --fail-above -1", 2, "--fail-above"),
         ("--sweep everything", 2, "resolution"),
         ("--sweep ssao --compare bad.json", 2, "--compare"),
-        ("--svg a.png", 2, ".svg"),
         ("--csv no/such/a.csv", 1, "no/such"),
     ] {
         let output = bench(folder.path(), words);

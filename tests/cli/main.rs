@@ -5,6 +5,7 @@ mod bench;
 mod compare;
 mod false_colour;
 mod mitsuba_bake;
+mod moment;
 mod options;
 mod sky;
 mod tiles;

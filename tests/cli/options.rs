@@ -334,8 +334,8 @@ fn bad_words_end_with_2_and_touch_nothing() {
             &["2026-02-30 is a date that does not exist"],
         ),
         (
-            &["render", "-o", "old.png", "--when", "2026-06-21T15:00"],
-            &["UTC offset is missing"],
+            &["render", "-o", "old.png", "--when", "2026-06-21"],
+            &["the time is missing"],
         ),
         (&["render", "-o", "old.png", "--polish", "3"], &["--polish"]),
         (
@@ -424,7 +424,7 @@ fn bad_scenes_end_with_1_and_touch_nothing() {
         (&["cut-vertex.obj"], &["cut-vertex.obj, line 5"]),
         (
             &["model.gltf"],
-            &["model.gltf", "no glTF", "export it again"],
+            &["model.gltf", "not a usable glTF", "export it again"],
         ),
         (&["text.txt"], &["text.txt", ".obj"]),
         (&["key.toml"], &["key.toml", "\"turbidty\"", "turbidity"]),

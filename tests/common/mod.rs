@@ -20,6 +20,11 @@ pub fn shared() -> Option<PathBuf> {
     None
 }
 
+/// Whether tests take their long form: SKYLIGHT_SOAK=1 in the environment.
+pub fn is_soaking() -> bool {
+    std::env::var("SKYLIGHT_SOAK").is_ok_and(|value| value == "1")
+}
+
 /// A CSV file of `shared/reference`: comment lines begin with '#', the first other line names the columns.
 pub struct Table {
     name: String,

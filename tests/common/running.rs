@@ -4,6 +4,7 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::{PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -11,6 +12,20 @@ use skylight::compare::{Picture, flip};
 use x11rb::protocol::xproto::Window;
 
 use crate::x::{Display, PATIENCE, keysym, until};
+
+/// Whether the machine is shared by the tests of this program: held for reading by each that opens windows or renders for long,
+/// for writing by a test that measures time.
+static MACHINE: RwLock<()> = RwLock::new(());
+
+/// Waits until no test needs the machine to itself.
+pub fn shared_machine() -> RwLockReadGuard<'static, ()> {
+    MACHINE.read().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Waits until no other window is open and no other test renders.
+pub fn quiet_machine() -> RwLockWriteGuard<'static, ()> {
+    MACHINE.write().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// The program with its window open.
 pub struct Running {

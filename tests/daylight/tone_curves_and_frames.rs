@@ -2,7 +2,7 @@
 
 use crate::common::{Table, Worst};
 use glam::DVec3;
-use skylight::daylight::{frame, tone_curve};
+use skylight::daylight::{tangent_frame, tone_curve};
 
 #[test]
 fn tone_curves() {
@@ -63,12 +63,12 @@ fn tangent_frames() {
             ["duff_b1x", "duff_b1y", "duff_b1z"],
             ["duff_b2x", "duff_b2y", "duff_b2z"],
         ];
-        see(&mut duff, frame::duff(n), columns);
+        see(&mut duff, tangent_frame::duff(n), columns);
         let columns = [
             ["fris_b1x", "fris_b1y", "fris_b1z"],
             ["fris_b2x", "fris_b2y", "fris_b2z"],
         ];
-        see(&mut frisvad, frame::frisvad(n), columns);
+        see(&mut frisvad, tangent_frame::frisvad(n), columns);
     }
     duff.finish();
     frisvad.finish();

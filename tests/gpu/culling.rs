@@ -20,7 +20,7 @@ fn unculled(scene: &Scene) -> Scene {
         },
         solid: None,
         // Drawn by the pipeline that finds the front from derivatives: the lean one is compared with it too.
-        is_wound: false,
+        normals_match_winding: false,
     };
     let arranged = scene.layout.as_ref().expect("an arranged scene");
     let layout = Layout {
@@ -34,55 +34,34 @@ fn unculled(scene: &Scene) -> Scene {
     }
 }
 
-/// A hilly square with blocks on it, 400 m wide, of about so many triangles: large enough for cascades.
+/// Hills with 49 blocks on them, 400 m wide, of about so many triangles: large enough for cascades.
 fn hills(triangles: usize) -> Scene {
-    let (edge, quads) = (400.0f32, ((triangles / 2) as f32).sqrt() as u32);
-    let height = |x: f32, z: f32| 8.0 * (0.05 * x).sin() * (0.043 * z).cos();
-    let grey = matt(0.5);
+    let mut ground = skylight::scene::hills(triangles);
     let mut model = Model::default();
     for i in 0..49u32 {
-        let (x, z) = (
-            -180.0 + 60.0 * (i % 7) as f32,
-            -180.0 + 60.0 * (i / 7) as f32,
-        );
-        model = model.cube([x, height(x, z) + 2.0, z], 3.0, &grey);
+        let [x, z] = [i % 7, i / 7].map(|i| 60.0 * i as f32 - 180.0);
+        let distance = |p: &&[f32; 3]| (p[0] - x).hypot(p[2] - z);
+        let nearest = ground
+            .positions
+            .iter()
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let [_, y, _] = nearest.expect("a vertex");
+        model = model.cube([x, y + 2.0, z], 3.0, &matt(0.5));
     }
     let mut scene = model.build();
-    let (vertex, index) = (scene.positions.len() as u32, scene.indices.len() as u32);
-    for row in 0..=quads {
-        for column in 0..=quads {
-            let [x, z] = [column, row].map(|i| edge * (i as f32 / quads as f32 - 0.5));
-            scene.positions.push([x, height(x, z), z]);
-            let slope = [
-                0.4 * (0.05 * x).cos() * (0.043 * z).cos(),
-                -0.344 * (0.05 * x).sin() * (0.043 * z).sin(),
-            ];
-            let normal = Vec3::new(-slope[0], 1.0, -slope[1]).normalize();
-            scene.normals.push(normal.into());
-            scene.texcoords.push([0.0; 2]);
-        }
-    }
-    for row in 0..quads {
-        for column in 0..quads {
-            let a = vertex + row * (quads + 1) + column;
-            let (b, c, d) = (a + 1, a + quads + 1, a + quads + 2);
-            scene.indices.extend([a, c, b, b, c, d]);
-        }
-    }
-    let ground = Bounds::of(
-        scene.positions[vertex as usize..]
-            .iter()
-            .map(|p| Vec3::from(*p)),
-    );
-    scene.parts.push(skylight::scene::Part {
-        first_index: index,
-        index_count: scene.indices.len() as u32 - index,
-        material: scene.materials.len() as u32,
-        has_colours: false,
-        bounds: ground,
-    });
-    scene.materials.push(grey);
-    scene.bounds = scene.bounds.union(ground);
+    let vertices = scene.positions.len() as u32;
+    let mut part = ground.parts[0];
+    part.first_index = scene.indices.len() as u32;
+    part.material = scene.materials.len() as u32;
+    scene.parts.push(part);
+    scene.materials.push(matt(0.5));
+    scene
+        .indices
+        .extend(ground.indices.iter().map(|i| vertices + i));
+    scene.positions.append(&mut ground.positions);
+    scene.normals.append(&mut ground.normals);
+    scene.texcoords.append(&mut ground.texcoords);
+    scene.bounds = scene.bounds.union(ground.bounds);
     scene.arrange();
     scene
 }

@@ -26,3 +26,4 @@ mod ssao;
 mod steady_frame;
 mod timings;
 mod tone;
+mod uploads;

@@ -1,11 +1,13 @@
-//! Real, odd and hostile files: each loads or is refused with one right line.
+//! Real, odd and hostile files: each loads or fails with one line that says why.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use skylight::scene::{LoadOptions, Loaded, Scene, load, load_telling};
+use skylight::scene::{LoadOptions, Loaded, Scene, load, load_with_progress};
 
-/// Files of the shared folder that are rightly refused, and a part of the line that says why.
+use crate::support::{assert_valid, files_below};
+
+/// Shared files that must fail, and a part of the error.
 const REFUSED: [(&str, &str); 12] = [
     (
         "tinyobj_odd/invalid-face-definition.obj",
@@ -15,7 +17,7 @@ const REFUSED: [(&str, &str); 12] = [
     ("tinyobj_odd/invalid-relative-vertex-index.obj", "line 1"),
     (
         "tinyobj_odd/issue-140-zero-face-idx.obj",
-        "line 16: \"0/0/0\" has number 0",
+        "line 16: \"0/0/0\" has index 0",
     ),
     (
         "tinyobj_odd/issue-356-leading-spaces-newmtl.obj",
@@ -30,7 +32,7 @@ const REFUSED: [(&str, &str); 12] = [
     ("trimesh_odd/obj_wireframe.obj", "has no triangles"),
 ];
 
-/// Triangles of INDEX.md, those without area included.
+/// Numbers of triangles by INDEX.md, including those without area.
 const COUNTS: [(&str, usize); 12] = [
     ("gltf_small/BoxTextured.glb", 12),
     ("gltf_small/BoxInterleaved.glb", 12),
@@ -46,92 +48,6 @@ const COUNTS: [(&str, usize); 12] = [
     ("trimesh_odd/cube.OBJ", 12),
 ];
 
-fn model_files(folder: &Path, found: &mut Vec<PathBuf>) {
-    let entries = fs::read_dir(folder).expect("a readable folder");
-    for path in entries.map(|entry| entry.expect("an entry").path()) {
-        if path.is_dir() {
-            model_files(&path, found);
-        } else if path.extension().is_some_and(|e| {
-            ["obj", "gltf", "glb"]
-                .iter()
-                .any(|known| e.eq_ignore_ascii_case(known))
-        }) {
-            found.push(path);
-        }
-    }
-}
-
-/// What the renderer relies on without checking.
-fn assert_sound(name: &str, scene: &Scene) {
-    let vertices = scene.positions.len();
-    assert_eq!(
-        (scene.normals.len(), scene.texcoords.len()),
-        (vertices, vertices),
-        "{name}"
-    );
-    assert!(
-        scene.triangles() > 0 && scene.indices.len().is_multiple_of(3),
-        "{name}"
-    );
-    assert!(
-        scene.indices.iter().all(|i| (*i as usize) < vertices),
-        "{name}"
-    );
-    assert!(
-        scene.positions.iter().flatten().all(|v| v.is_finite()),
-        "{name}"
-    );
-    assert!(
-        scene.texcoords.iter().flatten().all(|v| v.is_finite()),
-        "{name}"
-    );
-    let streams = [scene.colours.len(), scene.tangents.len()];
-    assert!(
-        streams.iter().all(|n| [0, vertices].contains(n)),
-        "{name}: {streams:?}"
-    );
-    let length = |n: &[f32; 3]| n.iter().map(|v| v * v).sum::<f32>();
-    assert!(
-        scene.normals.iter().all(|n| (length(n) - 1.0).abs() < 1e-3),
-        "{name}: normals are unit vectors"
-    );
-    let mut next = 0;
-    for part in &scene.parts {
-        assert_eq!(part.first_index, next, "{name}: parts follow each other");
-        assert!(
-            part.index_count > 0 && (part.material as usize) < scene.materials.len(),
-            "{name}"
-        );
-        next += part.index_count;
-    }
-    assert_eq!(
-        next as usize,
-        scene.indices.len(),
-        "{name}: parts cover everything"
-    );
-    let textures = scene
-        .materials
-        .iter()
-        .flat_map(|m| [m.diffuse_texture, m.specular_texture, m.normal_texture])
-        .flatten();
-    assert!(
-        textures.max().is_none_or(|t| t < scene.textures.len()),
-        "{name}"
-    );
-    assert!(
-        scene
-            .textures
-            .iter()
-            .all(|t| t.rgba8.len() == 4 * (t.width * t.height) as usize),
-        "{name}"
-    );
-    assert!(
-        scene.warnings.iter().all(|w| w.lines().count() == 1),
-        "{name}: {:?}",
-        scene.warnings
-    );
-}
-
 /// The number in the warning about triangles without area.
 fn without_area(scene: &Scene) -> usize {
     let warning = scene
@@ -143,14 +59,12 @@ fn without_area(scene: &Scene) -> usize {
 }
 
 #[test]
-fn every_shared_model_loads_or_is_refused_with_one_right_line() {
+fn every_shared_model_loads_or_fails_with_the_right_line() {
     let Some(shared) = crate::common::shared() else {
         return;
     };
     let scenes = shared.join("scenes");
-    let mut files = Vec::new();
-    model_files(&scenes, &mut files);
-    files.sort();
+    let files = files_below(&scenes, &["obj", "gltf", "glb"]);
     let (mut refused, mut wrong) = (0, Vec::new());
     for path in &files {
         let name = path
@@ -166,7 +80,7 @@ fn every_shared_model_loads_or_is_refused_with_one_right_line() {
                     loaded.scene.triangles(),
                     loaded.scene.warnings.join("; ")
                 );
-                assert_sound(&name, &loaded.scene);
+                assert_valid(&name, &loaded.scene);
                 let count = COUNTS.iter().find(|(file, _)| *file == name);
                 let all = loaded.scene.triangles() + without_area(&loaded.scene);
                 assert!(count.is_none_or(|(_, n)| *n == all), "{name}: {all}");
@@ -223,7 +137,7 @@ fn textures_are_found_and_upright() {
             "{name}"
         );
     }
-    // The cow's muzzle is drawn in pink in the texture: upside down it would be hide.
+    // The cow's muzzle is pink in the texture; upside down it would have the colour of the hide.
     let spot = load("spot/spot_triangulated.obj");
     let texture = &spot.textures[0];
     let front = (0..spot.positions.len())
@@ -235,10 +149,10 @@ fn textures_are_found_and_upright() {
     assert!(r - b > 40, "the muzzle is {:?}", &texture.rgba8[at..at + 3]);
 }
 
-/// Names and contents.
+/// Names and contents of files.
 type Files<'a> = &'a [(&'a str, &'a [u8])];
 
-/// A scratch folder with these files; returns the path of the first.
+/// Writes these files to a scratch folder; also gives the path of the first.
 fn folder(files: Files) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().expect("a scratch folder");
     for (name, bytes) in files {
@@ -256,7 +170,7 @@ fn try_load(files: Files) -> Result<Loaded, String> {
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 #[test]
-fn hostile_models_are_refused_with_one_line() {
+fn hostile_models_fail_with_one_line() {
     let faced = |face: &str| format!("{TRIANGLE}{face}\n").into_bytes();
     let many = "v ".repeat(100_000);
     for (text, part) in [
@@ -295,7 +209,7 @@ fn hostile_models_are_refused_with_one_line() {
 }
 
 #[test]
-fn missing_helpers_are_warnings() {
+fn missing_libraries_and_textures_are_warnings() {
     let obj = format!("mtllib m.mtl\n{TRIANGLE}usemtl a\nf 1 2 3\n");
     let obj = obj.as_bytes();
     let cases: [(Files, &str); 5] = [
@@ -318,7 +232,7 @@ fn missing_helpers_are_warnings() {
         ),
         (
             &[("m.obj", obj), ("m.mtl", b"newmtl a\nKd 1\nKs 1 2\n")],
-            "1 lines are not understood",
+            "1 malformed lines ignored",
         ),
     ];
     for (files, part) in cases {
@@ -328,12 +242,12 @@ fn missing_helpers_are_warnings() {
             "{part}: {:?}",
             scene.warnings
         );
-        assert_sound(part, &scene);
+        assert_valid(part, &scene);
     }
 }
 
 #[test]
-fn transparent_materials_are_left_out_and_counted() {
+fn transparent_materials_are_not_drawn_and_counted() {
     let obj = format!("mtllib m.mtl\n{TRIANGLE}usemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\n");
     let files: [(&str, &[u8]); 2] = [
         ("m.obj", obj.as_bytes()),
@@ -354,7 +268,7 @@ fn a_picture_that_claims_to_be_huge_is_not_decoded() {
     image::RgbaImage::new(1, 1)
         .write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png)
         .expect("a PNG");
-    // Width and height are the first fields of the header chunk; its checksum no longer fits, but size is seen first.
+    // Width and height are the first fields of the header chunk; its checksum is wrong now, but the size is checked first.
     png[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
     let obj = format!("mtllib m.mtl\n{TRIANGLE}usemtl a\nf 1 2 3\n");
     let files: [(&str, &[u8]); 3] = [
@@ -371,7 +285,7 @@ fn a_picture_that_claims_to_be_huge_is_not_decoded() {
 }
 
 #[test]
-fn paths_that_are_no_files() {
+fn paths_that_are_not_files() {
     let options = LoadOptions::default();
     let (folder, _) = folder(&[("a.obj", b"")]);
     let folder = folder.path();
@@ -408,7 +322,7 @@ fn paths_that_are_no_files() {
 }
 
 #[test]
-fn scene_files_cannot_go_round_in_circles() {
+fn malformed_scene_files_fail_with_one_line() {
     let error = try_load(&[("s.toml", b"[[mesh]]\nfile = \"s.toml\"\n")]).expect_err("itself");
     assert!(
         error.contains("s.toml") && error.contains("is a scene file"),
@@ -432,12 +346,12 @@ fn scene_files_cannot_go_round_in_circles() {
 }
 
 #[test]
-fn loading_tells_how_far_it_is_from_another_thread() {
+fn progress_is_reported_from_another_thread() {
     let told = std::sync::Mutex::new(Vec::new());
     let tell = |share: f32, stage: &'static str| told.lock().expect("told").push((share, stage));
     let scene = std::thread::scope(|threads| {
-        let loading =
-            threads.spawn(|| load_telling(None, &LoadOptions::default(), &tell).expect("bundled"));
+        let loading = threads
+            .spawn(|| load_with_progress(None, &LoadOptions::default(), &tell).expect("bundled"));
         loading.join().expect("loaded").scene
     });
     assert!(scene.triangles() > 0);
@@ -450,10 +364,10 @@ fn loading_tells_how_far_it_is_from_another_thread() {
 }
 
 #[test]
-fn the_island_is_sound() {
+fn the_island_is_valid() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/island.toml");
     let island = load(&path, &LoadOptions::default()).expect("the island");
-    assert_sound("island", &island.scene);
+    assert_valid("island", &island.scene);
     assert_eq!(island.scene.warnings, Vec::<String>::new());
     let triangles = island.scene.triangles();
     assert!((150_000..300_000).contains(&triangles), "{triangles}");
@@ -468,10 +382,10 @@ fn the_island_is_sound() {
         .iter()
         .filter(|casts| !**casts)
         .count();
-    assert_eq!(sea, 1, "the sea alone casts no shadow");
+    assert_eq!(sea, 1, "only the sea casts no shadow");
 }
 
-/// A model that is large enough for the cache, with a library.
+/// Writes a model that is large enough for the cache, with a library.
 fn large_model(folder: &Path) -> PathBuf {
     let mut text = String::from("mtllib m.mtl\nusemtl a\n");
     for i in 0..90_000 {
@@ -483,7 +397,7 @@ fn large_model(folder: &Path) -> PathBuf {
 }
 
 #[test]
-fn a_cached_model_is_the_same_and_a_damaged_or_stale_one_is_not_trusted() {
+fn a_cached_model_is_equal_and_damaged_or_stale_entries_are_replaced() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let path = large_model(folder.path());
     let cache = folder.path().join("cache");
@@ -517,7 +431,27 @@ fn a_cached_model_is_the_same_and_a_damaged_or_stale_one_is_not_trusted() {
 }
 
 #[test]
-fn models_read_nothing_outside_of_their_folder() {
+fn a_cache_that_cannot_be_written_is_one_warning() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let path = large_model(folder.path());
+    let file = folder.path().join("m.mtl");
+    let options = LoadOptions {
+        cache: Some(file.join("cache")),
+        ..LoadOptions::default()
+    };
+    let plain = load(&path, &LoadOptions::default()).expect("a model").scene;
+    let mut scene = load(&path, &options).expect("a model").scene;
+    let warnings = std::mem::take(&mut scene.warnings);
+    assert!(
+        warnings.len() == 1 && warnings[0].contains("cannot be cached in"),
+        "{warnings:?}"
+    );
+    assert!(warnings[0].contains("--no-cache"), "{warnings:?}");
+    assert_eq!(scene, plain);
+}
+
+#[test]
+fn models_read_nothing_outside_their_folder() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let inner = folder.path().join("inner");
     fs::create_dir(&inner).expect("a folder");

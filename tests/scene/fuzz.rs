@@ -1,7 +1,7 @@
-//! Files and command lines that nobody would write: sound ones, cut, doubled, overwritten and spiced with what has broken
-//! readers before. Whatever comes of it is a sound scene or one line, soon, and never a panic.
+//! Fuzz tests of files and command lines: valid ones with random edits and with words that have broken parsers before. The
+//! result must be a valid scene or an error of one line, in bounded time.
 //!
-//! `SKYLIGHT_FUZZ_CASES=1000000 cargo test --release --test fuzz` runs a million cases of each target.
+//! `SKYLIGHT_FUZZ_CASES=1000000 cargo test --release --test scene fuzz` runs a million cases of each target.
 
 use std::ffi::OsString;
 use std::fs;
@@ -13,12 +13,14 @@ use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use skylight::cli::{self, CliExit};
 use skylight::scene::{LoadOptions, Scene, load};
 
-/// Cases of a target in the suite's short run.
+use crate::support::{assert_valid, glb};
+
+/// Default number of cases of a target.
 const SHORT_RUN: u32 = 400;
-/// Time after which a file counts as a hang, and more for each of its bytes.
+/// Time after which loading counts as a hang, and the addition for each byte of the files.
 const LIMIT: Duration = Duration::from_secs(30);
 const LIMIT_PER_BYTE: Duration = Duration::from_micros(50);
-/// Small enough that a breach is seen at once.
+/// Limits so small that exceeding them is noticed.
 const OPTIONS: LoadOptions = LoadOptions {
     smooth_deg: None,
     max_texture_edge: 512,
@@ -29,8 +31,8 @@ const OPTIONS: LoadOptions = LoadOptions {
     cache: None,
 };
 
-/// Runs a property with as many cases as asked for, or with those of the short run, which are always the same; failures are
-/// made small and shown, not stored.
+/// Runs a property with `SKYLIGHT_FUZZ_CASES` random cases, or with the default cases, which are always the same. Failures
+/// are shrunk and shown, not stored.
 fn run<S: Strategy>(strategy: S, property: impl Fn(S::Value)) {
     let asked = std::env::var("SKYLIGHT_FUZZ_CASES").ok();
     let is_short = asked.is_none();
@@ -56,7 +58,7 @@ fn run<S: Strategy>(strategy: S, property: impl Fn(S::Value)) {
     println!("{cases} cases in {:.1} s", started.elapsed().as_secs_f32());
 }
 
-/// One change of a file.
+/// One edit of a file.
 #[derive(Debug, Clone)]
 enum Edit {
     Overwrite(u8),
@@ -66,7 +68,7 @@ enum Edit {
     CutOff,
 }
 
-/// Changes with the places, as shares of the file's length, where they happen.
+/// Edits with their positions as fractions of the length of the file.
 fn edits() -> impl Strategy<Value = Vec<(f64, Edit)>> {
     let edit = prop_oneof![
         any::<u8>().prop_map(Edit::Overwrite),
@@ -106,45 +108,13 @@ fn edited(seed: &[u8], words: &[&str], edits: &[(f64, Edit)]) -> Vec<u8> {
     bytes
 }
 
-/// What the renderer relies on without checking.
-fn assert_sound(scene: &Scene) {
-    let vertices = scene.positions.len();
-    assert!(scene.triangles() > 0 && scene.triangles() <= OPTIONS.max_triangles);
-    assert!(scene.indices.iter().all(|i| (*i as usize) < vertices));
-    assert_eq!(
-        (scene.normals.len(), scene.texcoords.len()),
-        (vertices, vertices)
-    );
-    for stream in [scene.colours.len(), scene.tangents.len()] {
-        assert!([0, vertices].contains(&stream));
-    }
-    let floats = scene.positions.iter().chain(&scene.normals).flatten();
-    assert!(
-        floats
-            .chain(scene.texcoords.iter().flatten())
-            .all(|v| v.is_finite())
-    );
-    let unit = |n: &[f32; 3]| (n.iter().map(|v| v * v).sum::<f32>() - 1.0).abs() < 1e-3;
-    assert!(scene.normals.iter().all(unit));
-    let drawn: u32 = scene.parts.iter().map(|p| p.index_count).sum();
-    assert_eq!(drawn as usize, scene.indices.len());
-    for part in &scene.parts {
-        let material = &scene.materials[part.material as usize];
-        let maps = [
-            material.diffuse_texture,
-            material.specular_texture,
-            material.normal_texture,
-        ];
-        assert!(maps.iter().flatten().all(|i| *i < scene.textures.len()));
-        let numbers = [material.diffuse, material.specular].concat();
-        assert!(
-            numbers.iter().all(|v| (0.0..=1.0).contains(v)),
-            "{material:?}"
-        );
-    }
+/// Checks the invariants and the limits of a scene.
+fn assert_bounded(scene: &Scene) {
+    assert_valid("fuzz", scene);
+    assert!(scene.triangles() <= OPTIONS.max_triangles);
     let bytes: usize = scene.textures.iter().map(|t| t.rgba8.len()).sum();
     assert!(bytes as u64 <= OPTIONS.max_texture_bytes);
-    assert!(scene.warnings.len() <= 101 && scene.warnings.iter().all(|w| w.lines().count() == 1));
+    assert!(scene.warnings.len() <= 101);
 }
 
 /// Writes the files and loads the first.
@@ -155,7 +125,7 @@ fn try_files(folder: &Path, files: &[(&str, &[u8])]) {
     let size: usize = files.iter().map(|(_, bytes)| bytes.len()).sum();
     let started = Instant::now();
     match load(&folder.join(files[0].0), &OPTIONS) {
-        Ok(loaded) => assert_sound(&loaded.scene),
+        Ok(loaded) => assert_bounded(&loaded.scene),
         Err(error) => {
             let line = error.to_string();
             assert_eq!(line.lines().count(), 1, "{line}");
@@ -240,7 +210,7 @@ fn obj_and_mtl() {
     });
 }
 
-/// A textured quad, twice, with a camera: JSON and its binary chunk.
+/// Two instances of a textured quad and a camera: the JSON and the binary chunk.
 fn gltf_seed() -> (String, Vec<u8>) {
     let floats: [f32; 44] = std::array::from_fn(|i| match i {
         0..12 => [0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.][i],
@@ -267,23 +237,6 @@ fn gltf_seed() -> (String, Vec<u8>) {
         binary.len()
     );
     (json, binary)
-}
-
-fn glb(json: &[u8], binary: &[u8]) -> Vec<u8> {
-    let pad = |bytes: &[u8], with: u8| {
-        let mut padded = bytes.to_vec();
-        padded.resize(bytes.len().next_multiple_of(4), with);
-        padded
-    };
-    let (json, binary) = (pad(json, b' '), pad(binary, 0));
-    let total = (28 + json.len() + binary.len()) as u32;
-    let mut file = [*b"glTF", 2u32.to_le_bytes(), total.to_le_bytes()].concat();
-    for (kind, bytes) in [(b"JSON", &json), (b"BIN\0", &binary)] {
-        file.extend((bytes.len() as u32).to_le_bytes());
-        file.extend(kind);
-        file.extend(bytes);
-    }
-    file
 }
 
 const GLTF_WORDS: &[&str] = &[
@@ -343,9 +296,9 @@ fn gltf_json_and_chunks() {
     );
 }
 
-/// What a longer run has found.
+/// Failures that longer runs have found.
 #[test]
-fn crashes_of_old() {
+fn former_crashes() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let (json, binary) = gltf_seed();
     let load = |json: &str| {
@@ -354,8 +307,8 @@ fn crashes_of_old() {
         load(&folder.path().join("m.glb"), &OPTIONS).map_err(|error| error.to_string())
     };
     for (sound, broken, part) in [
-        ("\"accessors\"", "\"accessorz\"", "names an accessor"),
-        ("\"POSITION\":0", "\"POSITION\":99", "names an accessor"),
+        ("\"accessors\"", "\"accessorz\"", "refers to an accessor"),
+        ("\"POSITION\":0", "\"POSITION\":99", "refers to an accessor"),
         ("[{\"bufferView\":4,", "[{", "image 0 has neither"),
     ] {
         let error = load(&json.replace(sound, broken)).expect_err(broken);
@@ -434,7 +387,7 @@ fn headers_of_pictures() {
         "#?RADIANCE\n",
         "-Y 99999 +X 99999\n",
     ];
-    // Headers are at the front: half of the changes aim there.
+    // Half of the edits are in the headers, at the start.
     let place = prop_oneof![Just(1.0f64), Just(0.15)];
     run(
         (0..seeds.len(), edits(), place),

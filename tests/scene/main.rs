@@ -1,4 +1,4 @@
-//! Models and scene files: what is read, what is refused, what hostile files do.
+//! Models and scene files: importers, errors, hostile files, limits, and `tobj` as an oracle.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -7,3 +7,5 @@ mod files;
 mod fuzz;
 mod hostile;
 mod models;
+mod support;
+mod tobj_oracle;

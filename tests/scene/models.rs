@@ -1,4 +1,4 @@
-//! Models that nobody here made, drawn by the whole frame under the validation layer.
+//! Models of other authors, drawn by the whole frame under the validation layer.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fs;
@@ -15,9 +15,11 @@ use skylight::passes::picture::tone_map::{Scale, ToneSettings};
 use skylight::passes::sky::irradiance::IrradianceSettings;
 use skylight::scene::{Camera, LoadOptions, Scene, load};
 
+use crate::support::files_below;
+
 const SIZE: UVec2 = UVec2::new(160, 90);
 
-/// Models by name, and Kenney's whole folder.
+/// Models that must be drawn, besides all of Kenney's.
 const MODELS: [&str; 13] = [
     "house/house.obj",
     "colonnade/colonnade.obj",
@@ -111,12 +113,12 @@ fn kenney(scenes: &Path) -> Vec<PathBuf> {
 fn wrong(scene: &Scene, [beauty, albedo, depth]: &[Vec<[f32; 4]>; 3]) -> Option<String> {
     let seen: Vec<usize> = (0..depth.len()).filter(|i| depth[*i][0] > 0.0).collect();
     let share = seen.len() as f64 / depth.len() as f64;
-    // Framed whole: a good part of the picture, but for paths and lamps; never all of it.
+    // The default view shows the whole model: it covers part of the picture (little for paths and lamps), never all of it.
     if !(0.01..0.999).contains(&share) {
         return Some(format!("covers {share:.3} of the picture"));
     }
     if beauty.iter().flatten().any(|v| !v.is_finite() || *v < 0.0) {
-        return Some("has pixels that are no light".to_owned());
+        return Some("has pixels that are negative or not finite".to_owned());
     }
     let dark = seen.iter().filter(|i| beauty[**i][..3] == [0.0; 3]).count();
     if dark * 20 > seen.len() {
@@ -124,7 +126,7 @@ fn wrong(scene: &Scene, [beauty, albedo, depth]: &[Vec<[f32; 4]>; 3]) -> Option<
     }
     let quantised = |i: &usize| albedo[*i].map(|v| (v * 64.0) as u32);
     let colours: HashSet<[u32; 4]> = seen.iter().map(quantised).collect();
-    // A model may take a single colour out of a palette.
+    // A model may use a single colour of a palette.
     let spread = scene.texcoords.iter().any(|t| *t != scene.texcoords[0]);
     let textured = spread && scene.materials.iter().any(|m| m.diffuse_texture.is_some());
     println!("{:5.1} % | {} albedos", 100.0 * share, colours.len());
@@ -140,24 +142,7 @@ fn context() -> Arc<Context> {
     .expect("a device and the validation layer")
 }
 
-/// Every model below a folder, by path.
-fn models_below(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        let is_model = |e: &std::ffi::OsStr| {
-            ["obj", "gltf", "glb", "toml"]
-                .contains(&e.to_ascii_lowercase().to_string_lossy().as_ref())
-        };
-        if path.is_dir() {
-            models_below(&path, found);
-        } else if path.extension().is_some_and(is_model) {
-            found.push(path);
-        }
-    }
-    found.sort();
-}
-
-/// What a model comes to: a row of the table, and whether it is drawn; or what is wrong with that.
+/// Draws a model: gives a row of the table and whether it is drawn, or what is wrong.
 fn row(context: &Arc<Context>, path: &Path) -> Result<(String, bool), String> {
     let scene = match load(path, &LoadOptions::default()) {
         Ok(loaded) => loaded.scene,
@@ -176,7 +161,9 @@ fn row(context: &Arc<Context>, path: &Path) -> Result<(String, bool), String> {
     let [beauty, _, depth] = pictures(context, &scene);
     let seen = depth.iter().filter(|texel| texel[0] > 0.0).count();
     if seen == 0 || beauty.iter().flatten().any(|v| !v.is_finite() || *v < 0.0) {
-        return Err(format!("{seen} pixels seen, or pixels that are no light"));
+        return Err(format!(
+            "{seen} pixels covered, or pixels that are negative or not finite"
+        ));
     }
     if !context.validation_messages().is_empty() {
         return Err(format!("{:?}", context.validation_messages()));
@@ -196,13 +183,12 @@ fn row(context: &Arc<Context>, path: &Path) -> Result<(String, bool), String> {
 }
 
 #[test]
-fn every_file_is_drawn_or_refused_with_one_line() {
+fn every_file_is_drawn_or_fails_with_one_line() {
     let Some(shared) = crate::common::shared() else {
         return;
     };
     let scenes = shared.join("scenes");
-    let mut paths = Vec::new();
-    models_below(&scenes, &mut paths);
+    let paths = files_below(&scenes, &["obj", "gltf", "glb", "toml"]);
     let context = context();
     let (mut folders, mut failures) = (BTreeMap::new(), Vec::new());
     for path in &paths {

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use crate::running::{Running, difference, program};
+use crate::running::{Running, difference, program, shared_machine};
 use crate::x::until;
 
 /// A small picture, quickly.
@@ -46,6 +46,7 @@ const NUMBERS: [u32; 8] = [1, 2, 3, 5, 9, 17, 33, 65];
 
 #[test]
 fn whatever_call_fails_render_says_so_and_loses_nothing() {
+    let _machine = shared_machine();
     let cases = [
         ("memory", "out-of-device-memory", "out of device memory"),
         ("memory", "out-of-host-memory", "out of host memory"),
@@ -107,11 +108,12 @@ fn a_fault_that_is_none_is_refused() {
     let output = render(folder.path(), "new.png", "submit@x=device-lost");
     let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(1), "{stderr}");
-    assert!(stderr.contains("CALL@NUMBER=ANSWER"), "{stderr}");
+    assert!(stderr.contains("CALL@OCCURRENCE=ERROR"), "{stderr}");
 }
 
 #[test]
 fn a_window_lives_on_without_its_surface() {
+    let _machine = shared_machine();
     let view = ["--size", "320x180", "--samples", "2", "--validate"];
     let sound = Running::bare(&view);
     let expected = sound.picture();
@@ -139,6 +141,7 @@ fn a_window_lives_on_without_its_surface() {
 
 #[test]
 fn a_window_whose_device_is_lost_ends_with_one_line_and_is_resumed() {
+    let _machine = shared_machine();
     // While the scene is uploaded, with the first frames, and when all is shown.
     for (number, is_open) in [(2, false), (6, false), (40, true)] {
         let state = tempfile::tempdir().expect("a scratch folder");

@@ -7,28 +7,27 @@ use std::time::Duration;
 
 use crate::running::{Running, difference};
 
-const STAGE: &str = "tone_map.frag";
+const STAGE: &str = "picture/tone_map.frag";
 
-/// The sources of the checkout, to be changed.
-fn copied() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().expect("a scratch folder");
-    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders_glsl");
-    fs::create_dir(folder.path().join("include")).expect("a folder");
-    for part in ["", "include"] {
-        for entry in fs::read_dir(sources.join(part)).expect("sources") {
-            let path = entry.expect("an entry").path();
-            let name = path.file_name().expect("a name");
-            if path.is_file() {
-                fs::copy(&path, folder.path().join(part).join(name)).expect("a copy");
-            }
+/// Copies a folder and those in it.
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).expect("a folder");
+    for entry in fs::read_dir(from).expect("sources") {
+        let path = entry.expect("an entry").path();
+        let copied = to.join(path.file_name().expect("a name"));
+        if path.is_dir() {
+            copy(&path, &copied);
+        } else {
+            fs::copy(&path, copied).expect("a copy");
         }
     }
-    folder
 }
 
 #[test]
 fn a_changed_shader_is_seen_and_a_broken_one_is_told() {
-    let folder = copied();
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders_glsl");
+    copy(&sources, folder.path());
     let file = folder.path().join(STAGE);
     let good = fs::read_to_string(&file).expect("the source");
     let variables = [("SKYLIGHT_SHADERS", folder.path())];

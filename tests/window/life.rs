@@ -5,7 +5,8 @@ use std::path::Path;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::running::{Running, difference, program};
+use crate::common::is_soaking;
+use crate::running::{Running, difference, program, quiet_machine, shared_machine};
 use crate::x::{Display, keysym, until};
 use skylight::compare::{Picture, read};
 
@@ -28,6 +29,7 @@ fn rendered(folder: &Path, words: &[&str]) -> Picture {
 
 #[test]
 fn the_window_shows_what_render_writes() {
+    let _machine = shared_machine();
     let view = ["--size", "640x360", "--samples", "4"];
     let running = Running::bare(&[&view[..], &["--validate"]].concat());
     let shown = running.picture();
@@ -50,6 +52,7 @@ fn the_window_shows_what_render_writes() {
 
 #[test]
 fn keys_and_pointer_do_what_the_help_says() {
+    let _machine = shared_machine();
     let running = Running::bare(&["--size", "480x270", "--samples", "2", "--validate"]);
     let start = running.picture();
     let another = |other: &Picture| difference(&start, other) > 0.02;
@@ -106,6 +109,7 @@ fn keys_and_pointer_do_what_the_help_says() {
 
 #[test]
 fn the_command_that_c_prints_renders_the_picture() {
+    let _machine = shared_machine();
     let running = Running::bare(&["--size", "320x180", "--samples", "2", "--turbidity", "5"]);
     let moved = running.after(|d| {
         d.point(100, 90);
@@ -148,15 +152,24 @@ fn nth_size(n: u32) -> (u32, u32) {
     }
 }
 
+/// Resizes until memory has settled, resizes after that, and how much more memory the latter may take. Freed memory stays with
+/// the process, which takes up to 3 % more in the first four hundred resizes and hardly 0.5 % in the next eight hundred.
+fn resizes() -> (u32, u32, f64) {
+    if is_soaking() {
+        (400, 300, 0.02)
+    } else {
+        (50, 50, 0.05)
+    }
+}
+
 #[test]
-fn three_hundred_resizes_leave_nothing_behind() {
+fn resizes_leave_nothing_behind() {
+    let _machine = shared_machine();
     let running = Running::bare(&["--size", "320x180", "--samples", "1"]);
     running.picture();
-    // Freed memory stays with the process, which takes up to 3 % more in the first four hundreds and hardly .5 % in the next eight:
-    // what is lost for good would go on growing.
-    let settling = 400;
+    let (settling, further, most) = resizes();
     let mut settled = 0;
-    for n in 1..=settling + 300 {
+    for n in 1..=settling + further {
         let (width, height) = nth_size(n);
         running.display.resize(running.window, width, height);
         if n % 60 == 0 {
@@ -178,15 +191,16 @@ fn three_hundred_resizes_leave_nothing_behind() {
     let last = resident(running.pid());
     let growth = last as f64 / settled as f64 - 1.0;
     println!(
-        "memory in the first {settling} resizes at most {settled}, 300 later {last}: {:+.2} %",
+        "memory in the first {settling} resizes at most {settled}, {further} later {last}: {:+.2} %",
         growth * 100.0
     );
-    assert!(growth <= 0.02, "{settled} -> {last}");
+    assert!(growth <= most, "{settled} -> {last}");
     running.close_well();
 }
 
 #[test]
 fn resizes_are_valid() {
+    let _machine = shared_machine();
     let running = Running::bare(&["--size", "320x180", "--samples", "2", "--validate"]);
     for n in 1..=20 {
         let (width, height) = nth_size(n);
@@ -203,6 +217,7 @@ fn resizes_are_valid() {
 
 #[test]
 fn a_window_at_rest_costs_nothing() {
+    let _machine = quiet_machine();
     let running = Running::new(&["--size", "640x360", "--samples", "2"]);
     running.picture();
     // What egui animates after a start is over by then.
@@ -217,6 +232,7 @@ fn a_window_at_rest_costs_nothing() {
 
 #[test]
 fn dragging_keeps_going() {
+    let _machine = quiet_machine();
     let running = Running::new(&["--size", "1280x720"]);
     running.picture();
     let (d, window) = (&running.display, running.window);
@@ -247,6 +263,7 @@ fn dragging_keeps_going() {
 
 #[test]
 fn a_file_that_cannot_be_opened_is_told_in_the_window() {
+    let _machine = shared_machine();
     let running = Running::new(&["missing.obj", "--size", "320x180"]);
     sleep(Duration::from_secs(2));
     let output = running.close();
@@ -261,6 +278,7 @@ fn a_file_that_cannot_be_opened_is_told_in_the_window() {
 
 #[test]
 fn resumed_windows_go_on_where_they_were_left() {
+    let _machine = shared_machine();
     let state = tempfile::tempdir().expect("a scratch folder");
     let variables = [("XDG_STATE_HOME", state.path())];
     let words = ["--size", "320x180", "--samples", "2"];

@@ -1,5 +1,7 @@
 //! The window on a virtual display.
 
+#[path = "../common/mod.rs"]
+mod common;
 #[path = "../common/running.rs"]
 mod running;
 #[path = "../common/x.rs"]

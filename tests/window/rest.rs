@@ -1,10 +1,9 @@
 //! The real window when nothing moves: from ambient occlusion it goes over to the sky's true visibility, without a jump.
 
-use std::sync::{Mutex, PoisonError};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::running::{Running, difference, program};
+use crate::running::{Running, difference, program, quiet_machine};
 use crate::x::{keysym, until};
 use skylight::compare::{Picture, read};
 
@@ -19,9 +18,6 @@ const VIEW: [&str; 8] = [
     "--ev100",
     "13",
 ];
-
-/// One window at a time: what a loaded machine draws slowly seems to stand still.
-static ALONE: Mutex<()> = Mutex::new(());
 
 /// Frames averaged at rest.
 const FRAMES: &str = "32";
@@ -74,7 +70,7 @@ fn same_light(a: &Picture, b: &Picture) -> bool {
 
 #[test]
 fn at_rest_the_window_converges_to_the_dome_without_a_jump() {
-    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let _machine = quiet_machine();
     let running = Running::bare(&[&VIEW[..], &["--samples", FRAMES]].concat());
     let shown = || running.display.picture(running.window, None);
     // Half an hour on and back: the light of the command line again, from the first preview on.
@@ -135,7 +131,7 @@ fn at_rest_the_window_converges_to_the_dome_without_a_jump() {
 
 #[test]
 fn who_asks_for_ambient_occlusion_keeps_it() {
-    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let _machine = quiet_machine();
     let kept = ["--visibility", "ssao", "--samples", FRAMES];
     let running = Running::bare(&[&VIEW[..], &kept].concat());
     let shown = running.picture();
@@ -148,7 +144,7 @@ fn who_asks_for_ambient_occlusion_keeps_it() {
 
 #[test]
 fn at_rest_the_panel_tells_of_the_last_frame() {
-    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let _machine = quiet_machine();
     let running = Running::new(&["--size", "640x360", "--samples", "3"]);
     until("the scene", || {
         (running.display.title(running.window) != "skylight").then_some(())

@@ -4,15 +4,13 @@
 //! is submitted alone and waited for. The whole frame is one submission.
 
 mod baseline;
-mod chart;
 mod hills;
 mod measure;
 mod report;
-mod routes;
 mod sheet;
 mod statistics;
+mod subdivide;
 mod sweep;
-mod sweep_chart;
 mod table;
 mod work;
 
@@ -22,14 +20,13 @@ use clap::Args;
 
 use super::job::Job;
 use super::motion::Motion;
-use super::svg_path;
 use crate::error::Result;
 use crate::output::{check_writable, print, write_text};
 use crate::settings::Options;
 use baseline::Baseline;
 use measure::{Bench, Subject};
 use report::{Head, Report};
-use sweep::{Sweep, SweepReport};
+use sweep::Sweep;
 
 /// What to measure, and where to put it.
 #[derive(Debug, Clone, Default, PartialEq, Args)]
@@ -42,9 +39,6 @@ pub struct BenchWishes {
     /// Write the table as CSV too, every row complete: device, commit, scene, size ..
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
-    /// Draw the table as a chart too.
-    #[arg(long, value_name = "FILE.svg", value_parser = svg_path)]
-    pub svg: Option<PathBuf>,
     /// Frames to measure [default: 100; 10 at each step of a sweep].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub frames: Option<u32>,
@@ -69,7 +63,7 @@ impl BenchWishes {
     }
 
     fn files(&self) -> impl Iterator<Item = &Path> {
-        let files = [&self.json, &self.csv, &self.svg];
+        let files = [&self.json, &self.csv];
         files.into_iter().filter_map(|file| file.as_deref())
     }
 }
@@ -87,16 +81,17 @@ pub fn run(wishes: &BenchWishes, mut options: Options) -> Result<()> {
     if let Some(sweep) = wishes.sweep {
         let report = sweep::run(sweep, &job, &context, wishes.motion, head)?;
         context.check_validation()?;
-        write_sweep(wishes, &report)?;
+        write(&wishes.json, || report.json())?;
+        write(&wishes.csv, || report.csv())?;
         return print(&report.to_string());
     }
     let subject = Subject::new(&job);
     let mut bench = Bench::new(&subject, &job.scene, &context, wishes.motion)?;
     let measured = bench.run(wishes.frames())?;
-    let routes = routes::measure(&job, &context, wishes.frames())?;
-    let report = Report::new(head, &measured, routes);
+    let report = Report::new(head, &measured);
     context.check_validation()?;
-    write_files(wishes, &report)?;
+    write(&wishes.json, || report.json())?;
+    write(&wishes.csv, || sheet::csv(&report))?;
     print(&report.to_string())?;
     let Some(baseline) = baseline else {
         return Ok(());
@@ -105,18 +100,6 @@ pub fn run(wishes: &BenchWishes, mut options: Options) -> Result<()> {
     wishes
         .fail_above
         .map_or(Ok(()), |factor| baseline.check(&report, factor))
-}
-
-fn write_files(wishes: &BenchWishes, report: &Report) -> Result<()> {
-    write(&wishes.json, || report.json())?;
-    write(&wishes.csv, || sheet::csv(report))?;
-    write(&wishes.svg, || chart::draw(report))
-}
-
-fn write_sweep(wishes: &BenchWishes, report: &SweepReport) -> Result<()> {
-    write(&wishes.json, || report.json())?;
-    write(&wishes.csv, || report.csv())?;
-    write(&wishes.svg, || sweep_chart::draw(report))
 }
 
 /// Writes a file that is wanted.

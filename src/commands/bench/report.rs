@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 
 use super::BenchWishes;
 use super::measure::{Measured, Whole, trustworthy};
-use super::routes::Route;
 use super::statistics::Summary;
 use super::work::Work;
 use crate::commands::job::Job;
@@ -30,9 +29,6 @@ pub struct Report {
     pub frame: Frame,
     /// The whole frame with sky, irradiance and shadow map drawn anew.
     pub frame_anew: Frame,
-    /// The irradiance cube by every route.
-    #[serde(default)]
-    pub irradiance_routes: Vec<Route>,
 }
 
 /// What was measured.
@@ -141,7 +137,7 @@ fn commit() -> String {
 
 impl Report {
     /// Sums up.
-    pub fn new(head: Head, measured: &Measured, irradiance_routes: Vec<Route>) -> Self {
+    pub fn new(head: Head, measured: &Measured) -> Self {
         let rows = measured.passes.iter().map(|(name, samples)| {
             let time = samples.summary();
             Row {
@@ -156,7 +152,6 @@ impl Report {
             parts: measured.parts.summary(),
             frame: Frame::new(&measured.moving),
             frame_anew: Frame::new(&measured.anew),
-            irradiance_routes,
         }
     }
 

@@ -3,7 +3,6 @@
 use std::fmt::{self, Display, Formatter};
 
 use super::report::{Frame, Head, Report, Row, is_whole};
-use super::routes;
 use super::statistics::Summary;
 
 impl Display for Report {
@@ -19,9 +18,7 @@ impl Display for Report {
         frame(f, &self.head.frame_name, &self.frame)?;
         frame(f, "whole frame, everything anew", &self.frame_anew)?;
         self.sum(f)?;
-        self.work(f)?;
-        writeln!(f)?;
-        routes::table(f, &self.irradiance_routes)
+        self.work(f)
     }
 }
 

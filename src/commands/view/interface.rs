@@ -31,7 +31,7 @@ use super::style;
 use clock::Clock;
 use probe::Probe;
 use sky_dome::SkyDome;
-use sun::Place;
+use sun::PlaceField;
 use timings::TimingChart;
 
 /// A request to the event loop.
@@ -49,7 +49,7 @@ pub(super) struct Interface {
     help: bool,
     notes: Notes,
     clock: Clock,
-    place: Place,
+    place: PlaceField,
     probe: Probe,
     sky_dome: SkyDome,
     timings: TimingChart,
@@ -64,7 +64,7 @@ impl Interface {
             help: false,
             notes: Notes::new(quiet),
             clock: Clock::default(),
-            place: Place::default(),
+            place: PlaceField::default(),
             probe: Probe::default(),
             sky_dome: SkyDome::default(),
             timings: TimingChart::default(),

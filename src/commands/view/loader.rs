@@ -56,7 +56,7 @@ impl Loader {
                     stage,
                 });
             };
-            let result = Box::new(scene::load_telling(path.as_deref(), &options, &tell));
+            let result = Box::new(scene::load_with_progress(path.as_deref(), &options, &tell));
             let _ = proxy.send_event(Message::Loaded {
                 ticket,
                 path,

@@ -20,20 +20,11 @@ fn file_of(scene: Option<&Path>) -> Option<PathBuf> {
         (None, path) => {
             let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-            format!(
-                "{stem}-{:016x}",
-                fnv1a(whole.as_os_str().as_encoded_bytes())
-            )
+            let hash = blake3::hash(whole.as_os_str().as_encoded_bytes()).to_hex();
+            format!("{stem}-{}", &hash[..16])
         }
     };
     Some(folder.join("skylight").join(name).with_extension("toml"))
-}
-
-/// Fowler, Noll & Vo's hash 1a, 64 bits: the same in every version of the program, which the standard library's is not.
-fn fnv1a(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
-    })
 }
 
 /// Keeps the settings of a document, by option name.
@@ -93,6 +84,5 @@ mod tests {
         let file = |path: &str| file_of(Some(Path::new(path))).expect("a state folder");
         assert_ne!(file("/a/house.obj"), file("/b/house.obj"));
         assert_eq!(file("/a/house.obj"), file("/a/house.obj"));
-        assert_eq!(fnv1a(b"foobar"), 0x8594_4171_f739_67e8);
     }
 }

@@ -1,4 +1,4 @@
-//! Instance, device, queue, memory and the few samplers: what everything else keeps alive.
+//! The context: instance, device, queue, allocator and samplers.
 
 use std::mem::ManuallyDrop;
 use std::path::PathBuf;
@@ -8,29 +8,32 @@ use ash::{ext, khr, vk};
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, Allocator, AllocatorCreateDesc};
 
 use crate::gpu::device::fault::{Call, Faults};
-use crate::gpu::device::heap::keep_freed_memory;
 use crate::gpu::device::instance::{InstanceGuard, has_instance_extension, load};
 use crate::gpu::device::select::{self, DeviceSummary, Optional};
 use crate::gpu::device::startup::{Startup, Step};
-use crate::gpu::device::surface::{self, RawSurface, Surface, WindowHandles};
-use crate::gpu::device::validation::Messenger;
+use crate::gpu::device::surface::{self, RawSurface, Window};
+#[cfg(feature = "window")]
+use crate::gpu::device::surface::{Surface, WindowHandles};
+use crate::gpu::device::validation::{Log, Messenger};
 use crate::gpu::error::{During, GpuError, Result};
-use crate::gpu::memory::sampler::{self, Sampler};
+use crate::gpu::memory::image::{Sampler, create_samplers};
 use crate::gpu::pipeline::cache::{CacheState, Key, PipelineCache};
 
-/// How to make a [`Context`].
+/// How to open a [`Context`].
 #[derive(Debug, Clone, Default)]
 pub struct ContextOptions {
-    /// Index or part of the name of the device; the best one otherwise.
+    /// Index or part of the name of the device; by default the best one.
     pub device: Option<String>,
-    /// Turn on the validation layer with synchronization validation.
+    /// Enable the validation layer with synchronization validation.
     pub validate: bool,
-    /// What to do without although the device has it.
+    /// Optional features not to use although the device has them.
     pub without: Vec<Optional>,
-    /// Where the driver's pipeline cache is kept between runs; nowhere without it.
+    /// Folder that keeps the driver's pipeline cache between runs; none: it is not kept.
     pub cache_folder: Option<PathBuf>,
     /// For tests: a call that is to fail, for instance `submit@3=device-lost`.
     pub fault: Option<String>,
+    /// For tests: upload through staging buffers although the device shares its memory with the CPU.
+    pub stage_uploads: bool,
 }
 
 /// A logical device destroyed on drop.
@@ -40,7 +43,7 @@ struct DeviceGuard {
 
 impl Drop for DeviceGuard {
     fn drop(&mut self) {
-        // SAFETY: all resources hold the Context, so none is alive any more.
+        // SAFETY: every resource holds the context, so none is alive.
         unsafe {
             let _ = self.raw.device_wait_idle();
             self.raw.destroy_device(None);
@@ -48,18 +51,44 @@ impl Drop for DeviceGuard {
     }
 }
 
-/// The device and what belongs to it. Shared by everything that was made with it.
+/// Functions of the extensions that are enabled.
+pub(in crate::gpu) struct Extensions {
+    pub(in crate::gpu) push_descriptor: Option<khr::push_descriptor::Device>,
+    #[cfg(feature = "window")]
+    pub(in crate::gpu) swapchain: Option<khr::swapchain::Device>,
+    pub(in crate::gpu) debug: Option<ext::debug_utils::Device>,
+}
+
+impl Extensions {
+    fn load(
+        entry: &ash::Entry,
+        instance: &ash::Instance,
+        device: &ash::Device,
+        push_descriptor: bool,
+        #[cfg(feature = "window")] presents: bool,
+    ) -> Result<Self> {
+        let has_debug = has_instance_extension(entry, None, ext::debug_utils::NAME)?;
+        Ok(Self {
+            push_descriptor: push_descriptor
+                .then(|| khr::push_descriptor::Device::new(instance, device)),
+            #[cfg(feature = "window")]
+            swapchain: presents.then(|| khr::swapchain::Device::new(instance, device)),
+            debug: has_debug.then(|| ext::debug_utils::Device::new(instance, device)),
+        })
+    }
+}
+
+/// A device with its queue, allocator, samplers and caches. Every resource keeps it alive.
 pub struct Context {
-    // Dropped by hand first, then in the order of the fields: device, messenger, instance, loader.
+    // `Drop` destroys what has no destructor of its own; then the fields are dropped in this order.
     allocator: ManuallyDrop<Arc<Mutex<Allocator>>>,
     samplers: [vk::Sampler; Sampler::COUNT],
     cache: PipelineCache,
     pub(in crate::gpu) faults: Faults,
+    pub(in crate::gpu) stage_uploads: bool,
     pub(in crate::gpu) startup: Startup,
     device: DeviceGuard,
-    pub(in crate::gpu) push_descriptor: Option<khr::push_descriptor::Device>,
-    pub(in crate::gpu) swapchain: Option<khr::swapchain::Device>,
-    pub(in crate::gpu) debug: Option<ext::debug_utils::Device>,
+    pub(in crate::gpu) extensions: Extensions,
     pub(in crate::gpu) queue: vk::Queue,
     pub(in crate::gpu) queue_family: u32,
     pub(in crate::gpu) physical: vk::PhysicalDevice,
@@ -69,6 +98,10 @@ pub struct Context {
     pub(in crate::gpu) reloaded: crate::gpu::pipeline::hot_reload::Reloaded,
     messenger: Option<Messenger>,
     instance: InstanceGuard,
+    #[cfg_attr(
+        not(feature = "window"),
+        expect(dead_code, reason = "keeps the loader's library loaded")
+    )]
     entry: ash::Entry,
 }
 
@@ -76,7 +109,7 @@ impl Context {
     /// Opens a device.
     ///
     /// # Errors
-    /// No loader, no device, an unknown `device`, a missing feature (named), or a driver fault.
+    /// Without a loader, a device, or one that matches `device`; when the device lacks a feature (named) or the driver fails.
     pub fn new(options: &ContextOptions) -> Result<Arc<Self>> {
         Ok(Self::open(options, None)?.0)
     }
@@ -84,7 +117,8 @@ impl Context {
     /// Opens a device that can present to a window.
     ///
     /// # Errors
-    /// As [`Context::new`], and when no device can present to this window.
+    /// As [`Context::new`]; also when no device can present to this window.
+    #[cfg(feature = "window")]
     pub fn for_window(
         options: &ContextOptions,
         window: Arc<dyn WindowHandles>,
@@ -96,32 +130,18 @@ impl Context {
 
     fn open(
         options: &ContextOptions,
-        window: Option<Arc<dyn WindowHandles>>,
+        window: Option<Window>,
     ) -> Result<(Arc<Self>, Option<RawSurface>)> {
         let mut startup = Startup::new();
         let faults = Faults::new(options.fault.as_deref())?;
         let entry = load()?;
         startup.done("Vulkan loader");
-        let windows = window
-            .as_deref()
-            .map_or(Ok(&[][..]), surface::instance_extensions)?;
-        let instance = InstanceGuard::new(&entry, options.validate, windows)?;
-        let messenger = options
-            .validate
-            .then(|| Messenger::new(&entry, &instance.raw))
-            .transpose()?;
-        let surface = window
-            .map(|window| RawSurface::new(&entry, &instance.raw, window))
-            .transpose()?;
+        let (instance, messenger, surface) = open_instance(&entry, options.validate, window)?;
         startup.done("instance");
         let chosen = select::choose(
             select::candidates(&instance.raw, surface.as_ref(), &options.without)?,
             options.device.as_deref(),
         )?;
-        let push = chosen.summary.has(Optional::PushDescriptor);
-        if chosen.summary.is_software() {
-            keep_freed_memory();
-        }
         startup.done("choice of the device");
         let device = create_device(&instance.raw, &chosen, surface.is_some())?;
         // SAFETY: `chosen` comes from this instance; the queue family was found on it.
@@ -132,15 +152,16 @@ impl Context {
             )
         };
         startup.done("device");
-        let debug = has_instance_extension(&entry, None, ext::debug_utils::NAME)?
-            .then(|| ext::debug_utils::Device::new(&instance.raw, &device.raw));
-        let push_descriptor =
-            push.then(|| khr::push_descriptor::Device::new(&instance.raw, &device.raw));
-        let swapchain = surface
-            .is_some()
-            .then(|| khr::swapchain::Device::new(&instance.raw, &device.raw));
+        let extensions = Extensions::load(
+            &entry,
+            &instance.raw,
+            &device.raw,
+            chosen.summary.has(Optional::PushDescriptor),
+            #[cfg(feature = "window")]
+            surface.is_some(),
+        )?;
         let allocator = create_allocator(&instance.raw, &device.raw, chosen.handle)?;
-        let samplers = sampler::create_all(&device.raw)?;
+        let samplers = create_samplers(&device.raw)?;
         startup.done("memory, samplers");
         let key = Key::new(&properties);
         let cache = PipelineCache::new(&device.raw, key, options.cache_folder.as_deref())?;
@@ -150,11 +171,10 @@ impl Context {
             samplers,
             cache,
             faults,
+            stage_uploads: options.stage_uploads,
             startup,
             device,
-            push_descriptor,
-            swapchain,
-            debug,
+            extensions,
             queue,
             queue_family: chosen.queue_family,
             physical: chosen.handle,
@@ -169,25 +189,28 @@ impl Context {
         Ok((context, surface))
     }
 
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn entry(&self) -> &ash::Entry {
         &self.entry
     }
 
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn instance(&self) -> &ash::Instance {
         &self.instance.raw
     }
 
-    /// The allocator, for a renderer that manages its own buffers; it must be dropped before the context.
+    /// The allocator, for a renderer that manages its own buffers. It must be dropped before the context.
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn shared_allocator(&self) -> Arc<Mutex<Allocator>> {
         Arc::clone(&self.allocator)
     }
 
-    /// The device in words.
+    /// Name, kind and features of the device.
     pub fn summary(&self) -> &DeviceSummary {
         &self.summary
     }
 
-    /// Whether the device counts what its pipelines do.
+    /// Whether pipeline statistics are available.
     pub(in crate::gpu) fn counts_work(&self) -> bool {
         self.summary.has(Optional::PipelineStatistics)
     }
@@ -196,48 +219,45 @@ impl Context {
         self.cache.raw
     }
 
-    /// What became of the file of the pipeline cache.
+    /// Outcome of reading the file of the pipeline cache.
     pub fn cache_state(&self) -> CacheState {
         self.cache.state
     }
 
-    /// What opening the device took, step by step.
+    /// The steps of opening the device, with their times.
     pub fn opening(&self) -> &[Step] {
         &self.startup.steps
     }
 
-    /// Every pipeline made so far, with what it took; they may have been made at the same time.
+    /// Every pipeline created so far, with its time; several may have been created at once.
     pub fn pipelines(&self) -> Vec<Step> {
         self.startup.pipelines()
     }
 
-    /// Messages of the validation layer so far; empty when validation is off.
+    /// Errors and warnings of the validation layer so far, each once with its identifier and the number of its reports; empty
+    /// when validation is off.
     pub fn validation_messages(&self) -> Vec<String> {
-        self.messenger
-            .as_ref()
-            .map(|m| m.log().messages())
-            .unwrap_or_default()
+        let log = self.messenger.as_ref().map(Messenger::log);
+        log.map(Log::read).unwrap_or_default()
     }
 
-    /// Fails when the validation layer has said anything.
+    /// Fails when the validation layer has reported an error or a warning.
     ///
     /// # Errors
-    /// Counts the messages and quotes the first.
+    /// Lists the messages, each once.
     pub fn check_validation(&self) -> Result<()> {
         let messages = self.validation_messages();
-        match messages.first() {
-            None => Ok(()),
-            Some(first) => Err(GpuError::Validation {
-                count: messages.len(),
-                first: first.clone(),
-            }),
+        if messages.is_empty() {
+            Ok(())
+        } else {
+            Err(GpuError::Validation(messages))
         }
     }
 
-    /// The first of `formats` that can be sampled and rendered to (blended and filtered are not asked for).
+    /// The first of `formats` that can be sampled and rendered to; blending and filtering are not required.
     ///
     /// # Errors
-    /// Names the formats when none can.
+    /// When none can; the formats are named.
     pub fn supported_format(&self, formats: &[vk::Format]) -> Result<vk::Format> {
         let needed =
             vk::FormatFeatureFlags::COLOR_ATTACHMENT | vk::FormatFeatureFlags::SAMPLED_IMAGE;
@@ -265,13 +285,13 @@ impl Context {
     }
 
     pub(in crate::gpu) fn allocator(&self) -> MutexGuard<'_, Allocator> {
-        // A panic inside the allocator is a fault of its own; going on leaks at worst.
+        // After a panic inside the allocator its use may leak, no more.
         self.allocator
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Memory for a buffer or an image, which owns it from then on.
+    /// Memory for a buffer or an image, which takes ownership.
     pub(in crate::gpu) fn allocate(&self, desc: &AllocationCreateDesc<'_>) -> Result<Allocation> {
         let refused = |reason: String| GpuError::Memory {
             what: desc.name.into(),
@@ -295,14 +315,16 @@ impl Context {
 
     /// Gives a handle a name that validation messages and captures show.
     pub(in crate::gpu) fn name<H: vk::Handle>(&self, handle: H, name: &str) {
-        let Some(debug) = &self.debug else { return };
+        let Some(debug) = &self.extensions.debug else {
+            return;
+        };
         let Ok(name) = std::ffi::CString::new(name) else {
             return;
         };
         let info = vk::DebugUtilsObjectNameInfoEXT::default()
             .object_handle(handle)
             .object_name(&name);
-        // SAFETY: the handle belongs to this device. A name that cannot be set is no loss.
+        // SAFETY: the handle belongs to this device. A name that cannot be set does not matter.
         let _ = unsafe { debug.set_debug_utils_object_name(&info) };
     }
 
@@ -311,7 +333,7 @@ impl Context {
         self.allocator().generate_report().total_allocated_bytes
     }
 
-    /// Waits until the device has nothing to do.
+    /// Waits until the device is idle.
     ///
     /// # Errors
     /// When the device is lost.
@@ -325,7 +347,7 @@ impl Context {
 
 impl Drop for Context {
     fn drop(&mut self) {
-        // SAFETY: no resource is alive (each holds an Arc of this); the allocator is dropped once, before the device.
+        // SAFETY: no resource is alive (each holds an Arc of the context); the allocator is dropped once, before the device.
         unsafe {
             let _ = self.raw().device_wait_idle();
             self.cache.save_and_destroy(&self.device.raw);
@@ -335,6 +357,25 @@ impl Drop for Context {
             ManuallyDrop::drop(&mut self.allocator);
         }
     }
+}
+
+/// The instance, the messenger when it is validated, and the surface of the window if there is one.
+fn open_instance(
+    entry: &ash::Entry,
+    validate: bool,
+    window: Option<Window>,
+) -> Result<(InstanceGuard, Option<Messenger>, Option<RawSurface>)> {
+    let windows = window
+        .as_ref()
+        .map_or(Ok(&[][..]), surface::instance_extensions)?;
+    let instance = InstanceGuard::new(entry, validate, windows)?;
+    let messenger = validate
+        .then(|| Messenger::new(entry, &instance.raw))
+        .transpose()?;
+    let surface = window
+        .map(|window| RawSurface::new(entry, &instance.raw, window))
+        .transpose()?;
+    Ok((instance, messenger, surface))
 }
 
 fn create_device(

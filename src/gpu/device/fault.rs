@@ -1,7 +1,6 @@
-//! Faults on purpose: a test names a Vulkan call, and that call answers as a broken driver would.
+//! Fault injection: a test names a Vulkan call, and that call returns an error as a broken driver would.
 //!
-//! Without a planned fault a call costs one comparison with `None`; nothing is compiled differently for tests, so what they
-//! see is what users get.
+//! Without a planned fault a call costs one comparison with `None`. Tests and users run the same build.
 
 use std::str::FromStr;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -21,13 +20,15 @@ pub(in crate::gpu) enum Call {
     Image,
     /// Creating a pipeline.
     Pipeline,
+    /// Allocating a descriptor set.
+    Descriptors,
     /// Beginning a command buffer.
     Record,
     /// Submitting work.
     Submit,
     /// Waiting for work.
     Wait,
-    /// Asking what the window's surface can do.
+    /// Querying the capabilities of the window's surface.
     Surface,
     /// Acquiring an image of the window.
     Acquire,
@@ -35,11 +36,12 @@ pub(in crate::gpu) enum Call {
     Present,
 }
 
-const CALLS: [(&str, Call); 10] = [
+const CALLS: [(&str, Call); 11] = [
     ("memory", Call::Memory),
     ("buffer", Call::Buffer),
     ("image", Call::Image),
     ("pipeline", Call::Pipeline),
+    ("descriptors", Call::Descriptors),
     ("record", Call::Record),
     ("submit", Call::Submit),
     ("wait", Call::Wait),
@@ -48,23 +50,24 @@ const CALLS: [(&str, Call); 10] = [
     ("present", Call::Present),
 ];
 
-const ANSWERS: [(&str, vk::Result); 5] = [
+const ERRORS: [(&str, vk::Result); 6] = [
     ("device-lost", vk::Result::ERROR_DEVICE_LOST),
     (
         "out-of-device-memory",
         vk::Result::ERROR_OUT_OF_DEVICE_MEMORY,
     ),
     ("out-of-host-memory", vk::Result::ERROR_OUT_OF_HOST_MEMORY),
+    ("out-of-pool-memory", vk::Result::ERROR_OUT_OF_POOL_MEMORY),
     ("surface-lost", vk::Result::ERROR_SURFACE_LOST_KHR),
     ("out-of-date", vk::Result::ERROR_OUT_OF_DATE_KHR),
 ];
 
-/// One fault: which call, the how many-th of its kind from 1 on, and its answer. As text: `submit@3=device-lost`.
+/// One fault: a call, its occurrence, from 1, and the error that it returns. As text: `submit@3=device-lost`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Fault {
     call: Call,
-    number: u32,
-    answer: vk::Result,
+    occurrence: u32,
+    error: vk::Result,
 }
 
 impl FromStr for Fault {
@@ -73,11 +76,11 @@ impl FromStr for Fault {
     fn from_str(text: &str) -> Result<Self, GpuError> {
         let parse = || {
             let (call, rest) = text.split_once('@')?;
-            let (number, answer) = rest.split_once('=')?;
+            let (occurrence, error) = rest.split_once('=')?;
             Some(Self {
                 call: CALLS.iter().find(|(name, _)| *name == call)?.1,
-                number: number.parse().ok().filter(|n| *n > 0)?,
-                answer: ANSWERS.iter().find(|(name, _)| *name == answer)?.1,
+                occurrence: occurrence.parse().ok().filter(|n| *n > 0)?,
+                error: ERRORS.iter().find(|(name, _)| *name == error)?.1,
             })
         };
         parse().ok_or_else(|| GpuError::BadFault(text.to_owned()))
@@ -100,7 +103,7 @@ impl Faults {
         })
     }
 
-    /// Asked before a call is made: the answer that it is to have instead.
+    /// The error that a call is to return instead of being made.
     #[inline]
     pub fn at(&self, call: Call) -> Result<(), vk::Result> {
         match &self.planned {
@@ -110,15 +113,15 @@ impl Faults {
     }
 
     fn strike(&self, fault: &Fault, call: Call) -> Result<(), vk::Result> {
-        // A lost device stays lost, whatever is asked of it; memory or a surface may be there again the next time.
-        let is_lost = fault.answer == vk::Result::ERROR_DEVICE_LOST;
+        // A lost device stays lost for every call; memory or a surface may be available again the next time.
+        let is_lost = fault.error == vk::Result::ERROR_DEVICE_LOST;
         let strikes = if call == fault.call {
-            let number = self.seen.fetch_add(1, Ordering::Relaxed) + 1;
-            number == fault.number || (is_lost && number > fault.number)
+            let occurrence = self.seen.fetch_add(1, Ordering::Relaxed) + 1;
+            occurrence == fault.occurrence || (is_lost && occurrence > fault.occurrence)
         } else {
-            is_lost && self.seen.load(Ordering::Relaxed) >= fault.number
+            is_lost && self.seen.load(Ordering::Relaxed) >= fault.occurrence
         };
-        if strikes { Err(fault.answer) } else { Ok(()) }
+        if strikes { Err(fault.error) } else { Ok(()) }
     }
 }
 
@@ -160,7 +163,7 @@ mod tests {
             "wait@1=tired",
         ] {
             let line = Faults::new(Some(text)).expect_err(text).to_string();
-            assert!(line.contains("CALL@NUMBER=ANSWER"), "{line}");
+            assert!(line.contains("CALL@OCCURRENCE=ERROR"), "{line}");
         }
     }
 }

@@ -4,7 +4,7 @@ use std::ffi::{CStr, c_char};
 
 use ash::{ext, vk};
 
-use crate::gpu::device::validation::LAYER;
+use crate::gpu::device::validation::{LAYER, SyncRequest, sync_setting};
 use crate::gpu::error::{During, GpuError, Result};
 
 /// An instance destroyed on drop.
@@ -13,7 +13,7 @@ pub(in crate::gpu) struct InstanceGuard {
 }
 
 impl InstanceGuard {
-    /// `windows` are the extensions that a window system asks for.
+    /// `windows` lists the extensions that the window system needs.
     pub(in crate::gpu) fn new(
         entry: &ash::Entry,
         validate: bool,
@@ -28,18 +28,20 @@ impl InstanceGuard {
             extensions.push(ext::debug_utils::NAME.as_ptr());
         }
         let mut layers = Vec::new();
+        let settings = [sync_setting(&vk::TRUE)];
+        let mut settings = vk::LayerSettingsCreateInfoEXT::default().settings(&settings);
         let sync = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
         let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&sync);
         let mut info = vk::InstanceCreateInfo::default().application_info(&app);
         if validate {
-            if !has_layer(entry)? {
-                return Err(GpuError::NoValidationLayer);
-            }
+            let request = SyncRequest::of_layer(entry)?;
             layers.push(LAYER.as_ptr());
-            if has_instance_extension(entry, Some(LAYER), ext::validation_features::NAME)? {
-                extensions.push(ext::validation_features::NAME.as_ptr());
-                info = info.push_next(&mut features);
-            }
+            extensions.extend(request.map(|request| request.extension().as_ptr()));
+            info = match request {
+                Some(SyncRequest::LayerSettings) => info.push_next(&mut settings),
+                Some(SyncRequest::ValidationFeatures) => info.push_next(&mut features),
+                None => info,
+            };
         }
         let info = info
             .enabled_extension_names(&extensions)
@@ -58,23 +60,14 @@ impl InstanceGuard {
 
 impl Drop for InstanceGuard {
     fn drop(&mut self) {
-        // SAFETY: children were destroyed before (field order of Context).
+        // SAFETY: its children are destroyed before it (order of the fields of Context).
         unsafe { self.raw.destroy_instance(None) };
     }
 }
 
 pub(in crate::gpu) fn load() -> Result<ash::Entry> {
-    // SAFETY: the system's Vulkan loader runs its initialisers; nothing can be assumed but that it is one.
+    // SAFETY: this runs the initialisers of the system's Vulkan loader, which are trusted.
     unsafe { ash::Entry::load() }.map_err(|e| GpuError::NoLoader(e.to_string()))
-}
-
-fn has_layer(entry: &ash::Entry) -> Result<bool> {
-    // SAFETY: no arguments to be wrong.
-    let layers =
-        unsafe { entry.enumerate_instance_layer_properties() }.during("list Vulkan layers")?;
-    Ok(layers
-        .iter()
-        .any(|l| l.layer_name_as_c_str().is_ok_and(|n| n == LAYER)))
 }
 
 pub(in crate::gpu) fn has_instance_extension(

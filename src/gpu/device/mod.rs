@@ -2,9 +2,12 @@
 
 pub(in crate::gpu) mod context;
 pub(in crate::gpu) mod fault;
-pub(in crate::gpu) mod heap;
 pub(in crate::gpu) mod instance;
 pub(in crate::gpu) mod select;
 pub(in crate::gpu) mod startup;
+#[cfg(feature = "window")]
+pub(in crate::gpu) mod surface;
+#[cfg(not(feature = "window"))]
+#[path = "no_surface.rs"]
 pub(in crate::gpu) mod surface;
 pub(in crate::gpu) mod validation;

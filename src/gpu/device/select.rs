@@ -1,4 +1,4 @@
-//! Choice of the device, and what each one lacks.
+//! Enumeration and choice of devices.
 
 use std::ffi::{CStr, c_char};
 
@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use crate::gpu::device::surface::RawSurface;
 use crate::gpu::error::{During, GpuError, Result};
 
-/// What a device is called and whether the renderer can use it.
+/// Description of a device and whether the renderer can use it.
 #[derive(Debug, Clone)]
 pub struct DeviceSummary {
     /// Index in the driver's order, for `--device`.
@@ -19,17 +19,17 @@ pub struct DeviceSummary {
     pub kind: &'static str,
     /// Vulkan version, `1.3.230`.
     pub api: String,
-    /// Driver name and its own version text.
+    /// Name and version text of the driver.
     pub driver: String,
-    /// Features, extensions and formats that are needed but missing; empty when the device will do.
+    /// Required features, extensions and formats that are missing; empty for a usable device.
     pub missing: Vec<String>,
-    /// What is used where present, with whether it is.
+    /// Optional features, with whether they are used.
     pub optional: Vec<(Optional, bool)>,
     /// Largest edge of a 2D image, pixels.
     pub max_image_edge: u32,
 }
 
-/// What is used where present, and done without elsewhere.
+/// Features that are used where present and not required.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Optional {
     /// The extension VK_KHR_push_descriptor; descriptor pools otherwise.
@@ -52,7 +52,7 @@ impl Optional {
 }
 
 impl DeviceSummary {
-    /// Whether something optional is present and may be used.
+    /// Whether an optional feature is used.
     pub fn has(&self, optional: Optional) -> bool {
         self.optional.contains(&(optional, true))
     }
@@ -63,7 +63,7 @@ impl DeviceSummary {
     }
 }
 
-/// What [`DeviceSummary::kind`] says of a device that runs on the CPU.
+/// [`DeviceSummary::kind`] of devices that run on the CPU.
 const SOFTWARE: &str = "software";
 
 /// A device under consideration.
@@ -76,7 +76,7 @@ pub(in crate::gpu) struct Candidate {
     rank: u32,
 }
 
-/// Name of the optional extension that spares descriptor pools.
+/// The optional extension that replaces descriptor pools.
 pub(in crate::gpu) const PUSH_DESCRIPTORS: &CStr = ash::khr::push_descriptor::NAME;
 
 fn text(chars: &[c_char]) -> String {
@@ -98,8 +98,7 @@ fn kind_and_rank(kind: vk::PhysicalDeviceType) -> (&'static str, u32) {
     }
 }
 
-/// The candidates in the driver's order; for a window, what keeps a device from presenting to it counts as missing. What
-/// is listed in `without` counts as not present.
+/// The candidates in the driver's order. For a window, presentation to it is required. Features in `without` count as absent.
 pub(in crate::gpu) fn candidates(
     instance: &ash::Instance,
     surface: Option<&RawSurface>,
@@ -244,8 +243,8 @@ fn missing_features(instance: &ash::Instance, handle: vk::PhysicalDevice) -> Vec
     .collect()
 }
 
-/// The device the user named (index or part of the name), else the best of those that lack nothing:
-/// discrete before integrated before software.
+/// The device that the user named (index or part of the name); by default the best usable one: discrete before integrated
+/// before software.
 pub(in crate::gpu) fn choose(
     candidates: Vec<Candidate>,
     wanted: Option<&str>,
@@ -288,7 +287,7 @@ fn best(candidates: &[Candidate]) -> Result<usize> {
         .filter(|(_, c)| c.summary.missing.is_empty());
     match able.min_by_key(|(_, c)| c.rank) {
         Some((index, _)) => Ok(index),
-        // None will do: say what the most likely one lacks.
+        // None is usable: the error names what the first one lacks.
         None => usable(&candidates[0].summary).map(|()| 0),
     }
 }
@@ -316,7 +315,7 @@ fn named(summaries: &[&DeviceSummary], wanted: &str) -> Result<usize> {
         })
 }
 
-/// Every device of this machine, also those that will not do. What is listed in `without` counts as not present.
+/// Every device of this machine, including unusable ones. Features in `without` count as absent.
 ///
 /// # Errors
 /// When there is no Vulkan loader or the driver fails.

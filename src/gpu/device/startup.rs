@@ -1,4 +1,4 @@
-//! Where the time goes between the start and the first frame.
+//! Times of the steps from the start to the first frame.
 
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
@@ -6,13 +6,13 @@ use std::time::Instant;
 /// Time of one step, milliseconds of the wall clock.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
-    /// What was done.
+    /// What the step does.
     pub name: String,
-    /// How long it took.
+    /// Its time.
     pub ms: f64,
 }
 
-/// Steps of opening a device, and the pipelines made since.
+/// Steps of opening a device, and the pipelines created since.
 #[derive(Debug)]
 pub(in crate::gpu) struct Startup {
     last: Instant,
@@ -29,7 +29,7 @@ impl Startup {
         }
     }
 
-    /// Notes what took the time since the last note.
+    /// Adds the step that ends now.
     pub(in crate::gpu) fn done(&mut self, name: &str) {
         let now = Instant::now();
         self.steps.push(Step {
@@ -39,13 +39,13 @@ impl Startup {
         self.last = now;
     }
 
-    /// Notes a pipeline that was begun at `start`.
+    /// Adds a pipeline whose creation began at `start`.
     pub(in crate::gpu) fn pipeline(&self, name: &str, start: Instant) {
         let step = Step {
             name: name.to_owned(),
             ms: start.elapsed().as_secs_f64() * 1e3,
         };
-        // A panic while pushing leaves a whole list behind.
+        // A panic while pushing leaves a usable list.
         let mut pipelines = self
             .pipelines
             .lock()

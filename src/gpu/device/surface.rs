@@ -1,4 +1,4 @@
-//! The surface of a window: where a swapchain presents to.
+//! The surface of a window, to which a swapchain presents.
 
 use std::ffi::c_char;
 use std::sync::Arc;
@@ -10,36 +10,37 @@ use crate::gpu::device::context::Context;
 use crate::gpu::device::fault::Call;
 use crate::gpu::error::{During, GpuError, Result};
 
-/// A window, of whatever library.
+/// A window of any library.
 pub trait WindowHandles: HasDisplayHandle + HasWindowHandle {}
 
 impl<W: HasDisplayHandle + HasWindowHandle> WindowHandles for W {}
+
+/// The window of a surface.
+pub(in crate::gpu) type Window = Arc<dyn WindowHandles>;
 
 fn refused(error: &raw_window_handle::HandleError) -> GpuError {
     GpuError::Window(error.to_string())
 }
 
-/// Extensions that an instance needs to present to this window.
-pub(in crate::gpu) fn instance_extensions(
-    window: &dyn WindowHandles,
-) -> Result<&'static [*const c_char]> {
+/// Instance extensions for presentation to this window.
+pub(in crate::gpu) fn instance_extensions(window: &Window) -> Result<&'static [*const c_char]> {
     let display = window.display_handle().map_err(|e| refused(&e))?;
     ash_window::enumerate_required_extensions(display.as_raw())
         .during("list the extensions of the window system")
 }
 
-/// A surface that keeps its window alive; destroyed on drop, which must come before the instance's.
+/// A surface, which keeps its window alive. It must be dropped before the instance.
 pub(in crate::gpu) struct RawSurface {
     loader: khr::surface::Instance,
     handle: vk::SurfaceKHR,
-    window: Arc<dyn WindowHandles>,
+    window: Window,
 }
 
 impl RawSurface {
     pub(in crate::gpu) fn new(
         entry: &ash::Entry,
         instance: &ash::Instance,
-        window: Arc<dyn WindowHandles>,
+        window: Window,
     ) -> Result<Self> {
         let display_handle = window.display_handle().map_err(|e| refused(&e))?;
         let window_handle = window.window_handle().map_err(|e| refused(&e))?;
@@ -78,7 +79,7 @@ impl RawSurface {
 
 impl Drop for RawSurface {
     fn drop(&mut self) {
-        // SAFETY: its swapchain was destroyed before (it is owned by the same struct, declared before).
+        // SAFETY: the swapchain, declared before it in the same struct, is destroyed already.
         unsafe { self.loader.destroy_surface(self.handle, None) };
     }
 }
@@ -102,7 +103,7 @@ impl Surface {
         self.surface.handle
     }
 
-    /// Makes it anew after the window system lost it; its swapchain must be gone.
+    /// Creates it again after it was lost; its swapchain must have been destroyed.
     pub(in crate::gpu) fn recreate(&mut self) -> Result<()> {
         let window = self.surface.window.clone();
         self.surface = RawSurface::new(self.context.entry(), self.context.instance(), window)?;

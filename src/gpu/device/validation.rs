@@ -1,37 +1,137 @@
-//! The validation canary: messages of the layer are kept, so that a test or `--validate` can fail on them.
+//! The validation layer: which extension switches synchronization validation on, and the messages that it reports.
 
 use std::ffi::{CStr, c_void};
-use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use ash::{ext, vk};
 
-use crate::gpu::error::{During, Result};
+use crate::gpu::device::instance::has_instance_extension;
+use crate::gpu::error::{During, GpuError, Result};
 
 /// Name of the layer.
 pub(in crate::gpu) const LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
-/// Messages since the start.
-#[derive(Default)]
-pub(in crate::gpu) struct Log(Mutex<Vec<String>>);
+/// The extension by which a layer takes the request for synchronization validation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::gpu) enum SyncRequest {
+    /// `VK_EXT_layer_settings`, of layers since 2024.
+    LayerSettings,
+    /// `VK_EXT_validation_features`, which the former replaces.
+    ValidationFeatures,
+}
 
-impl Log {
-    pub(in crate::gpu) fn messages(&self) -> Vec<String> {
-        // A panic while pushing a string leaves a whole vector behind: poison says nothing here.
-        self.0
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner)
-            .clone()
+impl SyncRequest {
+    /// What the installed layer understands; neither is possible.
+    ///
+    /// # Errors
+    /// When the layer is not installed.
+    pub(in crate::gpu) fn of_layer(entry: &ash::Entry) -> Result<Option<Self>> {
+        // SAFETY: the call takes no pointers.
+        let layers =
+            unsafe { entry.enumerate_instance_layer_properties() }.during("list Vulkan layers")?;
+        let is_layer = |l: &vk::LayerProperties| l.layer_name_as_c_str() == Ok(LAYER);
+        if !layers.iter().any(is_layer) {
+            return Err(GpuError::NoValidationLayer);
+        }
+        for request in [Self::LayerSettings, Self::ValidationFeatures] {
+            if has_instance_extension(entry, Some(LAYER), request.extension())? {
+                return Ok(Some(request));
+            }
+        }
+        Ok(None)
     }
 
-    fn push(&self, message: String) {
-        self.0
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner)
-            .push(message);
+    pub(in crate::gpu) fn extension(self) -> &'static CStr {
+        match self {
+            Self::LayerSettings => ext::layer_settings::NAME,
+            Self::ValidationFeatures => ext::validation_features::NAME,
+        }
     }
 }
 
-/// The callback, registered as long as this lives.
+/// The layer setting `validate_sync`, which points to `on`.
+pub(in crate::gpu) fn sync_setting(on: &vk::Bool32) -> vk::LayerSettingEXT<'_> {
+    let mut setting = vk::LayerSettingEXT::default()
+        .layer_name(LAYER)
+        .setting_name(c"validate_sync")
+        .ty(vk::LayerSettingTypeEXT::BOOL32);
+    // The setter counts bytes, the specification values.
+    setting.value_count = 1;
+    setting.p_values = std::ptr::from_ref(on).cast();
+    setting
+}
+
+/// A message of the layer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Message {
+    text: String,
+    count: usize,
+}
+
+/// Messages so far. Those of one identifier that differ in handles alone are one message, counted.
+#[derive(Default)]
+pub(in crate::gpu) struct Log {
+    messages: Mutex<Vec<Message>>,
+    /// Whether all of them were handed to the program.
+    is_read: AtomicBool,
+}
+
+impl Log {
+    /// Each message once, its identifier first, with the number of its reports if there were several.
+    pub(in crate::gpu) fn read(&self) -> Vec<String> {
+        self.is_read.store(true, Ordering::Relaxed);
+        let line = |m: &Message| match m.count {
+            1 => m.text.clone(),
+            count => format!("{} ({count} times)", m.text),
+        };
+        self.lock().iter().map(line).collect()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Vec<Message>> {
+        // A panic between the changes of a vector of whole messages leaves a usable vector.
+        self.messages.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn push(&self, identifier: &str, text: &str) {
+        self.is_read.store(false, Ordering::Relaxed);
+        let text = one_line(identifier, text);
+        let mut messages = self.lock();
+        let key = without_handles(&text);
+        match messages
+            .iter_mut()
+            .find(|m| without_handles(&m.text) == key)
+        {
+            Some(message) => message.count += 1,
+            None => messages.push(Message { text, count: 1 }),
+        }
+    }
+}
+
+/// A message in one line, the identifier first: older layers state it in the text, newer ones beside it.
+fn one_line(identifier: &str, text: &str) -> String {
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    if text.contains(identifier) {
+        text
+    } else {
+        format!("{identifier}: {text}")
+    }
+}
+
+/// The text with hexadecimal numbers removed.
+fn without_handles(text: &str) -> String {
+    let mut parts = text.split("0x");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |text, part| {
+        text + "0x" + part.trim_start_matches(|c: char| c.is_ascii_hexdigit())
+    })
+}
+
+/// The callback of the layer, registered as long as this lives.
+///
+/// Errors and warnings of the type *validation* count: both name a use that the specification does not define or that has no
+/// effect. Performance advice and information are not asked for: they depend on layer and driver, and say nothing about
+/// correctness. Messages of the loader and of drivers (type *general*) are no verdict on this program either.
 pub(in crate::gpu) struct Messenger {
     loader: ext::debug_utils::Instance,
     handle: vk::DebugUtilsMessengerEXT,
@@ -47,13 +147,10 @@ impl Messenger {
                 vk::DebugUtilsMessageSeverityFlagsEXT::ERROR
                     | vk::DebugUtilsMessageSeverityFlagsEXT::WARNING,
             )
-            .message_type(
-                vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION
-                    | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
-            )
+            .message_type(vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION)
             .pfn_user_callback(Some(on_message))
             .user_data((&raw const *log).cast_mut().cast());
-        // SAFETY: `log` is boxed, so the pointer outlives the messenger that `Drop` destroys first.
+        // SAFETY: `log` is boxed, so the pointer outlives the messenger, which `Drop` destroys first.
         let handle = unsafe { loader.create_debug_utils_messenger(&info, None) }
             .during("create the validation messenger")?;
         Ok(Self {
@@ -72,7 +169,25 @@ impl Drop for Messenger {
     fn drop(&mut self) {
         // SAFETY: created by this loader, destroyed once.
         unsafe { self.loader.destroy_debug_utils_messenger(self.handle, None) };
+        // Another error ended the program first, or the destruction of the device was at fault.
+        if !self.log.is_read.load(Ordering::Relaxed) {
+            for message in self.log.read() {
+                eprintln!("validation: {message}");
+            }
+        }
     }
+}
+
+/// A string of the layer; empty for none.
+///
+/// # Safety
+/// The pointer is null or leads to a terminated string that outlives `'a`.
+unsafe fn text<'a>(pointer: *const std::ffi::c_char) -> std::borrow::Cow<'a, str> {
+    if pointer.is_null() {
+        return "".into();
+    }
+    // SAFETY: as asked of the caller.
+    unsafe { CStr::from_ptr(pointer) }.to_string_lossy()
 }
 
 unsafe extern "system" fn on_message(
@@ -82,15 +197,70 @@ unsafe extern "system" fn on_message(
     user: *mut c_void,
 ) -> vk::Bool32 {
     // SAFETY: the layer passes valid pointers; `user` is the boxed log of the messenger.
-    let (message, log) = unsafe {
-        let text = (*data).p_message;
-        let message = if text.is_null() {
-            String::from("(no text)")
-        } else {
-            CStr::from_ptr(text).to_string_lossy().into_owned()
-        };
-        (message, &*user.cast::<Log>())
-    };
-    log.push(message);
+    unsafe {
+        let log = &*user.cast::<Log>();
+        log.push(&text((*data).p_message_id_name), &text((*data).p_message));
+    }
     vk::FALSE
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::device::context::{Context, ContextOptions};
+    use crate::gpu::memory::buffer::{Buffer, BufferKind};
+    use crate::gpu::record::recorder::Recorder;
+    use crate::gpu::record::timings::Timing;
+
+    #[test]
+    fn synchronization_hazards_are_reported() {
+        let options = ContextOptions {
+            device: std::env::var("SKYLIGHT_TEST_DEVICE").ok(),
+            validate: true,
+            ..ContextOptions::default()
+        };
+        let context = Context::new(&options).expect("a device with the validation layer");
+        let mut recorder = Recorder::new(&context, Timing::Off).expect("a recorder");
+        let buffer = |kind| Buffer::new(&context, "buffer", kind, 64).expect("a buffer");
+        let (source, target) = (buffer(BufferKind::Staging), buffer(BufferKind::ReadBack));
+        recorder.begin().expect("begun");
+        let region = [vk::BufferCopy::default().size(64)];
+        for _ in 0..2 {
+            // SAFETY: both buffers hold the region and live until `finish`. The order of the copies is undefined on purpose;
+            // they write the same bytes.
+            unsafe {
+                let raw = context.raw();
+                raw.cmd_copy_buffer(recorder.command, source.raw(), target.raw(), &region);
+            }
+        }
+        recorder.finish().expect("finished");
+        let messages = context.validation_messages();
+        let hazard = "SYNC-HAZARD-WRITE-AFTER-WRITE";
+        assert!(messages.iter().any(|m| m.contains(hazard)), "{messages:?}");
+    }
+
+    #[test]
+    fn a_message_is_kept_once_and_its_reports_counted() {
+        let log = Log::default();
+        for handle in ["0x1f", "0xabc0", "0x7"] {
+            log.push("VUID-a-1", &format!("image {handle} has\nno layout"));
+        }
+        log.push("VUID-b-2", "[ VUID-b-2 ] image 0x1f is lost");
+        assert_eq!(
+            log.read(),
+            [
+                "VUID-a-1: image 0x1f has no layout (3 times)",
+                "[ VUID-b-2 ] image 0x1f is lost"
+            ]
+        );
+    }
+
+    #[test]
+    fn names_of_objects_distinguish_messages() {
+        let log = Log::default();
+        log.push("VUID-a-1", "image 0x1f[shadow map]");
+        log.push("VUID-a-1", "image 0x1f[depth]");
+        log.push("VUID-a-1", "image 0x2e[depth]");
+        assert_eq!(log.read().len(), 2);
+    }
 }

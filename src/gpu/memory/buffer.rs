@@ -1,4 +1,4 @@
-//! Buffers with their memory.
+//! Buffers.
 
 use std::sync::Arc;
 
@@ -9,8 +9,9 @@ use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 use crate::gpu::device::context::Context;
 use crate::gpu::device::fault::Call;
 use crate::gpu::error::{During, Result};
+use crate::gpu::record::access::BufferAccess;
 
-/// What a buffer is for.
+/// Purpose of a buffer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BufferKind {
     /// Vertex data on the device.
@@ -46,6 +47,17 @@ impl BufferKind {
         }
     }
 
+    /// How a buffer of this kind is read after a copy to it.
+    pub(in crate::gpu) const fn read_access(self) -> Option<BufferAccess> {
+        match self {
+            Self::Vertex => Some(BufferAccess::Vertex),
+            Self::Index => Some(BufferAccess::Index),
+            Self::Storage => Some(BufferAccess::StorageRead),
+            Self::ReadBack => Some(BufferAccess::HostRead),
+            Self::Staging | Self::Uniform => None,
+        }
+    }
+
     const fn location(self) -> MemoryLocation {
         match self {
             Self::Vertex | Self::Index | Self::Storage => MemoryLocation::GpuOnly,
@@ -64,10 +76,10 @@ pub struct Buffer {
 }
 
 impl Buffer {
-    /// Makes a buffer of `size` bytes (at least one).
+    /// Creates a buffer of `size` bytes, at least one.
     ///
     /// # Errors
-    /// When the device has no memory left.
+    /// When device memory is exhausted.
     pub fn new(context: &Arc<Context>, name: &str, kind: BufferKind, size: u64) -> Result<Self> {
         let size = size.max(4);
         let info = vk::BufferCreateInfo::default()
@@ -108,7 +120,7 @@ impl Buffer {
         self.size
     }
 
-    /// The bytes, of a buffer that the CPU reads; empty otherwise.
+    /// The bytes of a buffer that the CPU reads; empty for other kinds.
     pub fn bytes(&self) -> &[u8] {
         let slice = self
             .allocation
@@ -118,7 +130,7 @@ impl Buffer {
         &slice[..slice.len().min(self.size as usize)]
     }
 
-    /// The bytes, of a buffer that the CPU writes; empty otherwise.
+    /// The bytes of a buffer that the CPU writes; empty for other kinds.
     pub fn bytes_mut(&mut self) -> &mut [u8] {
         let size = self.size as usize;
         let slice = self
@@ -130,7 +142,7 @@ impl Buffer {
         &mut slice[..size]
     }
 
-    /// The bytes, where device and CPU share the memory and see each other's writes without further ado.
+    /// The bytes, where the memory is mapped and coherent.
     pub(in crate::gpu) fn coherent_bytes_mut(&mut self) -> Option<&mut [u8]> {
         let wanted = vk::MemoryPropertyFlags::HOST_COHERENT;
         let properties = self.allocation.as_ref()?.memory_properties();
@@ -145,7 +157,7 @@ impl Buffer {
 
 impl Drop for Buffer {
     fn drop(&mut self) {
-        // SAFETY: recorders wait for their work before they let go of resources.
+        // SAFETY: recorders wait for their work before they release resources.
         unsafe { self.context.raw().destroy_buffer(self.raw, None) };
         if let Some(allocation) = self.allocation.take() {
             // Freeing fails only for a foreign allocation.

@@ -1,4 +1,4 @@
-//! Images that know their last use.
+//! Images, which track their last access, and samplers.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 use crate::gpu::device::context::Context;
 use crate::gpu::device::fault::Call;
 use crate::gpu::error::{During, GpuError, Result};
-use crate::gpu::record::access::{self, Use};
+use crate::gpu::record::access::{self, ImageAccess};
 
 /// Shape of an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub enum ImageKind {
     Cube,
 }
 
-/// What to make.
+/// Description of an [`Image`].
 #[derive(Debug, Clone, Copy)]
 pub struct ImageDesc<'a> {
     /// Name in messages and captures: the quantity held.
@@ -72,7 +72,7 @@ impl<'a> ImageDesc<'a> {
         }
     }
 
-    /// The same with all mip levels down to one texel.
+    /// The same with all mip levels, down to one texel.
     pub fn mipmapped(self) -> Self {
         let edge = self.size[0].max(self.size[1]).max(1);
         Self {
@@ -91,12 +91,11 @@ impl<'a> ImageDesc<'a> {
 
 /// An image, its memory and views, freed on drop.
 ///
-/// It remembers its last [`Use`], from which the next barrier is derived; for that it may be recorded by one
-/// thread at a time.
+/// It tracks its last [`ImageAccess`], from which the next barrier is derived, so one thread at a time may record it.
 pub struct Image {
     context: Arc<Context>,
     raw: vk::Image,
-    /// Images of a swapchain are not ours to destroy.
+    /// An image of a swapchain, which destroys it.
     is_borrowed: bool,
     allocation: Option<Allocation>,
     sampled_view: vk::ImageView,
@@ -105,8 +104,8 @@ pub struct Image {
     size: [u32; 2],
     layers: u32,
     levels: u32,
-    last_use: Cell<Use>,
-    /// Whether it was brought to `last_use` ahead, and not used since.
+    last_access: Cell<ImageAccess>,
+    /// Whether the barrier of `last_access` was recorded ahead of the access.
     is_prepared: Cell<bool>,
     name: String,
 }
@@ -115,7 +114,7 @@ pub(in crate::gpu) fn is_depth(format: vk::Format) -> bool {
     matches!(format, vk::Format::D32_SFLOAT | vk::Format::D16_UNORM)
 }
 
-fn is_block_or_srgb_texture(format: vk::Format) -> bool {
+fn is_srgb_texture(format: vk::Format) -> bool {
     format == vk::Format::R8G8B8A8_SRGB
 }
 
@@ -126,7 +125,7 @@ fn usage(desc: &ImageDesc<'_>) -> vk::ImageUsageFlags {
         | vk::ImageUsageFlags::TRANSFER_DST;
     if is_depth(format) {
         common | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT
-    } else if levels > 1 && is_block_or_srgb_texture(format) {
+    } else if levels > 1 && is_srgb_texture(format) {
         common
     } else if desc.is_stored {
         common | vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE
@@ -136,10 +135,10 @@ fn usage(desc: &ImageDesc<'_>) -> vk::ImageUsageFlags {
 }
 
 impl Image {
-    /// Makes an image without content.
+    /// Creates an image with undefined content.
     ///
     /// # Errors
-    /// When it is larger than the device supports or memory is out.
+    /// When it is larger than the device supports or device memory is exhausted.
     pub fn new(context: &Arc<Context>, desc: &ImageDesc<'_>) -> Result<Self> {
         let limit = context.limits.max_image_dimension2_d;
         let asked = desc.size[0].max(desc.size[1]);
@@ -183,7 +182,7 @@ impl Image {
             size: desc.size,
             layers: desc.layers(),
             levels: desc.levels,
-            last_use: Cell::new(Use::Undefined),
+            last_access: Cell::new(ImageAccess::Undefined),
             is_prepared: Cell::new(false),
             name: desc.name.to_owned(),
         };
@@ -198,7 +197,8 @@ impl Image {
         Ok(image)
     }
 
-    /// An image of a swapchain, which outlives it.
+    /// Wraps an image of a swapchain, which outlives it.
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn of_swapchain(
         context: &Arc<Context>,
         raw: vk::Image,
@@ -216,7 +216,7 @@ impl Image {
             size,
             layers: 1,
             levels: 1,
-            last_use: Cell::new(Use::Undefined),
+            last_access: Cell::new(ImageAccess::Undefined),
             is_prepared: Cell::new(false),
             name: "window".to_owned(),
         };
@@ -312,28 +312,35 @@ impl Image {
         }
     }
 
-    /// Remembers the next use and gives the barrier that it needs: none where [`Image::prepare`] gave it already.
-    pub(in crate::gpu) fn next(&self, next: Use) -> Option<vk::ImageMemoryBarrier2<'static>> {
-        let last = self.last_use.replace(next);
+    /// Tracks the next access and returns its barrier, unless [`Image::prepare`] returned it already.
+    pub(in crate::gpu) fn next(
+        &self,
+        next: ImageAccess,
+    ) -> Option<vk::ImageMemoryBarrier2<'static>> {
+        let last = self.last_access.replace(next);
         if self.is_prepared.take() && last == next {
             return None;
         }
         self.barrier(last, next, self.whole())
     }
 
-    /// Gives the barrier of the next use ahead of it.
-    pub(in crate::gpu) fn prepare(&self, next: Use) -> Option<vk::ImageMemoryBarrier2<'static>> {
+    /// Returns the barrier of the next access ahead of that access.
+    pub(in crate::gpu) fn prepare(
+        &self,
+        next: ImageAccess,
+    ) -> Option<vk::ImageMemoryBarrier2<'static>> {
         let barrier = self.next(next);
         self.is_prepared.set(true);
         barrier
     }
 
-    /// The barrier of one mip level. The caller leaves all levels in one use at the end, and says which.
+    /// The barrier of one mip level. The caller ends with the same access for all levels and reports it by
+    /// [`Image::set_last_access`].
     pub(in crate::gpu) fn level_barrier(
         &self,
         level: u32,
-        from: Use,
-        to: Use,
+        from: ImageAccess,
+        to: ImageAccess,
     ) -> Option<vk::ImageMemoryBarrier2<'static>> {
         let range = vk::ImageSubresourceRange {
             base_mip_level: level,
@@ -343,24 +350,24 @@ impl Image {
         self.barrier(from, to, range)
     }
 
-    /// Notes the use that a sequence of level barriers ended in.
-    pub(in crate::gpu) fn set_last_use(&self, last: Use) {
-        self.last_use.set(last);
+    /// Tracks the access that a sequence of level barriers ended with.
+    pub(in crate::gpu) fn set_last_access(&self, last: ImageAccess) {
+        self.last_access.set(last);
     }
 
     fn barrier(
         &self,
-        from: Use,
-        to: Use,
+        from: ImageAccess,
+        to: ImageAccess,
         range: vk::ImageSubresourceRange,
     ) -> Option<vk::ImageMemoryBarrier2<'static>> {
         let barrier = access::barrier(from, to)?;
         Some(
             vk::ImageMemoryBarrier2::default()
-                .src_stage_mask(barrier.src_stage)
-                .src_access_mask(barrier.src_access)
-                .dst_stage_mask(barrier.dst_stage)
-                .dst_access_mask(barrier.dst_access)
+                .src_stage_mask(barrier.memory.src_stage)
+                .src_access_mask(barrier.memory.src_access)
+                .dst_stage_mask(barrier.memory.dst_stage)
+                .dst_access_mask(barrier.memory.dst_access)
                 .old_layout(barrier.old_layout)
                 .new_layout(barrier.new_layout)
                 .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
@@ -370,15 +377,15 @@ impl Image {
         )
     }
 
-    /// What it was last used for.
-    pub fn last_use(&self) -> Use {
-        self.last_use.get()
+    /// The last access.
+    pub fn last_access(&self) -> ImageAccess {
+        self.last_access.get()
     }
 }
 
 impl Drop for Image {
     fn drop(&mut self) {
-        // SAFETY: recorders wait for their work before they let go of resources; null views are ignored.
+        // SAFETY: recorders wait for their work before they release resources; null views are ignored.
         unsafe {
             self.context
                 .raw()
@@ -395,4 +402,54 @@ impl Drop for Image {
             let _ = self.context.allocator().free(allocation);
         }
     }
+}
+
+/// How an image is sampled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Sampler {
+    /// Nearest texel, clamped.
+    Nearest,
+    /// Bilinear (seamless between cube faces), trilinear between mip levels, clamped.
+    Linear,
+    /// Trilinear, repeating, for surface textures.
+    Repeat,
+}
+
+const SAMPLERS: [Sampler; 3] = [Sampler::Nearest, Sampler::Linear, Sampler::Repeat];
+
+impl Sampler {
+    /// Number of samplers.
+    pub(in crate::gpu) const COUNT: usize = SAMPLERS.len();
+}
+
+/// Creates all samplers, in the order of [`Sampler`].
+pub(in crate::gpu) fn create_samplers(
+    device: &ash::Device,
+) -> Result<[vk::Sampler; Sampler::COUNT]> {
+    let mut samplers = [vk::Sampler::null(); Sampler::COUNT];
+    for (slot, kind) in samplers.iter_mut().zip(SAMPLERS) {
+        // SAFETY: the info has no pointers.
+        *slot = unsafe { device.create_sampler(&sampler_info(kind), None) }
+            .during("create a sampler")?;
+    }
+    Ok(samplers)
+}
+
+fn sampler_info(sampler: Sampler) -> vk::SamplerCreateInfo<'static> {
+    let (filter, mipmap) = match sampler {
+        Sampler::Nearest => (vk::Filter::NEAREST, vk::SamplerMipmapMode::NEAREST),
+        Sampler::Linear | Sampler::Repeat => (vk::Filter::LINEAR, vk::SamplerMipmapMode::LINEAR),
+    };
+    let address = match sampler {
+        Sampler::Repeat => vk::SamplerAddressMode::REPEAT,
+        Sampler::Nearest | Sampler::Linear => vk::SamplerAddressMode::CLAMP_TO_EDGE,
+    };
+    vk::SamplerCreateInfo::default()
+        .mag_filter(filter)
+        .min_filter(filter)
+        .mipmap_mode(mipmap)
+        .address_mode_u(address)
+        .address_mode_v(address)
+        .address_mode_w(address)
+        .max_lod(vk::LOD_CLAMP_NONE)
 }

@@ -3,40 +3,36 @@
 use ash::vk;
 
 use crate::gpu::memory::image::Image;
-use crate::gpu::record::access::Use;
+use crate::gpu::record::access::ImageAccess;
 use crate::gpu::record::recorder::Recorder;
 use crate::gpu::record::work::{Traffic, texel_bytes, texels};
 
 impl Recorder {
-    /// Fills the mip levels of an image from its first: each texel is the mean of four.
+    /// Fills the mip levels of an image from the first: each texel is the mean of four.
     pub fn mipmap(&mut self, name: &'static str, image: &Image) {
         self.label(name);
         let mark = self.begin_timing(name);
-        self.transition([(image, Use::CopyTarget)].into_iter());
+        self.transition([(image, ImageAccess::CopyTarget)].into_iter());
         for level in 1..image.levels() {
-            self.level_transition(image, level - 1, Use::CopyTarget, Use::CopySource);
+            self.level_transition(
+                image,
+                level - 1,
+                ImageAccess::CopyTarget,
+                ImageAccess::CopySource,
+            );
             self.blit(image, level);
         }
-        self.level_transition(image, image.levels() - 1, Use::CopyTarget, Use::CopySource);
-        image.set_last_use(Use::CopySource);
+        self.level_transition(
+            image,
+            image.levels() - 1,
+            ImageAccess::CopyTarget,
+            ImageAccess::CopySource,
+        );
+        image.set_last_access(ImageAccess::CopySource);
         self.end_timing(&mark);
         self.unlabel();
         self.end_work(&mark, u64::from(image.levels() - 1), || mip_traffic(image));
         self.isolate(&mark);
-    }
-
-    fn level_transition(&self, image: &Image, level: u32, from: Use, to: Use) {
-        let Some(barrier) = image.level_barrier(level, from, to) else {
-            return;
-        };
-        let barriers = [barrier];
-        let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
-        // SAFETY: the command buffer is recording outside of a rendering; the image is alive.
-        unsafe {
-            self.context
-                .raw()
-                .cmd_pipeline_barrier2(self.command, &info)
-        };
     }
 
     /// Halves level `level - 1` (a copy source) into `level` (a copy target).
@@ -57,7 +53,7 @@ impl Recorder {
             .src_offsets(corner(level - 1))
             .dst_subresource(layers(level))
             .dst_offsets(corner(level))];
-        // SAFETY: both levels were brought to these layouts.
+        // SAFETY: both levels are in these layouts.
         unsafe {
             self.context.raw().cmd_blit_image(
                 self.command,

@@ -1,8 +1,7 @@
-//! Images and buffers, and copies to and from them.
+//! Images, buffers and copies.
 
 pub(in crate::gpu) mod buffer;
 pub(in crate::gpu) mod image;
 pub(in crate::gpu) mod mips;
 pub(in crate::gpu) mod read_back;
-pub(in crate::gpu) mod sampler;
 pub(in crate::gpu) mod upload;

@@ -1,11 +1,11 @@
-//! Any image back to the CPU.
+//! Copies of images to the CPU.
 
 use ash::vk;
 
 use crate::gpu::error::Result;
 use crate::gpu::memory::buffer::{Buffer, BufferKind};
 use crate::gpu::memory::image::Image;
-use crate::gpu::record::access::{self, Use};
+use crate::gpu::record::access::{BufferAccess, ImageAccess};
 use crate::gpu::record::recorder::Recorder;
 
 /// Texels of one image (mip level 0): layer after layer, row after row.
@@ -40,7 +40,7 @@ fn shape(format: vk::Format) -> (usize, usize) {
     }
 }
 
-/// One texel on its way to the CPU, in a slot of a buffer.
+/// One texel that is copied to a slot of a read-back buffer.
 #[derive(Debug, Clone, Copy)]
 pub struct Texel {
     slot: usize,
@@ -49,21 +49,21 @@ pub struct Texel {
 
 impl Texel {
     /// Bytes of a slot: those of the widest format.
-    pub const MOST_BYTES: usize = 16;
+    pub const SLOT_BYTES: usize = 16;
 
-    /// Its channels, missing ones as in [`Pixels::rgba`]; once the work that copied it is done.
+    /// Its channels once the copy is done; missing ones as in [`Pixels::rgba`].
     pub fn read(&self, buffer: &Buffer) -> [f32; 4] {
         let (channels, width) = shape(self.format);
-        let start = self.slot * Self::MOST_BYTES;
+        let start = self.slot * Self::SLOT_BYTES;
         let bytes = buffer.bytes().get(start..start + channels * width);
         four(&floats(self.format, bytes.unwrap_or(&[])))
     }
 }
 
-/// Copies one texel of a flat image to slot number `slot` of a read-back buffer, when the recorded work runs.
+/// Records the copy of one texel of a flat image to a slot of a read-back buffer.
 ///
 /// # Panics
-/// When the pixel is outside of the image.
+/// When the pixel is outside the image.
 pub fn copy_texel(
     recorder: &mut Recorder,
     image: &Image,
@@ -74,11 +74,11 @@ pub fn copy_texel(
     let [width, height] = image.size();
     assert!(
         pixel[0] < width && pixel[1] < height,
-        "{pixel:?} is outside of {}",
+        "{pixel:?} is outside {}",
         image.name()
     );
     let region = vk::BufferImageCopy::default()
-        .buffer_offset((slot * Texel::MOST_BYTES) as u64)
+        .buffer_offset((slot * Texel::SLOT_BYTES) as u64)
         .image_offset(vk::Offset3D {
             x: pixel[0].cast_signed(),
             y: pixel[1].cast_signed(),
@@ -94,16 +94,16 @@ pub fn copy_texel(
     Texel { slot, format }
 }
 
-/// Copies a region of all layers; the CPU sees it when the work is done.
+/// Records the copy of a region of all layers; the CPU sees it when the work is done.
 fn copy(recorder: &Recorder, image: &Image, target: &Buffer, region: vk::BufferImageCopy) {
-    recorder.transition([(image, Use::CopySource)].into_iter());
+    recorder.transition([(image, ImageAccess::CopySource)].into_iter());
     let region = [region.image_subresource(vk::ImageSubresourceLayers {
         aspect_mask: image.aspect(),
         mip_level: 0,
         base_array_layer: 0,
         layer_count: image.layers(),
     })];
-    // SAFETY: the buffer holds the region; the image was brought to the copy layout; both live until the work is done.
+    // SAFETY: the buffer holds the region; the image is in the copy layout; both live until the work is done.
     unsafe {
         recorder.context.raw().cmd_copy_image_to_buffer(
             recorder.command,
@@ -113,13 +113,13 @@ fn copy(recorder: &Recorder, image: &Image, target: &Buffer, region: vk::BufferI
             &region,
         );
     }
-    show_to_host(recorder);
+    recorder.buffer_barrier(BufferAccess::CopyTarget, BufferAccess::HostRead);
 }
 
-/// Copies an image to the CPU. The recorder must not be recording; this begins, submits and waits.
+/// Copies an image to the CPU: begins, submits and waits, so the recorder must not be recording.
 ///
 /// # Errors
-/// When memory is out or the device is lost.
+/// When device memory is exhausted or the device is lost.
 pub fn read_back(recorder: &mut Recorder, image: &Image) -> Result<Pixels> {
     let (channels, width) = shape(image.format());
     let [columns, rows] = image.size();
@@ -144,33 +144,14 @@ pub fn read_back(recorder: &mut Recorder, image: &Image) -> Result<Pixels> {
     })
 }
 
-fn show_to_host(recorder: &Recorder) {
-    let Some(b) = access::barrier(Use::CopyTarget, Use::HostRead) else {
-        return;
-    };
-    let barriers = [vk::MemoryBarrier2::default()
-        .src_stage_mask(b.src_stage)
-        .src_access_mask(b.src_access)
-        .dst_stage_mask(b.dst_stage)
-        .dst_access_mask(b.dst_access)];
-    let info = vk::DependencyInfo::default().memory_barriers(&barriers);
-    // SAFETY: the command buffer is recording.
-    unsafe {
-        recorder
-            .context
-            .raw()
-            .cmd_pipeline_barrier2(recorder.command, &info)
-    };
-}
-
 impl Pixels {
-    /// All channels as floats, in the order of `bytes`. Integers come as their value, normalised formats in
-    /// 0..1 or −1..1 (sRGB stays encoded).
+    /// All channels as floats, in the order of `bytes`: integers as their value, normalised formats in 0..1 or −1..1 (sRGB
+    /// stays encoded).
     pub fn floats(&self) -> Vec<f32> {
         floats(self.format, &self.bytes)
     }
 
-    /// Texels as `[f32; 4]`; missing channels are 0, a missing fourth is 1, those after the fourth are left out.
+    /// The first four channels of each texel; missing ones are 0, a missing fourth is 1.
     pub fn rgba(&self) -> Vec<[f32; 4]> {
         self.floats()
             .chunks_exact(self.channels)

@@ -1,24 +1,21 @@
-//! CPU data to the device, once, before frames.
+//! Uploads of buffers and textures.
 
 use ash::vk;
 
 use crate::gpu::error::Result;
 use crate::gpu::memory::buffer::{Buffer, BufferKind};
 use crate::gpu::memory::image::{Image, ImageDesc};
-use crate::gpu::record::access::Use;
+use crate::gpu::record::access::{BufferAccess, ImageAccess};
 use crate::gpu::record::recorder::Recorder;
 
-fn staging(recorder: &Recorder, bytes: &[u8]) -> Result<Buffer> {
-    let size = bytes.len() as u64;
-    let mut buffer = Buffer::new(&recorder.context, "staging", BufferKind::Staging, size)?;
-    buffer.bytes_mut()[..bytes.len()].copy_from_slice(bytes);
-    Ok(buffer)
-}
+/// Offsets of copies into images are multiples of this: of any texel, and of 4 (VUID-vkCmdCopyBufferToImage-dstImage-07978).
+const COPY_ALIGNMENT: usize = 16;
 
-/// Makes a device buffer with content. Where it has to be copied, that runs when the recorder is finished.
+/// Makes a device buffer with content. Where it has to be copied, the copy runs when the recorder is finished; commands that
+/// are recorded after this read the content.
 ///
 /// # Errors
-/// When memory is out.
+/// When device memory is exhausted.
 pub fn upload_buffer(
     recorder: &mut Recorder,
     name: &str,
@@ -26,25 +23,24 @@ pub fn upload_buffer(
     bytes: &[u8],
 ) -> Result<Buffer> {
     let mut target = Buffer::new(&recorder.context, name, kind, bytes.len() as u64)?;
-    if let Some(mapped) = target.coherent_bytes_mut() {
-        // The device shares its memory with the CPU. Nothing has used the buffer, and what the CPU wrote before a
-        // submission the device sees in it.
+    if !recorder.context.stage_uploads
+        && let Some(mapped) = target.coherent_bytes_mut()
+    {
+        // No work uses the new buffer yet, and a submission makes earlier writes of the CPU visible to the device.
         mapped[..bytes.len()].copy_from_slice(bytes);
         return Ok(target);
     }
-    let source = staging(recorder, bytes)?;
-    if !bytes.is_empty() {
-        let region = [vk::BufferCopy::default().size(bytes.len() as u64)];
-        // SAFETY: both buffers hold at least the bytes copied and live until `finish`. The device waits for the
-        // submission to end before anything else is submitted, so no barrier is needed.
-        unsafe {
-            recorder.context.raw().cmd_copy_buffer(
-                recorder.command,
-                source.raw(),
-                target.raw(),
-                &region,
-            );
-        }
+    if bytes.is_empty() {
+        return Ok(target);
+    }
+    let mut source = staging(recorder, bytes.len())?;
+    source.bytes_mut()[..bytes.len()].copy_from_slice(bytes);
+    let region = [vk::BufferCopy::default().size(bytes.len() as u64)];
+    let raw = recorder.context.raw();
+    // SAFETY: both buffers hold the bytes copied and live until `finish`.
+    unsafe { raw.cmd_copy_buffer(recorder.command, source.raw(), target.raw(), &region) };
+    if let Some(next) = kind.read_access() {
+        recorder.buffer_barrier(BufferAccess::CopyTarget, next);
     }
     recorder.keep(source);
     Ok(target)
@@ -53,17 +49,29 @@ pub fn upload_buffer(
 /// Makes a texture from its mip levels (largest first, tightly packed). The copy runs when the recorder is finished.
 ///
 /// # Errors
-/// When memory is out or the texture too large for the device.
+/// When device memory is exhausted or the texture is too large for the device.
 pub fn upload_texture(
     recorder: &mut Recorder,
     desc: &ImageDesc<'_>,
     levels: &[&[u8]],
 ) -> Result<Image> {
     let image = Image::new(&recorder.context, desc)?;
-    recorder.transition([(&image, Use::CopyTarget)].into_iter());
-    for (level, bytes) in levels.iter().enumerate() {
-        let source = staging(recorder, bytes)?;
-        let region = [vk::BufferImageCopy::default()
+    let mut end = 0;
+    let offsets: Vec<usize> = levels
+        .iter()
+        .map(|bytes| {
+            let offset = end;
+            end = (end + bytes.len()).next_multiple_of(COPY_ALIGNMENT);
+            offset
+        })
+        .collect();
+    let mut source = staging(recorder, end)?;
+    for (offset, bytes) in offsets.iter().zip(levels) {
+        source.bytes_mut()[*offset..offset + bytes.len()].copy_from_slice(bytes);
+    }
+    let region = |(level, offset): (usize, &usize)| {
+        vk::BufferImageCopy::default()
+            .buffer_offset(*offset as u64)
             .image_subresource(vk::ImageSubresourceLayers {
                 aspect_mask: vk::ImageAspectFlags::COLOR,
                 mip_level: level as u32,
@@ -74,19 +82,26 @@ pub fn upload_texture(
                 width: (desc.size[0] >> level).max(1),
                 height: (desc.size[1] >> level).max(1),
                 depth: 1,
-            })];
-        // SAFETY: the buffer holds the level and lives until `finish`; the image was brought to the copy layout.
-        unsafe {
-            recorder.context.raw().cmd_copy_buffer_to_image(
-                recorder.command,
-                source.raw(),
-                image.raw(),
-                vk::ImageLayout::TRANSFER_DST_OPTIMAL,
-                &region,
-            );
-        }
-        recorder.keep(source);
+            })
+    };
+    let regions: Vec<_> = offsets.iter().enumerate().map(region).collect();
+    recorder.transition([(&image, ImageAccess::CopyTarget)].into_iter());
+    // SAFETY: the buffer holds all levels and lives until `finish`; the image is in the copy layout.
+    unsafe {
+        recorder.context.raw().cmd_copy_buffer_to_image(
+            recorder.command,
+            source.raw(),
+            image.raw(),
+            vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+            &regions,
+        );
     }
-    recorder.transition([(&image, Use::Sampled)].into_iter());
+    recorder.keep(source);
+    recorder.transition([(&image, ImageAccess::Sampled)].into_iter());
     Ok(image)
+}
+
+fn staging(recorder: &Recorder, bytes: usize) -> Result<Buffer> {
+    let context = &recorder.context;
+    Buffer::new(context, "staging", BufferKind::Staging, bytes as u64)
 }

@@ -1,7 +1,7 @@
 //! The driver's pipeline cache, kept in a file between runs.
 //!
-//! The file is a hint, never trusted: what does not fit the device and driver to the bit, or has a wrong checksum, is thrown
-//! away and made anew. Drivers are known to crash on damaged data.
+//! The file is a hint, never trusted: data of another device or driver, or with a wrong hash, are discarded. Drivers are
+//! known to crash on damaged data.
 
 use std::fs;
 use std::io::Write as _;
@@ -12,15 +12,15 @@ use ash::vk;
 use crate::gpu::error::{During, Result};
 
 /// First bytes of a file; the number is the version of its layout.
-const MAGIC: &[u8; 8] = b"SKYLPC01";
-/// Magic, vendor, device, driver, UUID, length, checksum.
-const HEADER: usize = 8 + 4 + 4 + 4 + vk::UUID_SIZE + 8 + 4;
+const MAGIC: &[u8; 8] = b"SKYLPC02";
+/// Magic, vendor, device, driver, UUID, length, hash.
+const HEADER: usize = 8 + 4 + 4 + 4 + vk::UUID_SIZE + 8 + blake3::OUT_LEN;
 /// Bytes of the header that Vulkan puts before the data of `VK_PIPELINE_CACHE_HEADER_VERSION_ONE`.
 const VULKAN_HEADER: usize = 16 + vk::UUID_SIZE;
 /// Larger files are not read.
-const MOST_BYTES: u64 = 256 << 20;
+const MAX_BYTES: u64 = 256 << 20;
 
-/// What data of a cache are good for.
+/// The device and driver to which the data of a cache belong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::gpu) struct Key {
     vendor: u32,
@@ -49,7 +49,7 @@ impl Key {
         format!("pipelines-{:08x}-{:08x}.bin", self.vendor, self.device)
     }
 
-    /// Whether Vulkan's own header says the same.
+    /// Whether the header that Vulkan puts before the data names them too.
     fn fits(&self, data: &[u8]) -> bool {
         let Some(header) = data.get(..VULKAN_HEADER) else {
             return false;
@@ -61,41 +61,40 @@ impl Key {
     }
 }
 
-/// Data of a cache as a file.
+/// The file that holds the data of a cache.
 fn encode(key: &Key, data: &[u8]) -> Vec<u8> {
     let mut file = MAGIC.to_vec();
     file.extend(key.bytes());
     file.extend((data.len() as u64).to_le_bytes());
-    let checksum = checksum(&file, data);
-    file.extend(checksum.to_le_bytes());
+    let hash = hash(&file, data);
+    file.extend(hash.as_bytes());
     file.extend(data);
     file
 }
 
-/// The data in a file, when every bit of it is as it was written for this device and driver.
+/// The data of a file that was written for this device and driver and is undamaged.
 fn decode<'f>(key: &Key, file: &'f [u8]) -> Option<&'f [u8]> {
     let (header, data) = file.split_at_checked(HEADER)?;
-    let (described, sum) = header.split_at(HEADER - 4);
+    let (described, stored) = header.split_at(HEADER - blake3::OUT_LEN);
     let mut expected = MAGIC.to_vec();
     expected.extend(key.bytes());
     expected.extend((data.len() as u64).to_le_bytes());
-    let intact = described == expected && sum == checksum(described, data).to_le_bytes();
+    let intact = described == expected && stored == hash(described, data).as_bytes();
     (intact && key.fits(data)).then_some(data)
 }
 
-fn checksum(header: &[u8], data: &[u8]) -> u32 {
-    let mut hasher = crc32fast::Hasher::new();
-    hasher.update(header);
-    hasher.update(data);
+fn hash(header: &[u8], data: &[u8]) -> blake3::Hash {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(header).update(data);
     hasher.finalize()
 }
 
 fn read(path: &Path) -> Option<Vec<u8>> {
     let about = fs::metadata(path).ok()?;
-    (about.is_file() && about.len() <= MOST_BYTES).then(|| fs::read(path).ok())?
+    (about.is_file() && about.len() <= MAX_BYTES).then(|| fs::read(path).ok())?
 }
 
-/// Beside the target first, so that a crash leaves the old file whole.
+/// Writes a temporary file beside the target and renames it: a crash leaves the old file whole.
 fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(folder)?;
@@ -107,20 +106,20 @@ fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     Ok(())
 }
 
-/// What became of the file at the start.
+/// Outcome of reading the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CacheState {
-    /// No folder to keep it in.
+    /// No folder was given.
     Off,
-    /// There was none yet.
+    /// There was no file.
     New,
-    /// It was read: so many bytes of the driver's data.
+    /// It was read: bytes of the driver's data.
     Read(usize),
-    /// It was damaged, or of another device or driver, and is made anew.
+    /// It was damaged, or of another device or driver, and will be replaced.
     Refused,
 }
 
-/// The cache, alive as long as its device.
+/// The cache of a device.
 pub(in crate::gpu) struct PipelineCache {
     pub(in crate::gpu) raw: vk::PipelineCache,
     pub(in crate::gpu) state: CacheState,
@@ -130,7 +129,7 @@ pub(in crate::gpu) struct PipelineCache {
 }
 
 impl PipelineCache {
-    /// Reads the cache of a device from a folder, where there is one.
+    /// Creates the cache from the file in a folder, if there is one.
     pub(in crate::gpu) fn new(
         device: &ash::Device,
         key: Key,
@@ -147,7 +146,7 @@ impl PipelineCache {
         };
         let loaded = data.unwrap_or_default().to_vec();
         let info = vk::PipelineCacheCreateInfo::default().initial_data(&loaded);
-        // SAFETY: the data are what this driver gave for this device, to the bit, or none.
+        // SAFETY: the data are undamaged and from this driver and device, or empty.
         let raw = unsafe { device.create_pipeline_cache(&info, None) }
             .during("create a pipeline cache")?;
         Ok(Self {
@@ -167,7 +166,7 @@ impl PipelineCache {
         if let Some(path) = &self.path {
             // SAFETY: as asked of the caller.
             let data = unsafe { device.get_pipeline_cache_data(self.raw) };
-            // Without its file the next start is slower: no reason to fail.
+            // Without the file the next start is slower, which is no reason to fail.
             if let Ok(data) = data
                 && data != self.loaded
             {

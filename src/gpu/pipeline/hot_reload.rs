@@ -1,4 +1,4 @@
-//! Shaders from their sources again, while the program runs: for those who write them.
+//! Shaders compiled again while the program runs, for those who write them.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use crate::gpu::error::{GpuError, Result};
 use crate::gpu::pipeline::shader::{Shader, compiled};
 use crate::gpu::shader_build::{compile, declarations};
 
-/// Where the sources are looked for instead of the checkout that the program was built in.
+/// Environment variable with the folder of the sources; by default that of the checkout that was built.
 const FOLDER: &str = "SKYLIGHT_SHADERS";
 
 /// Stages that were reloaded, by name.
@@ -19,24 +19,22 @@ const FOLDER: &str = "SKYLIGHT_SHADERS";
 pub(in crate::gpu) struct Reloaded(Mutex<HashMap<&'static str, Arc<[u32]>>>);
 
 impl Reloaded {
-    /// The newest words of a stage, where it was reloaded.
+    /// The words of a stage, if it was reloaded.
     pub(in crate::gpu) fn words(&self, shader: &Shader) -> Option<Arc<[u32]>> {
         self.stages().get(shader.name).cloned()
     }
 
     fn stages(&self) -> std::sync::MutexGuard<'_, HashMap<&'static str, Arc<[u32]>>> {
-        // A panic while a map was replaced leaves a whole map behind.
+        // A panic while the map is replaced leaves a usable map.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Context {
-    /// Compiles every stage from its source; pipelines made from now on use them. Returns how many differ from what was
-    /// used before.
+    /// Compiles every stage from its source, for pipelines created from now on. Returns the number of changed stages.
     ///
     /// # Errors
-    /// The compiler's lines of every stage that fails, or that declares other inputs than the program was built with: nothing
-    /// is changed then.
+    /// The messages of the compiler, or the stages that declare other inputs than at build time. Nothing is changed then.
     pub fn reload_shaders(&self) -> Result<usize> {
         let checkout = || Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders_glsl");
         let folder = std::env::var_os(FOLDER).map_or_else(checkout, PathBuf::from);

@@ -1,4 +1,4 @@
-//! Host structs and shader blocks: one table on each side, compared.
+//! Comparison of host structs with the shader blocks that read them.
 
 use bytemuck::Pod;
 
@@ -91,7 +91,7 @@ const fn first_difference(host: &[Field], block: &[Field]) -> Option<&'static st
 /// Compares a host struct with the members a shader block declares.
 ///
 /// # Errors
-/// Says the first difference: a member's name, offset or size, or their number.
+/// The first difference: name, offset or size of a member, or their number.
 pub(in crate::gpu) fn check_layout(host: &[Field], block: &[Field]) -> Result<(), String> {
     for (h, s) in host.iter().zip(block) {
         if h != s {

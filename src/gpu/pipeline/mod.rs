@@ -1,12 +1,11 @@
-//! Pipelines (graphics with dynamic rendering, or compute), their layouts derived from what the stages declare.
+//! Graphics and compute pipelines; their layouts are derived from the declarations of the stages.
 
 pub(in crate::gpu) mod cache;
 #[cfg(feature = "hot-reload")]
 pub(in crate::gpu) mod hot_reload;
 pub(in crate::gpu) mod layout;
 pub(in crate::gpu) mod shader;
-pub(in crate::gpu) mod stages;
-pub(in crate::gpu) mod state;
+mod state;
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -16,22 +15,18 @@ use ash::vk;
 use crate::gpu::device::context::Context;
 use crate::gpu::device::fault::Call;
 use crate::gpu::error::{During, Result};
-use crate::gpu::pipeline::shader::{Binding, Field, Shader};
-use crate::gpu::pipeline::stages::{Constants, Modules};
-use crate::gpu::pipeline::state::{depth_state, rasterization, vertex_streams};
-use crate::gpu::record::compute;
+use crate::gpu::pipeline::shader::{Binding, Constants, Field, Modules, Shader};
 
-/// Depth test of a pipeline. Depth is reversed everywhere: 1 is nearest, 0 is infinitely far.
+/// Depth test of a pipeline. Depth is reversed: 1 is nearest, 0 is infinitely far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Depth {
     /// No depth attachment.
     Off,
-    /// Fragments pass where something was drawn (depth is not 0); nothing is written. For full-screen triangles, whose
-    /// own depth is 0.
+    /// Passes where a surface was drawn (depth is not 0), writes nothing. For full-screen triangles, whose depth is 0.
     Surface(vk::Format),
-    /// Fragments pass where nothing was drawn (depth is 0); nothing is written. For full-screen triangles.
+    /// Passes where no surface was drawn (depth is 0), writes nothing. For full-screen triangles.
     Background(vk::Format),
-    /// Nearer (greater) fragments win and are written.
+    /// Passes nearer (greater) fragments and writes them.
     Write {
         /// Format of the attachment.
         format: vk::Format,
@@ -40,12 +35,28 @@ pub enum Depth {
     },
 }
 
-/// What to make.
+impl Depth {
+    /// Format of the attachment.
+    fn format(self) -> Option<vk::Format> {
+        match self {
+            Self::Off => None,
+            Self::Surface(format) | Self::Background(format) | Self::Write { format, .. } => {
+                Some(format)
+            }
+        }
+    }
+
+    fn is_written(self) -> bool {
+        matches!(self, Self::Write { .. })
+    }
+}
+
+/// Description of a [`Pipeline`].
 #[derive(Debug, Clone, Copy)]
 pub struct PipelineDesc<'a> {
     /// Name in messages and captures.
     pub name: &'a str,
-    /// Vertex, perhaps geometry, perhaps fragment stage; or a compute stage alone.
+    /// Vertex stage, with or without geometry and fragment stages; or a compute stage alone.
     pub stages: &'a [&'static Shader],
     /// One tightly packed vertex stream for each location.
     pub vertex: &'a [vk::Format],
@@ -53,7 +64,7 @@ pub struct PipelineDesc<'a> {
     pub colors: &'a [vk::Format],
     /// Depth test.
     pub depth: Depth,
-    /// Values of specialization constants, by name (bits).
+    /// Values of specialization constants by name, as their 32 bits.
     pub constants: &'a [(&'a str, u32)],
 }
 
@@ -64,7 +75,7 @@ pub(in crate::gpu) struct Slot {
     stages: vk::ShaderStageFlags,
 }
 
-/// A pipeline, its layout and what it declares.
+/// A pipeline, its layout and its declarations.
 pub struct Pipeline {
     context: Arc<Context>,
     raw: vk::Pipeline,
@@ -135,10 +146,10 @@ impl Pipeline {
     /// Compiles a pipeline.
     ///
     /// # Errors
-    /// When the driver refuses.
+    /// When the driver cannot create it.
     ///
     /// # Panics
-    /// When the stages contradict each other or a constant is not declared: a fault of this program.
+    /// When the stages contradict each other or no stage declares a constant: defects of this program.
     pub fn new(context: &Arc<Context>, desc: &PipelineDesc<'_>) -> Result<Self> {
         let start = Instant::now();
         let slots = merge_slots(desc.stages);
@@ -162,14 +173,9 @@ impl Pipeline {
             slots,
             push,
             colors: desc.colors.to_vec(),
-            depth: match desc.depth {
-                Depth::Off => None,
-                Depth::Surface(format)
-                | Depth::Background(format)
-                | Depth::Write { format, .. } => Some(format),
-            },
+            depth: desc.depth.format(),
             streams: desc.vertex.len(),
-            writes_depth: matches!(desc.depth, Depth::Write { .. }),
+            writes_depth: desc.depth.is_written(),
             local_size: desc.stages.iter().find_map(|s| s.local_size),
             name: desc.name.to_owned(),
         };
@@ -194,7 +200,7 @@ impl Pipeline {
                     .stage_flags(slot.stages)
             })
             .collect();
-        let flags = if self.context.push_descriptor.is_some() {
+        let flags = if self.context.extensions.push_descriptor.is_some() {
             vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR
         } else {
             vk::DescriptorSetLayoutCreateFlags::empty()
@@ -248,63 +254,11 @@ impl Pipeline {
                     .specialization_info(specialization)
             })
             .collect();
-        if let ([stage], Some(_)) = (stages.as_slice(), self.local_size) {
-            return compute::create(&self.context, self.layout, *stage);
-        }
-        let (vertex_bindings, vertex_attributes) = vertex_streams(desc.vertex);
-        let vertex = vk::PipelineVertexInputStateCreateInfo::default()
-            .vertex_binding_descriptions(&vertex_bindings)
-            .vertex_attribute_descriptions(&vertex_attributes);
-        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
-            .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
-        let viewport = vk::PipelineViewportStateCreateInfo::default()
-            .viewport_count(1)
-            .scissor_count(1);
-        let multisample = vk::PipelineMultisampleStateCreateInfo::default()
-            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
-        let rasterization = rasterization(desc.depth);
-        let depth = depth_state(desc.depth);
-        let opaque = vk::PipelineColorBlendAttachmentState::default()
-            .color_write_mask(vk::ColorComponentFlags::RGBA);
-        let blends = vec![opaque; desc.colors.len()];
-        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
-        let states = [
-            vk::DynamicState::VIEWPORT,
-            vk::DynamicState::SCISSOR,
-            vk::DynamicState::CULL_MODE,
-            vk::DynamicState::FRONT_FACE,
-        ];
-        // What a full-screen triangle winds like is no question.
-        let states = if self.writes_depth {
-            &states
-        } else {
-            &states[..2]
+        let created = match (stages.as_slice(), self.local_size) {
+            ([stage], Some(_)) => state::compute(&self.context, self.layout, *stage),
+            _ => state::graphics(&self.context, self.layout, &stages, desc),
         };
-        let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(states);
-        let mut rendering = vk::PipelineRenderingCreateInfo::default()
-            .color_attachment_formats(desc.colors)
-            .depth_attachment_format(self.depth.unwrap_or(vk::Format::UNDEFINED));
-        let info = vk::GraphicsPipelineCreateInfo::default()
-            .stages(&stages)
-            .vertex_input_state(&vertex)
-            .input_assembly_state(&assembly)
-            .viewport_state(&viewport)
-            .rasterization_state(&rasterization)
-            .multisample_state(&multisample)
-            .depth_stencil_state(&depth)
-            .color_blend_state(&blend)
-            .dynamic_state(&dynamic)
-            .layout(self.layout)
-            .push_next(&mut rendering);
-        // SAFETY: everything `info` points to lives on this stack.
-        let made = unsafe {
-            self.context.raw().create_graphics_pipelines(
-                self.context.pipeline_cache(),
-                &[info],
-                None,
-            )
-        };
-        made.map(|p| p[0]).map_err(|(_, r)| r).during(what)
+        created.during(what)
     }
 
     /// Whether another pipeline can be used in the same pass with the same bindings.
@@ -317,7 +271,7 @@ impl Pipeline {
             && self.streams == other.streams
     }
 
-    /// Name, as given.
+    /// Name.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -344,7 +298,7 @@ impl Pipeline {
 
 impl Drop for Pipeline {
     fn drop(&mut self) {
-        // SAFETY: recorders wait for their work before pipelines are let go; null handles are ignored.
+        // SAFETY: recorders wait for their work before pipelines are dropped; null handles are ignored.
         unsafe {
             self.context.raw().destroy_pipeline(self.raw, None);
             self.context

@@ -1,10 +1,86 @@
-//! The fixed state of graphics pipelines, from what passes say: vertex streams, depth test.
+//! Creation of graphics and compute pipelines, and the fixed state of the former.
 
 use ash::vk;
 
-use crate::gpu::pipeline::Depth;
+use crate::gpu::device::context::Context;
+use crate::gpu::pipeline::{Depth, PipelineDesc};
 
-pub(in crate::gpu) fn vertex_streams(
+type Created = Result<vk::Pipeline, vk::Result>;
+
+/// Creates a compute pipeline.
+pub(super) fn compute(
+    context: &Context,
+    layout: vk::PipelineLayout,
+    stage: vk::PipelineShaderStageCreateInfo<'_>,
+) -> Created {
+    let info = [vk::ComputePipelineCreateInfo::default()
+        .stage(stage)
+        .layout(layout)];
+    let (raw, cache) = (context.raw(), context.pipeline_cache());
+    // SAFETY: `stage` borrows what it points to; the layout is alive.
+    let created = unsafe { raw.create_compute_pipelines(cache, &info, None) };
+    created.map(|p| p[0]).map_err(|(_, result)| result)
+}
+
+/// Creates a graphics pipeline with dynamic viewport and scissor. Those that write depth draw surfaces: their culled faces and
+/// front face are dynamic too. Full-screen triangles are never culled.
+pub(super) fn graphics(
+    context: &Context,
+    layout: vk::PipelineLayout,
+    stages: &[vk::PipelineShaderStageCreateInfo<'_>],
+    desc: &PipelineDesc<'_>,
+) -> Created {
+    let (vertex_bindings, vertex_attributes) = vertex_streams(desc.vertex);
+    let vertex = vk::PipelineVertexInputStateCreateInfo::default()
+        .vertex_binding_descriptions(&vertex_bindings)
+        .vertex_attribute_descriptions(&vertex_attributes);
+    let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
+        .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
+    let viewport = vk::PipelineViewportStateCreateInfo::default()
+        .viewport_count(1)
+        .scissor_count(1);
+    let multisample = vk::PipelineMultisampleStateCreateInfo::default()
+        .rasterization_samples(vk::SampleCountFlags::TYPE_1);
+    let rasterization = rasterization(desc.depth);
+    let depth = depth_state(desc.depth);
+    let opaque = vk::PipelineColorBlendAttachmentState::default()
+        .color_write_mask(vk::ColorComponentFlags::RGBA);
+    let blends = vec![opaque; desc.colors.len()];
+    let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
+    let dynamic =
+        vk::PipelineDynamicStateCreateInfo::default().dynamic_states(dynamic_states(desc.depth));
+    let mut rendering = vk::PipelineRenderingCreateInfo::default()
+        .color_attachment_formats(desc.colors)
+        .depth_attachment_format(desc.depth.format().unwrap_or(vk::Format::UNDEFINED));
+    let info = [vk::GraphicsPipelineCreateInfo::default()
+        .stages(stages)
+        .vertex_input_state(&vertex)
+        .input_assembly_state(&assembly)
+        .viewport_state(&viewport)
+        .rasterization_state(&rasterization)
+        .multisample_state(&multisample)
+        .depth_stencil_state(&depth)
+        .color_blend_state(&blend)
+        .dynamic_state(&dynamic)
+        .layout(layout)
+        .push_next(&mut rendering)];
+    let (raw, cache) = (context.raw(), context.pipeline_cache());
+    // SAFETY: everything that `info` points to lives on this stack.
+    let created = unsafe { raw.create_graphics_pipelines(cache, &info, None) };
+    created.map(|p| p[0]).map_err(|(_, result)| result)
+}
+
+fn dynamic_states(depth: Depth) -> &'static [vk::DynamicState] {
+    const ALL: &[vk::DynamicState] = &[
+        vk::DynamicState::VIEWPORT,
+        vk::DynamicState::SCISSOR,
+        vk::DynamicState::CULL_MODE,
+        vk::DynamicState::FRONT_FACE,
+    ];
+    if depth.is_written() { ALL } else { &ALL[..2] }
+}
+
+fn vertex_streams(
     formats: &[vk::Format],
 ) -> (
     Vec<vk::VertexInputBindingDescription>,
@@ -35,20 +111,18 @@ fn vertex_size(format: vk::Format) -> u32 {
         vk::Format::R32G32_SFLOAT => 8,
         vk::Format::R16G16_SNORM => 4,
         vk::Format::R16G16B16A16_UNORM | vk::Format::R16G16B16A16_SNORM => 8,
-        other => unreachable!("vertex format {other:?} has no size here"),
+        other => unreachable!("no vertex stream has the format {other:?}"),
     }
 }
 
-pub(in crate::gpu) fn rasterization(
-    depth: Depth,
-) -> vk::PipelineRasterizationStateCreateInfo<'static> {
+fn rasterization(depth: Depth) -> vk::PipelineRasterizationStateCreateInfo<'static> {
     let base = vk::PipelineRasterizationStateCreateInfo::default()
         .polygon_mode(vk::PolygonMode::FILL)
         .cull_mode(vk::CullModeFlags::NONE)
         .line_width(1.0);
     match depth {
         Depth::Write { slope_bias, .. } if slope_bias != 0.0 => {
-            // Reversed depth: away from the viewer is down.
+            // Depth is reversed: a negative bias moves away from the viewer.
             base.depth_bias_enable(true)
                 .depth_bias_slope_factor(-slope_bias)
         }
@@ -56,11 +130,9 @@ pub(in crate::gpu) fn rasterization(
     }
 }
 
-pub(in crate::gpu) fn depth_state(
-    depth: Depth,
-) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
+fn depth_state(depth: Depth) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
     let compare = match depth {
-        // A full-screen triangle has depth 0, which is less than that of any surface.
+        // A full-screen triangle has depth 0, less than any surface.
         Depth::Surface(_) => vk::CompareOp::LESS,
         Depth::Background(_) => vk::CompareOp::EQUAL,
         Depth::Off | Depth::Write { .. } => vk::CompareOp::GREATER,

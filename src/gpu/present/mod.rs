@@ -1,4 +1,4 @@
-//! The window: swapchain, presentation, the panels over the picture.
+//! Presentation to a window: swapchain, frames in flight, user interface.
 
 pub(in crate::gpu) mod presenter;
 pub(in crate::gpu) mod swapchain;

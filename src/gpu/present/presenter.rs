@@ -1,4 +1,4 @@
-//! Frames to a window, two in flight: the CPU records one while the device draws the other.
+//! Presentation of frames to a window, two in flight: the CPU records one while the device draws the other.
 
 use ash::vk;
 
@@ -6,14 +6,14 @@ use crate::gpu::device::surface::Surface;
 use crate::gpu::error::Result;
 use crate::gpu::memory::image::Image;
 use crate::gpu::present::swapchain::{Semaphore, Swapchain};
-use crate::gpu::record::access::Use;
+use crate::gpu::record::access::ImageAccess;
 use crate::gpu::record::recorder::Recorder;
 use crate::gpu::record::timings::{Timing, Timings};
 
 /// Frames in flight.
 pub(in crate::gpu) const FRAMES: usize = 2;
 
-/// What one frame in flight owns.
+/// Resources of a frame in flight.
 struct Slot {
     recorder: Recorder,
     acquired: Semaphore,
@@ -30,7 +30,7 @@ impl Presenter {
     /// For a window of `size` pixels.
     ///
     /// # Errors
-    /// When the surface offers no sRGB format, or memory is out.
+    /// When the surface offers no sRGB format or memory is exhausted.
     pub fn new(surface: Surface, size: [u32; 2]) -> Result<Self> {
         let context = surface.context().clone();
         let slot = || -> Result<Slot> {
@@ -51,16 +51,16 @@ impl Presenter {
         self.swapchain.format()
     }
 
-    /// The window has another size, pixels; 0 is minimised.
+    /// Sets the size of the window, pixels; 0 when it is minimised.
     pub fn resize(&mut self, size: [u32; 2]) {
         self.swapchain.resize(size);
     }
 
-    /// Records a frame that ends with drawing to the window's image, and presents it. False when the window cannot be
-    /// drawn to now (it has no area, or is about to change): nothing was recorded then.
+    /// Records a frame that draws to the window's image, and presents it. Returns false, without recording, when the window has
+    /// no area or its size is changing.
     ///
     /// # Errors
-    /// What `record` returns, or a lost device.
+    /// The error of `record`, or a lost device.
     pub fn frame<E: From<crate::gpu::GpuError>>(
         &mut self,
         record: impl FnOnce(&mut Recorder, &Image) -> std::result::Result<(), E>,
@@ -73,17 +73,17 @@ impl Presenter {
         let image = self.swapchain.image(index);
         slot.recorder.begin()?;
         slot.recorder.wait_for(slot.acquired.raw);
-        // Whatever happens in `record`, the image must go back: else the window would stand still.
+        // The acquired image is presented even if `record` fails: otherwise the window would freeze.
         let recorded = record(&mut slot.recorder, image);
         slot.recorder
-            .transition([(image, Use::Present)].into_iter());
+            .transition([(image, ImageAccess::Present)].into_iter());
         slot.recorder.submit(Some(self.swapchain.drawn(index)))?;
         self.swapchain.present(index)?;
         self.current = (self.current + 1) % FRAMES;
         recorded.map(|()| true)
     }
 
-    /// A recorder for work outside of frames, when nothing is in flight any more.
+    /// Waits for the frames in flight and returns a recorder for other work.
     ///
     /// # Errors
     /// When the device is lost.
@@ -94,14 +94,14 @@ impl Presenter {
         Ok(&mut self.slots[self.current].recorder)
     }
 
-    /// Times passes differently from now on.
+    /// Changes the timing of passes.
     pub fn set_timing(&mut self, timing: Timing) {
         for slot in &mut self.slots {
             slot.recorder.set_timing(timing);
         }
     }
 
-    /// Times of the newest frame that is done.
+    /// Times of the last finished frame.
     pub fn timings(&self) -> &Timings {
         self.slots[self.current].recorder.timings()
     }

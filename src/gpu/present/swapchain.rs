@@ -1,4 +1,4 @@
-//! The images of a window, made anew whenever the window changed.
+//! The swapchain of a window, created again when the window changes.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use crate::gpu::device::fault::Call;
 use crate::gpu::device::surface::Surface;
 use crate::gpu::error::{During, GpuError, Result};
 use crate::gpu::memory::image::Image;
-use crate::gpu::record::access::Use;
+use crate::gpu::record::access::ImageAccess;
 
 /// A semaphore destroyed on drop.
 pub(in crate::gpu) struct Semaphore {
@@ -35,20 +35,20 @@ impl Semaphore {
 
 impl Drop for Semaphore {
     fn drop(&mut self) {
-        // SAFETY: the swapchain waits for the device before it lets go of its semaphores.
+        // SAFETY: the swapchain waits for the device before it releases its semaphores.
         unsafe { self.context.raw().destroy_semaphore(self.raw, None) };
     }
 }
 
-/// One image of the window with the semaphore that says it is drawn.
+/// An image of the window and the semaphore that is signalled when it is drawn.
 struct Target {
     image: Image,
     drawn: Semaphore,
 }
 
-/// The chain of images of a surface.
+/// The swapchain of a surface.
 pub(in crate::gpu) struct Swapchain {
-    // Dropped in this order: views and semaphores, then (in `drop`) the chain, then the surface.
+    // `drop` destroys the swapchain after the views and semaphores; the surface is dropped last.
     targets: Vec<Target>,
     raw: vk::SwapchainKHR,
     loader: khr::swapchain::Device,
@@ -58,7 +58,7 @@ pub(in crate::gpu) struct Swapchain {
     surface: Surface,
 }
 
-/// What came of asking for the next image.
+/// Outcome of acquiring an image.
 enum Acquired {
     Image(u32),
     Retry,
@@ -66,10 +66,14 @@ enum Acquired {
 }
 
 impl Swapchain {
-    /// Images of `size` pixels come with the first `acquire`.
+    /// Its images, of `size` pixels, are created by the first `acquire`.
     pub(in crate::gpu) fn new(surface: Surface, size: [u32; 2]) -> Result<Self> {
         let context = surface.context().clone();
-        let loader = context.swapchain.clone().ok_or(GpuError::NoDevice)?;
+        let loader = context
+            .extensions
+            .swapchain
+            .clone()
+            .ok_or(GpuError::NoDevice)?;
         Ok(Self {
             targets: Vec::new(),
             raw: vk::SwapchainKHR::null(),
@@ -97,13 +101,13 @@ impl Swapchain {
         self.targets[index as usize].drawn.raw
     }
 
-    /// The window has another size.
+    /// Sets the size of the window, pixels.
     pub(in crate::gpu) fn resize(&mut self, size: [u32; 2]) {
         self.is_stale |= size != self.wanted;
         self.wanted = size;
     }
 
-    /// The next image, or none while the window has no area or changes faster than it can be followed.
+    /// Index of the next image, or none while the window has no area or its size keeps changing.
     ///
     /// `acquired` is signalled when the image may be drawn to.
     pub(in crate::gpu) fn acquire(&mut self, acquired: vk::Semaphore) -> Result<Option<u32>> {
@@ -121,7 +125,7 @@ impl Swapchain {
     }
 
     fn try_acquire(&mut self, acquired: vk::Semaphore) -> Result<Acquired> {
-        // A window system that gives no image for a second is busy elsewhere (a hidden window, a locked screen).
+        // One second: the window may be hidden or the screen locked.
         let patience = 1_000_000_000;
         let planned = self.context().faults.at(Call::Acquire);
         // SAFETY: the semaphore is unsignalled and nothing waits for it.
@@ -131,9 +135,9 @@ impl Swapchain {
         });
         match got {
             Ok((index, is_suboptimal)) => {
-                // The image is good for this frame; the next one gets better ones.
+                // The image is usable for this frame; the next one gets a new swapchain.
                 self.is_stale |= is_suboptimal;
-                self.image(index).set_last_use(Use::Acquired);
+                self.image(index).set_last_access(ImageAccess::Acquired);
                 Ok(Acquired::Image(index))
             }
             Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => Ok(Acquired::Retry),
@@ -146,7 +150,7 @@ impl Swapchain {
         }
     }
 
-    /// Shows an image when its drawing is done.
+    /// Presents an image once it is drawn.
     pub(in crate::gpu) fn present(&mut self, index: u32) -> Result<()> {
         let (chains, indices, waits) = ([self.raw], [index], [self.drawn(index)]);
         let info = vk::PresentInfoKHR::default()
@@ -154,9 +158,9 @@ impl Swapchain {
             .image_indices(&indices)
             .wait_semaphores(&waits);
         let queue = self.context().queue;
-        // SAFETY: the image was acquired and brought to the layout of presentation by the submission that signals.
+        // SAFETY: the image was acquired, and the submission that signals transitions it for presentation.
         let shown = unsafe { self.loader.queue_present(queue, &info) };
-        // Even a present that fails has waited for its semaphore: a planned fault comes after it.
+        // A failing present waits for its semaphore too: an injected fault comes after the call.
         match self.context().faults.at(Call::Present).and(shown) {
             Ok(is_suboptimal) => self.is_stale |= is_suboptimal,
             Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => self.is_stale = true,
@@ -166,7 +170,7 @@ impl Swapchain {
         Ok(())
     }
 
-    /// False while the window has no area.
+    /// Creates the swapchain again; false while the window has no area.
     fn recreate(&mut self) -> Result<bool> {
         let can = match self.surface.capabilities() {
             Err(vk::Result::ERROR_SURFACE_LOST_KHR) => {
@@ -184,7 +188,7 @@ impl Swapchain {
         self.targets.clear();
         let old = std::mem::replace(&mut self.raw, vk::SwapchainKHR::null());
         let made = self.create(&can, extent, old);
-        // SAFETY: the device is idle, so no image of the old chain is in use; null is ignored.
+        // SAFETY: the device is idle, so no image of the old swapchain is in use; null is ignored.
         unsafe { self.loader.destroy_swapchain(old, None) };
         self.raw = made?;
         self.targets = self.make_targets([extent.width, extent.height])?;
@@ -219,16 +223,16 @@ impl Swapchain {
             .image_usage(vk::ImageUsageFlags::COLOR_ATTACHMENT)
             .pre_transform(can.current_transform)
             .composite_alpha(alpha)
-            // The one mode that every device has; it never tears.
+            // Every device supports this mode; it does not tear.
             .present_mode(vk::PresentModeKHR::FIFO)
             .clipped(true)
             .old_swapchain(old);
-        // SAFETY: the surface is alive and the old chain is retired by this call.
+        // SAFETY: the surface is alive; this call retires the old swapchain.
         unsafe { self.loader.create_swapchain(&info, None) }.during("create the window's images")
     }
 
     fn make_targets(&self, size: [u32; 2]) -> Result<Vec<Target>> {
-        // SAFETY: the chain was just made.
+        // SAFETY: the swapchain was just created.
         let images = unsafe { self.loader.get_swapchain_images(self.raw) }
             .during("list the window's images")?;
         let context = self.context();
@@ -262,12 +266,12 @@ impl Swapchain {
 
 impl Drop for Swapchain {
     fn drop(&mut self) {
-        // A lost device has nothing to wait for.
+        // On a lost device there is nothing to wait for.
         let _ = self.retire();
     }
 }
 
-/// The size that the surface dictates, or the window's within the surface's limits.
+/// The extent that the surface requires, or that of the window within the limits of the surface.
 fn extent(can: &vk::SurfaceCapabilitiesKHR, wanted: [u32; 2]) -> vk::Extent2D {
     if can.current_extent.width != u32::MAX {
         return can.current_extent;

@@ -1,4 +1,4 @@
-//! The graphical user interface as `egui` tessellates it, drawn over a picture.
+//! The user interface, tessellated by `egui`, drawn over a picture.
 
 use std::sync::Arc;
 
@@ -15,16 +15,16 @@ use crate::gpu::record::draws::Draws;
 pub struct UiFrame {
     /// Triangles.
     pub primitives: Vec<egui::ClippedPrimitive>,
-    /// Pixels to a point.
+    /// Pixels per point.
     pub pixels_per_point: f32,
 }
 
-/// Draws user interfaces.
+/// Renderer of user interfaces.
 pub struct Overlay {
-    // Dropped before the context, as its allocator demands.
+    // Dropped before the context, whose allocator it uses.
     renderer: Renderer<GpuAllocator>,
     command_pool: vk::CommandPool,
-    /// Textures that frames in flight may still show, oldest first.
+    /// Textures that frames in flight may still use, oldest first.
     retired: Vec<(usize, egui::TextureId)>,
     context: Arc<Context>,
 }
@@ -46,7 +46,7 @@ impl Overlay {
     /// For targets of an sRGB `format`.
     ///
     /// # Errors
-    /// When the driver refuses.
+    /// When the driver cannot create its resources.
     pub fn new(context: &Arc<Context>, format: vk::Format) -> Result<Self> {
         let mode = RenderMode::DynamicRendering(DynamicRendering {
             color_attachment_format: format,
@@ -77,14 +77,14 @@ impl Overlay {
         })
     }
 
-    /// Takes over changed textures; before the frame that shows them is recorded.
+    /// Uploads changed textures, before the frame that uses them is recorded.
     ///
     /// # Errors
-    /// When memory is out.
+    /// When memory is exhausted.
     pub fn update(&mut self, mut textures: egui::TexturesDelta) -> Result<()> {
         self.free_retired()?;
         if !textures.set.is_empty() {
-            // The copies run on the queue at once, and a texture that changes may still be shown.
+            // The copies are submitted at once, and frames in flight may still use a texture that changes.
             self.context.wait_idle()?;
         }
         for (id, deltas) in textures.set.drain() {
@@ -110,10 +110,10 @@ impl Overlay {
         Ok(())
     }
 
-    /// Draws over what the pass has drawn so far; the last draw of the pass.
+    /// Draws the interface; the last draw of the pass.
     ///
     /// # Errors
-    /// When memory is out.
+    /// When memory is exhausted.
     pub fn draw(&mut self, draws: &mut Draws<'_, '_>, frame: &UiFrame) -> Result<()> {
         let (command, [width, height]) = draws.foreign();
         let extent = vk::Extent2D { width, height };

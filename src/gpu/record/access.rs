@@ -1,11 +1,11 @@
-//! Barriers as a table: one pure function turns (previous use, next use) into a barrier.
+//! Barriers as a table: pure functions turn (previous access, next access) of an image or a buffer into a barrier.
 
 use ash::vk::{AccessFlags2 as Access, ImageLayout as Layout, PipelineStageFlags2 as Stage};
 
-/// What an image (or the memory of a buffer) was last, or will next be, used for.
+/// How an image was accessed last, or will be next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Use {
-    /// Fresh: no content.
+pub enum ImageAccess {
+    /// New, without content.
     Undefined,
     /// Written (and read, when loaded or blended) as a colour attachment.
     ColorAttachment,
@@ -13,7 +13,7 @@ pub enum Use {
     DepthAttachment,
     /// Read through a sampler by a fragment or compute shader.
     Sampled,
-    /// A depth image read through a sampler, and perhaps tested against without being written.
+    /// A depth image read through a sampler, and possibly tested against, but not written.
     SampledDepth,
     /// Written by a compute shader, every texel.
     StorageWrite,
@@ -21,132 +21,168 @@ pub enum Use {
     CopySource,
     /// Target of a copy or blit.
     CopyTarget,
-    /// Read by the CPU.
-    HostRead,
-    /// Given by the presentation engine: no content, and not to be touched before its semaphore has been waited for.
+    /// Acquired from the presentation engine: no content, and not accessible before its semaphore is waited for.
     Acquired,
     /// Handed to the presentation engine.
     Present,
 }
 
-/// A barrier without its image: what must have happened, and before what.
+/// How a buffer was accessed last, or will be next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum BufferAccess {
+    /// Target of a copy.
+    CopyTarget,
+    /// Vertex attributes of a draw.
+    Vertex,
+    /// Indices of a draw.
+    Index,
+    /// Read as a storage buffer by a shader.
+    StorageRead,
+    /// Read by the CPU.
+    HostRead,
+}
+
+/// A barrier between two accesses of an image, without the image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Barrier {
-    /// Stages that must have finished.
-    pub src_stage: Stage,
-    /// Writes that must be visible.
-    pub src_access: Access,
-    /// Stages that wait.
-    pub dst_stage: Stage,
-    /// Accesses that see the writes.
-    pub dst_access: Access,
+pub struct ImageBarrier {
+    /// Execution and memory dependency.
+    pub memory: MemoryBarrier,
     /// Image layout before.
     pub old_layout: Layout,
     /// Image layout after.
     pub new_layout: Layout,
 }
 
-/// One row of the table: stages, reads, writes, layout.
-const fn row(of: Use) -> (Stage, Access, Access, Layout) {
+/// An execution and memory dependency.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MemoryBarrier {
+    /// Stages that must have finished.
+    pub src_stage: Stage,
+    /// Writes to make available.
+    pub src_access: Access,
+    /// Stages that wait.
+    pub dst_stage: Stage,
+    /// Accesses to which the writes become visible.
+    pub dst_access: Access,
+}
+
+/// Stages of the depth test.
+const DEPTH_TESTS: Stage =
+    Stage::from_raw(Stage::EARLY_FRAGMENT_TESTS.as_raw() | Stage::LATE_FRAGMENT_TESTS.as_raw());
+/// Stages that sample images.
+const SAMPLING: Stage =
+    Stage::from_raw(Stage::FRAGMENT_SHADER.as_raw() | Stage::COMPUTE_SHADER.as_raw());
+/// Stages that read storage buffers.
+const STORAGE_READING: Stage = Stage::from_raw(Stage::VERTEX_SHADER.as_raw() | SAMPLING.as_raw());
+
+/// One row of the table of images: stages, reads, writes, layout.
+const fn row(of: ImageAccess) -> (Stage, Access, Access, Layout) {
+    const NONE: Access = Access::NONE;
     match of {
-        Use::Undefined => (Stage::NONE, Access::NONE, Access::NONE, Layout::UNDEFINED),
-        Use::ColorAttachment => (
+        ImageAccess::Undefined => (Stage::NONE, NONE, NONE, Layout::UNDEFINED),
+        ImageAccess::ColorAttachment => (
             Stage::COLOR_ATTACHMENT_OUTPUT,
             Access::COLOR_ATTACHMENT_READ,
             Access::COLOR_ATTACHMENT_WRITE,
             Layout::COLOR_ATTACHMENT_OPTIMAL,
         ),
-        Use::DepthAttachment => (
-            Stage::from_raw(
-                Stage::EARLY_FRAGMENT_TESTS.as_raw() | Stage::LATE_FRAGMENT_TESTS.as_raw(),
-            ),
+        ImageAccess::DepthAttachment => (
+            DEPTH_TESTS,
             Access::DEPTH_STENCIL_ATTACHMENT_READ,
             Access::DEPTH_STENCIL_ATTACHMENT_WRITE,
             Layout::DEPTH_ATTACHMENT_OPTIMAL,
         ),
-        Use::Sampled => (
-            Stage::from_raw(Stage::FRAGMENT_SHADER.as_raw() | Stage::COMPUTE_SHADER.as_raw()),
+        ImageAccess::Sampled => (
+            SAMPLING,
             Access::SHADER_SAMPLED_READ,
-            Access::NONE,
+            NONE,
             Layout::SHADER_READ_ONLY_OPTIMAL,
         ),
-        Use::SampledDepth => (
-            Stage::from_raw(
-                Stage::FRAGMENT_SHADER.as_raw()
-                    | Stage::COMPUTE_SHADER.as_raw()
-                    | Stage::EARLY_FRAGMENT_TESTS.as_raw()
-                    | Stage::LATE_FRAGMENT_TESTS.as_raw(),
-            ),
+        ImageAccess::SampledDepth => (
+            Stage::from_raw(SAMPLING.as_raw() | DEPTH_TESTS.as_raw()),
             Access::from_raw(
                 Access::SHADER_SAMPLED_READ.as_raw()
                     | Access::DEPTH_STENCIL_ATTACHMENT_READ.as_raw(),
             ),
-            Access::NONE,
+            NONE,
             Layout::DEPTH_READ_ONLY_OPTIMAL,
         ),
-        Use::StorageWrite => (
-            Stage::COMPUTE_SHADER,
-            Access::NONE,
-            Access::SHADER_STORAGE_WRITE,
-            Layout::GENERAL,
-        ),
-        Use::CopySource => (
-            Stage::TRANSFER,
-            Access::TRANSFER_READ,
-            Access::NONE,
-            Layout::TRANSFER_SRC_OPTIMAL,
-        ),
-        Use::CopyTarget => (
-            Stage::TRANSFER,
-            Access::NONE,
-            Access::TRANSFER_WRITE,
-            Layout::TRANSFER_DST_OPTIMAL,
-        ),
-        Use::HostRead => (
-            Stage::HOST,
-            Access::HOST_READ,
-            Access::NONE,
-            Layout::GENERAL,
-        ),
-        // The submission waits for the semaphore at this stage: the barrier chains to it.
-        Use::Acquired => (
-            Stage::COLOR_ATTACHMENT_OUTPUT,
-            Access::NONE,
-            Access::NONE,
-            Layout::UNDEFINED,
-        ),
-        Use::Present => (
-            Stage::NONE,
-            Access::NONE,
-            Access::NONE,
-            Layout::PRESENT_SRC_KHR,
-        ),
+        ImageAccess::StorageWrite => {
+            let write = Access::SHADER_STORAGE_WRITE;
+            (Stage::COMPUTE_SHADER, NONE, write, Layout::GENERAL)
+        }
+        ImageAccess::CopySource => {
+            let layout = Layout::TRANSFER_SRC_OPTIMAL;
+            (Stage::TRANSFER, Access::TRANSFER_READ, NONE, layout)
+        }
+        ImageAccess::CopyTarget => {
+            let layout = Layout::TRANSFER_DST_OPTIMAL;
+            (Stage::TRANSFER, NONE, Access::TRANSFER_WRITE, layout)
+        }
+        // The submission waits for the semaphore at this stage, to which the barrier chains.
+        ImageAccess::Acquired => {
+            let stage = Stage::COLOR_ATTACHMENT_OUTPUT;
+            (stage, NONE, NONE, Layout::UNDEFINED)
+        }
+        ImageAccess::Present => (Stage::NONE, NONE, NONE, Layout::PRESENT_SRC_KHR),
     }
 }
 
-/// The layout in which an image is used.
-pub const fn layout(of: Use) -> Layout {
+/// One row of the table of buffers: stages, reads, writes.
+const fn buffer_row(of: BufferAccess) -> (Stage, Access, Access) {
+    match of {
+        BufferAccess::CopyTarget => (Stage::TRANSFER, Access::NONE, Access::TRANSFER_WRITE),
+        BufferAccess::Vertex => (
+            Stage::VERTEX_ATTRIBUTE_INPUT,
+            Access::VERTEX_ATTRIBUTE_READ,
+            Access::NONE,
+        ),
+        BufferAccess::Index => (Stage::INDEX_INPUT, Access::INDEX_READ, Access::NONE),
+        BufferAccess::StorageRead => (STORAGE_READING, Access::SHADER_STORAGE_READ, Access::NONE),
+        BufferAccess::HostRead => (Stage::HOST, Access::HOST_READ, Access::NONE),
+    }
+}
+
+/// The layout of an image during an access.
+pub const fn layout(of: ImageAccess) -> Layout {
     row(of).3
 }
 
-/// The barrier between two uses, or `None` when reads follow reads in the same layout.
+/// The barrier between two accesses of an image, or `None` between reads in the same layout.
 ///
 /// A read after a write waits for the write and sees it; a write after a read only waits; a write after a write
 /// does both.
-pub const fn barrier(previous: Use, next: Use) -> Option<Barrier> {
+pub const fn barrier(previous: ImageAccess, next: ImageAccess) -> Option<ImageBarrier> {
     let (src_stage, _, src_writes, old_layout) = row(previous);
     let (dst_stage, dst_reads, dst_writes, new_layout) = row(next);
     let same_layout = old_layout.as_raw() == new_layout.as_raw();
     if same_layout && src_writes.is_empty() && dst_writes.is_empty() {
         return None;
     }
-    Some(Barrier {
-        src_stage,
-        src_access: src_writes,
-        dst_stage,
-        dst_access: Access::from_raw(dst_reads.as_raw() | dst_writes.as_raw()),
+    Some(ImageBarrier {
+        memory: MemoryBarrier {
+            src_stage,
+            src_access: src_writes,
+            dst_stage,
+            dst_access: Access::from_raw(dst_reads.as_raw() | dst_writes.as_raw()),
+        },
         old_layout,
         new_layout,
+    })
+}
+
+/// The barrier between two accesses of a buffer, or `None` between reads. It does what [`barrier`] does for images.
+pub const fn buffer_barrier(previous: BufferAccess, next: BufferAccess) -> Option<MemoryBarrier> {
+    let (src_stage, _, src_access) = buffer_row(previous);
+    let (dst_stage, dst_reads, dst_writes) = buffer_row(next);
+    if src_access.is_empty() && dst_writes.is_empty() {
+        return None;
+    }
+    Some(MemoryBarrier {
+        src_stage,
+        src_access,
+        dst_stage,
+        dst_access: Access::from_raw(dst_reads.as_raw() | dst_writes.as_raw()),
     })
 }
 
@@ -154,22 +190,26 @@ pub const fn barrier(previous: Use, next: Use) -> Option<Barrier> {
 mod tests {
     use super::*;
 
-    const ALL: [Use; 11] = [
-        Use::Undefined,
-        Use::ColorAttachment,
-        Use::DepthAttachment,
-        Use::Sampled,
-        Use::SampledDepth,
-        Use::StorageWrite,
-        Use::CopySource,
-        Use::CopyTarget,
-        Use::HostRead,
-        Use::Acquired,
-        Use::Present,
+    const ALL: [ImageAccess; 10] = [
+        ImageAccess::Undefined,
+        ImageAccess::ColorAttachment,
+        ImageAccess::DepthAttachment,
+        ImageAccess::Sampled,
+        ImageAccess::SampledDepth,
+        ImageAccess::StorageWrite,
+        ImageAccess::CopySource,
+        ImageAccess::CopyTarget,
+        ImageAccess::Acquired,
+        ImageAccess::Present,
     ];
 
-    fn expect(previous: Use, next: Use, stages: (Stage, Stage), accesses: (Access, Access)) {
-        let barrier = barrier(previous, next).expect("a barrier");
+    fn expect(
+        previous: ImageAccess,
+        next: ImageAccess,
+        stages: (Stage, Stage),
+        accesses: (Access, Access),
+    ) {
+        let barrier = barrier(previous, next).expect("a barrier").memory;
         assert_eq!(
             (barrier.src_stage, barrier.dst_stage),
             stages,
@@ -185,8 +225,8 @@ mod tests {
     #[test]
     fn fresh_to_color_waits_for_nothing() {
         expect(
-            Use::Undefined,
-            Use::ColorAttachment,
+            ImageAccess::Undefined,
+            ImageAccess::ColorAttachment,
             (Stage::NONE, Stage::COLOR_ATTACHMENT_OUTPUT),
             (
                 Access::NONE,
@@ -198,8 +238,8 @@ mod tests {
     #[test]
     fn color_to_sampled_shows_the_write() {
         expect(
-            Use::ColorAttachment,
-            Use::Sampled,
+            ImageAccess::ColorAttachment,
+            ImageAccess::Sampled,
             (
                 Stage::COLOR_ATTACHMENT_OUTPUT,
                 Stage::FRAGMENT_SHADER | Stage::COMPUTE_SHADER,
@@ -211,8 +251,8 @@ mod tests {
     #[test]
     fn sampled_to_color_only_waits() {
         expect(
-            Use::Sampled,
-            Use::ColorAttachment,
+            ImageAccess::Sampled,
+            ImageAccess::ColorAttachment,
             (
                 Stage::FRAGMENT_SHADER | Stage::COMPUTE_SHADER,
                 Stage::COLOR_ATTACHMENT_OUTPUT,
@@ -227,8 +267,8 @@ mod tests {
     #[test]
     fn color_to_color_keeps_order() {
         expect(
-            Use::ColorAttachment,
-            Use::ColorAttachment,
+            ImageAccess::ColorAttachment,
+            ImageAccess::ColorAttachment,
             (
                 Stage::COLOR_ATTACHMENT_OUTPUT,
                 Stage::COLOR_ATTACHMENT_OUTPUT,
@@ -245,8 +285,8 @@ mod tests {
         let tests = Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS;
         let shaders = Stage::FRAGMENT_SHADER | Stage::COMPUTE_SHADER;
         expect(
-            Use::DepthAttachment,
-            Use::SampledDepth,
+            ImageAccess::DepthAttachment,
+            ImageAccess::SampledDepth,
             (tests, shaders | tests),
             (
                 Access::DEPTH_STENCIL_ATTACHMENT_WRITE,
@@ -260,8 +300,8 @@ mod tests {
         let tests = Stage::EARLY_FRAGMENT_TESTS | Stage::LATE_FRAGMENT_TESTS;
         let shaders = Stage::FRAGMENT_SHADER | Stage::COMPUTE_SHADER;
         expect(
-            Use::SampledDepth,
-            Use::DepthAttachment,
+            ImageAccess::SampledDepth,
+            ImageAccess::DepthAttachment,
             (shaders | tests, tests),
             (
                 Access::NONE,
@@ -274,14 +314,14 @@ mod tests {
     fn stored_by_compute_then_sampled_and_back() {
         let reads = Stage::FRAGMENT_SHADER | Stage::COMPUTE_SHADER;
         expect(
-            Use::StorageWrite,
-            Use::Sampled,
+            ImageAccess::StorageWrite,
+            ImageAccess::Sampled,
             (Stage::COMPUTE_SHADER, reads),
             (Access::SHADER_STORAGE_WRITE, Access::SHADER_SAMPLED_READ),
         );
         expect(
-            Use::Sampled,
-            Use::StorageWrite,
+            ImageAccess::Sampled,
+            ImageAccess::StorageWrite,
             (reads, Stage::COMPUTE_SHADER),
             (Access::NONE, Access::SHADER_STORAGE_WRITE),
         );
@@ -290,8 +330,8 @@ mod tests {
     #[test]
     fn upload_then_sample() {
         expect(
-            Use::CopyTarget,
-            Use::Sampled,
+            ImageAccess::CopyTarget,
+            ImageAccess::Sampled,
             (
                 Stage::TRANSFER,
                 Stage::FRAGMENT_SHADER | Stage::COMPUTE_SHADER,
@@ -303,28 +343,50 @@ mod tests {
     #[test]
     fn render_then_copy_out() {
         expect(
-            Use::ColorAttachment,
-            Use::CopySource,
+            ImageAccess::ColorAttachment,
+            ImageAccess::CopySource,
             (Stage::COLOR_ATTACHMENT_OUTPUT, Stage::TRANSFER),
             (Access::COLOR_ATTACHMENT_WRITE, Access::TRANSFER_READ),
         );
     }
 
     #[test]
-    fn copied_then_read_on_the_host() {
-        expect(
-            Use::CopyTarget,
-            Use::HostRead,
-            (Stage::TRANSFER, Stage::HOST),
-            (Access::TRANSFER_WRITE, Access::HOST_READ),
-        );
+    fn copied_to_a_buffer_then_read() {
+        let shaders = Stage::VERTEX_SHADER | Stage::FRAGMENT_SHADER | Stage::COMPUTE_SHADER;
+        for (next, dst_stage, dst_access) in [
+            (
+                BufferAccess::Vertex,
+                Stage::VERTEX_ATTRIBUTE_INPUT,
+                Access::VERTEX_ATTRIBUTE_READ,
+            ),
+            (BufferAccess::Index, Stage::INDEX_INPUT, Access::INDEX_READ),
+            (
+                BufferAccess::StorageRead,
+                shaders,
+                Access::SHADER_STORAGE_READ,
+            ),
+            (BufferAccess::HostRead, Stage::HOST, Access::HOST_READ),
+        ] {
+            let expected = MemoryBarrier {
+                src_stage: Stage::TRANSFER,
+                src_access: Access::TRANSFER_WRITE,
+                dst_stage,
+                dst_access,
+            };
+            let barrier = buffer_barrier(BufferAccess::CopyTarget, next);
+            assert_eq!(barrier, Some(expected), "{next:?}");
+            assert_eq!(buffer_barrier(next, next), None, "{next:?}");
+            let back = buffer_barrier(next, BufferAccess::CopyTarget).expect("a barrier");
+            assert_eq!(back.src_access, Access::NONE, "{next:?}");
+            assert_eq!(back.dst_access, Access::TRANSFER_WRITE, "{next:?}");
+        }
     }
 
     #[test]
     fn color_to_present_shows_the_write_to_nobody() {
         expect(
-            Use::ColorAttachment,
-            Use::Present,
+            ImageAccess::ColorAttachment,
+            ImageAccess::Present,
             (Stage::COLOR_ATTACHMENT_OUTPUT, Stage::NONE),
             (Access::COLOR_ATTACHMENT_WRITE, Access::NONE),
         );
@@ -335,8 +397,8 @@ mod tests {
         let output = Stage::COLOR_ATTACHMENT_OUTPUT;
         let drawn = Access::COLOR_ATTACHMENT_READ | Access::COLOR_ATTACHMENT_WRITE;
         expect(
-            Use::Acquired,
-            Use::ColorAttachment,
+            ImageAccess::Acquired,
+            ImageAccess::ColorAttachment,
             (output, output),
             (Access::NONE, drawn),
         );
@@ -345,10 +407,9 @@ mod tests {
     #[test]
     fn reads_after_reads_of_one_layout_need_nothing() {
         for read in [
-            Use::Sampled,
-            Use::SampledDepth,
-            Use::CopySource,
-            Use::HostRead,
+            ImageAccess::Sampled,
+            ImageAccess::SampledDepth,
+            ImageAccess::CopySource,
         ] {
             assert_eq!(barrier(read, read), None, "{read:?}");
         }
@@ -372,9 +433,14 @@ mod tests {
 
     #[test]
     fn what_was_written_is_always_made_available() {
-        for previous in [Use::ColorAttachment, Use::DepthAttachment, Use::CopyTarget] {
+        for previous in [
+            ImageAccess::ColorAttachment,
+            ImageAccess::DepthAttachment,
+            ImageAccess::CopyTarget,
+        ] {
             for next in ALL {
                 let barrier = barrier(previous, next).expect("a barrier after a write");
+                let barrier = barrier.memory;
                 assert!(!barrier.src_access.is_empty(), "{previous:?} -> {next:?}");
                 assert!(!barrier.src_stage.is_empty(), "{previous:?} -> {next:?}");
             }

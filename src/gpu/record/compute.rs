@@ -1,37 +1,15 @@
-//! Compute: a pipeline of one stage, and a pass that runs it once for each texel of the images it stores to.
+//! Compute passes: one invocation for each texel of the images they write.
 
 use ash::vk;
 
-use crate::gpu::device::context::Context;
-use crate::gpu::error::{During, Result};
 use crate::gpu::memory::image::Image;
 use crate::gpu::pipeline::shader::BindingKind;
-use crate::gpu::record::access::{self, Use};
-use crate::gpu::record::pass::{Pass, sampled_uses};
+use crate::gpu::record::access::{self, ImageAccess};
+use crate::gpu::record::pass::{Pass, sampled_accesses};
 use crate::gpu::record::work::{Traffic, texels};
 
-/// Compiles the pipeline.
-pub(in crate::gpu) fn create(
-    context: &Context,
-    layout: vk::PipelineLayout,
-    stage: vk::PipelineShaderStageCreateInfo<'_>,
-) -> Result<vk::Pipeline> {
-    let info = vk::ComputePipelineCreateInfo::default()
-        .stage(stage)
-        .layout(layout);
-    // SAFETY: what `info` points to is borrowed by `stage`; the layout is alive.
-    let made = unsafe {
-        context
-            .raw()
-            .create_compute_pipelines(context.pipeline_cache(), &[info], None)
-    };
-    made.map(|p| p[0])
-        .map_err(|(_, result)| result)
-        .during("compile a compute pipeline")
-}
-
 impl<'r> Pass<'r> {
-    /// Writes to the first level of an image; every texel is written, so that nobody cares what was there.
+    /// Writes every texel of the first level of an image; previous contents are undefined.
     pub fn store(mut self, name: &str, image: &'r Image) -> Self {
         self.bind_view(
             name,
@@ -39,33 +17,33 @@ impl<'r> Pass<'r> {
             vk::DescriptorImageInfo {
                 sampler: vk::Sampler::null(),
                 image_view: image.attachment_view(),
-                image_layout: access::layout(Use::StorageWrite),
+                image_layout: access::layout(ImageAccess::StorageWrite),
             },
         );
         self.stores.push(image);
         self
     }
 
-    /// Runs the compute shader once for each texel of the images that are stored to: x, y and z of an invocation are
-    /// column, row and layer. It may run beyond the edges; the shader looks.
+    /// Runs the compute shader once for each texel of the images that it writes: x, y and z of an invocation are column, row
+    /// and layer. Work groups may reach beyond the edges; the shader checks.
     ///
     /// # Panics
-    /// When nothing is stored to, or the pipeline is none of compute: a fault of this program.
+    /// Without an image to write, or when the pipeline is not a compute pipeline: defects of this program.
     pub fn dispatch(mut self) {
         let Some(target) = self.stores.first().copied() else {
-            panic!("pass {}: stores to nothing", self.name)
+            panic!("pass {}: writes no image", self.name)
         };
         let Some(group) = self.pipeline.local_size else {
-            panic!("pass {}: no compute pipeline", self.name)
+            panic!("pass {}: not a compute pipeline", self.name)
         };
         let [columns, rows] = target.size();
         let extent = [columns, rows, target.layers()];
         let groups: [u32; 3] = std::array::from_fn(|i| extent[i].div_ceil(group[i]));
         self.recorder.label(self.name);
         let mark = self.recorder.begin_timing(self.name);
-        let stores = self.stores.iter().map(|i| (*i, Use::StorageWrite));
+        let stores = self.stores.iter().map(|i| (*i, ImageAccess::StorageWrite));
         self.recorder
-            .transition(sampled_uses(&self.reads).chain(stores));
+            .transition(sampled_accesses(&self.reads).chain(stores));
         let command = self.recorder.command;
         let point = vk::PipelineBindPoint::COMPUTE;
         // SAFETY: the command buffer is recording outside of a rendering.

@@ -1,18 +1,17 @@
-//! The draws inside a pass.
+//! Draws of a pass.
 
 use arrayvec::ArrayVec;
 use ash::vk;
 
 use crate::gpu::memory::buffer::Buffer;
-use crate::gpu::memory::image::Image;
-use crate::gpu::memory::sampler::Sampler;
+use crate::gpu::memory::image::{Image, Sampler};
 use crate::gpu::pipeline::Pipeline;
 use crate::gpu::pipeline::layout::GpuStruct;
-use crate::gpu::record::access::Use;
+use crate::gpu::record::access::ImageAccess;
 use crate::gpu::record::pass::Pass;
 use crate::gpu::record::work::{texel_bytes, texels};
 
-/// How triangles wind in the picture (as Vulkan has it, rows running down).
+/// Winding of triangles in framebuffer coordinates, in which y points down.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Winding {
     /// Counter-clockwise.
@@ -22,12 +21,12 @@ pub enum Winding {
     Clockwise,
 }
 
-/// Which faces of triangles are fronts, and which are drawn.
+/// Front face and face culling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Faces {
-    /// How fronts wind.
+    /// Winding of front faces.
     pub front: Winding,
-    /// Whether fronts alone are drawn.
+    /// Whether back faces are culled.
     pub fronts_only: bool,
 }
 
@@ -46,20 +45,20 @@ impl Faces {
     }
 }
 
-/// The draws inside a pass.
+/// Draws of a pass.
 pub struct Draws<'p, 'r> {
     pub(in crate::gpu) pass: &'p mut Pass<'r>,
 }
 
 impl<'r> Draws<'_, 'r> {
-    /// Binds a texture for the following draws. It was uploaded before the frame, so it needs no barrier.
+    /// Binds a texture for the following draws. Its upload ended with the barrier that it needs.
     ///
     /// # Panics
-    /// When the image is not in the sampled state.
+    /// When the image's last access is not [`ImageAccess::Sampled`].
     pub fn texture(&mut self, name: &str, image: &Image, sampler: Sampler) {
         assert_eq!(
-            image.last_use(),
-            Use::Sampled,
+            image.last_access(),
+            ImageAccess::Sampled,
             "{} was not uploaded",
             image.name()
         );
@@ -67,10 +66,10 @@ impl<'r> Draws<'_, 'r> {
         self.pass.bind_image(name, image, sampler);
     }
 
-    /// Goes on with another pipeline that declares the same.
+    /// Binds another pipeline with the same bindings, attachments and vertex streams.
     ///
     /// # Panics
-    /// When it does not.
+    /// When they differ.
     pub fn pipeline(&mut self, pipeline: &'r Pipeline) {
         assert!(
             pipeline.is_variant_of(self.pass.pipeline),
@@ -103,15 +102,14 @@ impl<'r> Draws<'_, 'r> {
         let offsets: ArrayVec<u64, 8> = streams.iter().map(|_| 0).collect();
         self.pass.buffer_bytes += streams.iter().map(|s| s.size()).sum::<u64>();
         let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
-        // SAFETY: the buffers are alive and were made for this use.
+        // SAFETY: the buffers are alive and were created for this use.
         unsafe {
             raw.cmd_bind_vertex_buffers(command, 0, &buffers, &offsets);
             raw.cmd_bind_index_buffer(command, indices.raw(), 0, vk::IndexType::UINT32);
         }
     }
 
-    /// Brings the following draws to a part of the target: its first texel and its size. What of it is not within `part`
-    /// (the same, in texels of the target) is kept.
+    /// Sets the viewport of the following draws (first texel and size) and their scissor rectangle `part` (the same).
     pub fn window(&mut self, origin: [u32; 2], size: [u32; 2], part: ([u32; 2], [u32; 2])) {
         let viewport = vk::Viewport {
             x: origin[0] as f32,
@@ -139,10 +137,10 @@ impl<'r> Draws<'_, 'r> {
         }
     }
 
-    /// Draws only these faces from here on.
+    /// Sets front face and culling of the following draws.
     ///
     /// # Panics
-    /// When the pipeline writes no depth: others draw no geometry.
+    /// When the pipeline writes no depth: these states are dynamic only in pipelines that do.
     pub fn faces(&mut self, faces: Faces) {
         assert!(self.pass.pipeline.writes_depth, "pass {}", self.pass.name);
         if faces == self.pass.faces {
@@ -162,7 +160,8 @@ impl<'r> Draws<'_, 'r> {
         unsafe { raw.cmd_draw_indexed(command, count, 1, first, 0, 0) };
     }
 
-    /// The command buffer and the size of the target, pixels, for a renderer of its own that draws last.
+    /// The command buffer and the size of the target, pixels, for another renderer, which draws last.
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn foreign(&self) -> (vk::CommandBuffer, [u32; 2]) {
         (self.pass.recorder.command, self.pass.target().size())
     }
@@ -172,7 +171,7 @@ impl<'r> Draws<'_, 'r> {
         self.pass.flush();
         self.pass.drawn += 1;
         let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
-        // SAFETY: the pipeline has no vertex streams, so any vertex index is good.
+        // SAFETY: the pipeline has no vertex streams, so every vertex index is valid.
         unsafe { raw.cmd_draw(command, 3, 1, 0, 0) };
     }
 }

@@ -1,32 +1,32 @@
-//! One pass as a chain on the recorder: each word binds, registers the use and checks it against what the
-//! pipeline declares.
+//! A pass as a chain of methods on the recorder: each binds a resource, registers the access and checks it against the
+//! declarations of the pipeline.
 
 use arrayvec::ArrayVec;
 use ash::vk;
 
 use crate::gpu::memory::buffer::Buffer;
-use crate::gpu::memory::image::{Image, is_depth};
-use crate::gpu::memory::sampler::Sampler;
+use crate::gpu::memory::image::{Image, Sampler, is_depth};
 use crate::gpu::pipeline::Pipeline;
 use crate::gpu::pipeline::layout::{GpuStruct, check_layout};
 use crate::gpu::pipeline::shader::{Binding, BindingKind, Field};
-use crate::gpu::record::access::{self, Use};
+use crate::gpu::record::access::{self, ImageAccess};
 use crate::gpu::record::draws::{Draws, Faces};
-use crate::gpu::record::push_words::PushWords;
 use crate::gpu::record::recorder::Recorder;
 use crate::gpu::record::work::{Traffic, texels};
 
 const MAX_BINDINGS: usize = 16;
 const MAX_COLORS: usize = 8;
+/// Bytes of push constants that every device supports.
+const MAX_PUSH: usize = 128;
 
-/// What becomes of the old content of an attachment.
+/// Previous contents of an attachment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Load {
-    /// It stays.
+    /// Kept.
     Keep,
-    /// It is replaced by a constant.
+    /// Replaced by a constant.
     Clear([f32; 4]),
-    /// Every pixel is written: nobody cares.
+    /// Undefined: every pixel is written (`LOAD_OP_DONT_CARE`).
     Discard,
 }
 
@@ -37,7 +37,7 @@ enum Resource {
 }
 
 impl Resource {
-    /// Whether both name the same thing.
+    /// Whether both describe the same resource.
     fn is(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Image(a), Self::Image(b)) => {
@@ -58,27 +58,27 @@ struct Bound {
     resource: Resource,
 }
 
-/// How a shader reads an image.
-fn sampled_use(image: &Image) -> Use {
+/// The access of a shader that samples an image.
+fn sampled_access(image: &Image) -> ImageAccess {
     if is_depth(image.format()) {
-        Use::SampledDepth
+        ImageAccess::SampledDepth
     } else {
-        Use::Sampled
+        ImageAccess::Sampled
     }
 }
 
-/// The images that are sampled, with how.
-pub(in crate::gpu) fn sampled_uses<'r>(
+/// The sampled images with their accesses.
+pub(in crate::gpu) fn sampled_accesses<'r>(
     reads: &[&'r Image],
-) -> impl Iterator<Item = (&'r Image, Use)> {
-    reads.iter().map(|image| (*image, sampled_use(image)))
+) -> impl Iterator<Item = (&'r Image, ImageAccess)> {
+    reads.iter().map(|image| (*image, sampled_access(image)))
 }
 
-/// A pass being described. Nothing is recorded before `draw` or `draws`.
+/// A pass under construction. Nothing is recorded before `draw`, `draws` or `dispatch`.
 ///
 /// # Panics
-/// Every word panics when it contradicts the pipeline's declarations: a fault of this program, seen by the first
-/// test that runs the pass.
+/// Every method panics when it contradicts the pipeline's declarations: a defect of this program, which the first test that
+/// runs the pass reveals.
 pub struct Pass<'r> {
     pub(in crate::gpu) recorder: &'r mut Recorder,
     pub(in crate::gpu) pipeline: &'r Pipeline,
@@ -89,15 +89,14 @@ pub struct Pass<'r> {
     pub(in crate::gpu) stores: ArrayVec<&'r Image, MAX_COLORS>,
     colors: ArrayVec<(&'r Image, Load), MAX_COLORS>,
     depth: Option<(&'r Image, Load)>,
-    push: PushWords,
-    /// What of it the command buffer has.
-    pushed: PushWords,
-    /// Members of the host struct that was seen to agree with the pipeline's block.
+    /// Push constants, and whether they were set after the last draw.
+    push: (ArrayVec<u8, MAX_PUSH>, bool),
+    /// Members of the host struct that was last compared with the pipeline's block.
     checked_push: Option<&'static [Field]>,
-    /// Part of the target, when not all of it is drawn to.
+    /// Part of the target that is drawn to; none: all of it.
     area: Option<vk::Rect2D>,
     pub(in crate::gpu) faces: Faces,
-    /// Bytes of the buffers and textures that are read.
+    /// Bytes of the buffers and textures read.
     pub(in crate::gpu) buffer_bytes: u64,
     /// Draws so far.
     pub(in crate::gpu) drawn: u64,
@@ -119,8 +118,7 @@ impl<'r> Pass<'r> {
             stores: ArrayVec::new(),
             colors: ArrayVec::new(),
             depth: None,
-            push: PushWords::NONE,
-            pushed: PushWords::NONE,
+            push: (ArrayVec::new(), false),
             checked_push: None,
             area: None,
             faces: Faces::default(),
@@ -136,7 +134,7 @@ impl<'r> Pass<'r> {
         self
     }
 
-    /// Gives a uniform block its value.
+    /// Sets the value of a uniform block.
     pub fn uniform<T: GpuStruct>(mut self, name: &str, value: &T) -> Self {
         let binding = self.declared(name, BindingKind::UniformBuffer);
         self.check_block(name, T::FIELDS, binding.fields);
@@ -145,7 +143,7 @@ impl<'r> Pass<'r> {
         self
     }
 
-    /// Reads a storage buffer that was uploaded before the frame.
+    /// Reads a storage buffer. Its upload ended with the barrier that it needs.
     pub fn storage(mut self, name: &str, buffer: &'r Buffer) -> Self {
         let binding = self.declared(name, BindingKind::StorageBuffer);
         let info = vk::DescriptorBufferInfo {
@@ -158,35 +156,35 @@ impl<'r> Pass<'r> {
         self
     }
 
-    /// Gives the push constant block its value.
+    /// Sets the push constants.
     pub fn push<T: GpuStruct>(mut self, value: &T) -> Self {
         self.set_push(value);
         self
     }
 
-    /// Writes to a colour attachment, in the order of the fragment shader's outputs.
+    /// Adds a colour attachment, in the order of the fragment shader's outputs.
     pub fn color(mut self, image: &'r Image, load: Load) -> Self {
         self.colors.push((image, load));
         self
     }
 
-    /// Tests and writes a depth attachment.
+    /// Sets the depth attachment, which is tested and written.
     pub fn depth(mut self, image: &'r Image, load: Load) -> Self {
         self.depth = Some((image, load));
         self
     }
 
-    /// Tests a depth attachment without writing it; the pass may sample it too.
+    /// Sets a depth attachment that is tested but not written; the pass may sample it too.
     pub fn depth_test(self, image: &'r Image) -> Self {
         self.depth(image, Load::Keep)
     }
 
-    /// Draws to this pixel of the target alone; what the others hold is kept.
+    /// Restricts the pass to one pixel of the target; the others are kept.
     pub fn only(self, pixel: [u32; 2]) -> Self {
         self.within(pixel, [1, 1])
     }
 
-    /// Draws to, and clears, so many pixels of the target from a first one on; what the others hold is kept.
+    /// Restricts draws and clears to a rectangle of the target (first pixel and size); the other pixels are kept.
     pub fn within(mut self, [x, y]: [u32; 2], [width, height]: [u32; 2]) -> Self {
         self.area = Some(vk::Rect2D {
             offset: vk::Offset2D {
@@ -198,18 +196,22 @@ impl<'r> Pass<'r> {
         self
     }
 
-    /// Draws one triangle over the whole target (the vertex shader makes it from the vertex index).
+    /// Draws one triangle over the whole target, which the vertex shader computes from the vertex index.
     pub fn draw(self) {
         self.draws(|draws| draws.triangle());
     }
 
-    /// Draws many things with the same pipeline.
+    /// Records any number of draws.
     pub fn draws(mut self, record: impl FnOnce(&mut Draws<'_, 'r>)) {
         self.check_attachments();
-        let depth_use = self.depth_use();
-        let uses = sampled_uses(&self.reads)
-            .chain(self.colors.iter().map(|(i, _)| (*i, Use::ColorAttachment)))
-            .chain(self.depth.iter().map(|(i, _)| (*i, depth_use)));
+        let depth_access = self.depth_access();
+        let uses = sampled_accesses(&self.reads)
+            .chain(
+                self.colors
+                    .iter()
+                    .map(|(i, _)| (*i, ImageAccess::ColorAttachment)),
+            )
+            .chain(self.depth.iter().map(|(i, _)| (*i, depth_access)));
         self.recorder.label(self.name);
         let mark = self.recorder.begin_timing(self.name);
         self.recorder.transition(uses);
@@ -249,11 +251,11 @@ impl<'r> Pass<'r> {
         traffic
     }
 
-    fn depth_use(&self) -> Use {
+    fn depth_access(&self) -> ImageAccess {
         if self.pipeline.writes_depth {
-            Use::DepthAttachment
+            ImageAccess::DepthAttachment
         } else {
-            Use::SampledDepth
+            ImageAccess::SampledDepth
         }
     }
 
@@ -277,7 +279,7 @@ impl<'r> Pass<'r> {
             .iter_mut()
             .find(|b| b.binding.binding == binding.binding)
         {
-            // Materials without maps share what stands for them.
+            // Materials without textures share their placeholders.
             Some(old) if old.resource.is(&resource) => return,
             Some(old) => *old = new,
             None => self.bound.push(new),
@@ -289,7 +291,7 @@ impl<'r> Pass<'r> {
         let info = vk::DescriptorImageInfo {
             sampler: self.recorder.context.sampler(sampler),
             image_view: image.sampled_view(),
-            image_layout: access::layout(sampled_use(image)),
+            image_layout: access::layout(sampled_access(image)),
         };
         self.bind_view(name, BindingKind::SampledImage, info);
     }
@@ -311,7 +313,7 @@ impl<'r> Pass<'r> {
     }
 
     pub(in crate::gpu) fn set_push<T: GpuStruct>(&mut self, value: &T) {
-        // A pass may push for thousands of draws: the same members need no second look.
+        // A pass may push for thousands of draws: the same struct is compared once.
         let checked = self
             .checked_push
             .is_some_and(|c| std::ptr::eq(c, T::FIELDS));
@@ -322,7 +324,11 @@ impl<'r> Pass<'r> {
             self.check_block("push", T::FIELDS, fields);
             self.checked_push = Some(T::FIELDS);
         }
-        self.push = PushWords::of(value);
+        const { assert!(size_of::<T>() <= MAX_PUSH, "too many push constants") };
+        let (bytes, is_new) = &mut self.push;
+        bytes.clear();
+        bytes.extend(bytemuck::bytes_of(value).iter().copied());
+        *is_new = true;
     }
 
     fn check_attachments(&self) {
@@ -363,7 +369,7 @@ impl<'r> Pass<'r> {
         }
     }
 
-    /// What it draws to: all attachments have the size of this one.
+    /// The first attachment; all have its size.
     pub(in crate::gpu) fn target(&self) -> &'r Image {
         let color = self.colors.first().map(|c| c.0);
         let Some(target) = color.or(self.depth.map(|d| d.0)) else {
@@ -379,9 +385,9 @@ impl<'r> Pass<'r> {
             .map(|(i, l)| Self::attachment(i, *l, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL))
             .collect();
         let depth = self.depth.map(|(image, load)| {
-            let info = Self::attachment(image, load, access::layout(self.depth_use()));
+            let info = Self::attachment(image, load, access::layout(self.depth_access()));
             let written = self.pipeline.writes_depth;
-            // Storing would count as a write, which a read-only layout forbids.
+            // Storing counts as a write, which a read-only layout forbids.
             if written {
                 info
             } else {
@@ -410,7 +416,7 @@ impl<'r> Pass<'r> {
             max_depth: 1.0,
         };
         let (raw, command) = (self.recorder.context.raw(), self.recorder.command);
-        // SAFETY: the command buffer is recording; attachments were brought to these layouts by `transition`.
+        // SAFETY: the command buffer is recording; `transition` brought the attachments to these layouts.
         unsafe {
             raw.cmd_begin_rendering(command, &info);
             raw.cmd_set_viewport(command, 0, &[viewport]);
@@ -426,7 +432,7 @@ impl<'r> Pass<'r> {
         }
     }
 
-    /// Sets the faces that are drawn; every pipeline that writes depth leaves them to the command buffer.
+    /// Sets front face and culling, which are dynamic states of every pipeline that writes depth.
     pub(in crate::gpu) fn set_faces(&self) {
         let (cull, front) = self.faces.state();
         let (raw, command) = (self.recorder.context.raw(), self.recorder.command);
@@ -437,7 +443,7 @@ impl<'r> Pass<'r> {
         }
     }
 
-    /// Makes what was bound and pushed visible to the next draw.
+    /// Records bindings and push constants for the next draw.
     pub(in crate::gpu) fn flush(&mut self) {
         assert_eq!(
             self.bound.len(),
@@ -450,37 +456,27 @@ impl<'r> Pass<'r> {
         }
         self.changed = false;
         if let Some((_, stages)) = self.pipeline.push {
-            self.flush_push(stages);
+            assert!(!self.push.0.is_empty(), "pass {}: push", self.name);
+            if std::mem::take(&mut self.push.1) {
+                self.flush_push(stages);
+            }
         }
     }
 
-    /// Pushes the words that differ from those pushed before, from the first to the last.
-    fn flush_push(&mut self, stages: vk::ShaderStageFlags) {
-        assert!(!self.push.is_empty(), "pass {}: push", self.name);
-        let changed = self.push.changed_from(&self.pushed);
-        if changed.is_empty() {
-            return;
-        }
-        // SAFETY: the block was declared for these stages by the layout; its size was checked when it was set.
-        unsafe {
-            self.recorder.context.raw().cmd_push_constants(
-                self.recorder.command,
-                self.pipeline.layout(),
-                stages,
-                4 * changed.start as u32,
-                self.push.bytes(changed),
-            );
-        }
-        self.pushed = self.push;
+    fn flush_push(&self, stages: vk::ShaderStageFlags) {
+        let (raw, command) = (self.recorder.context.raw(), self.recorder.command);
+        let layout = self.pipeline.layout();
+        // SAFETY: the layout declares the block for these stages; its size was checked when it was set.
+        unsafe { raw.cmd_push_constants(command, layout, stages, 0, &self.push.0) };
     }
 
     fn flush_descriptors(&mut self) {
         let bound = self.bound.clone();
-        let pushed = self.recorder.context.push_descriptor.is_some();
+        let pushed = self.recorder.context.extensions.push_descriptor.is_some();
         let set = if pushed {
             vk::DescriptorSet::null()
         } else {
-            // Without a set the frame is lost; `finish` reports why.
+            // Without a set the frame cannot be drawn; `finish` reports why.
             let Some(set) = self.recorder.descriptor_set(self.pipeline) else {
                 return;
             };
@@ -502,9 +498,9 @@ impl<'r> Pass<'r> {
         let (context, command) = (&self.recorder.context, self.recorder.command);
         let point = self.pipeline.bind_point();
         let layout = self.pipeline.layout();
-        // SAFETY: the infos outlive the calls; images were brought to the sampled layout by `transition`.
+        // SAFETY: the infos outlive the calls; `transition` brought the images to the sampled layout.
         unsafe {
-            match &context.push_descriptor {
+            match &context.extensions.push_descriptor {
                 Some(push) => push.cmd_push_descriptor_set(command, point, layout, 0, &writes),
                 None => {
                     context.raw().update_descriptor_sets(&writes, &[]);

@@ -1,4 +1,4 @@
-//! Records commands, submits them, waits for them.
+//! The recorder: records commands, submits them, waits for them.
 
 use std::sync::Arc;
 
@@ -10,21 +10,20 @@ use crate::gpu::device::fault::Call;
 use crate::gpu::error::{During, GpuError, Result};
 use crate::gpu::memory::buffer::{Buffer, BufferKind};
 use crate::gpu::pipeline::Pipeline;
+use crate::gpu::record::descriptors::DescriptorPools;
 use crate::gpu::record::pass::Pass;
 use crate::gpu::record::timings::{PassTime, Queries, Stopwatch, Timing, Timings};
 use crate::gpu::record::work::{PassWork, Traffic, WorkLog};
 
-/// Bytes of uniform blocks a recorder can hold between `begin` and `finish`.
+/// Bytes for the uniform blocks of one frame.
 const UNIFORM_BYTES: u64 = 1 << 16;
-/// Descriptor sets a recorder can use without push descriptors.
-const POOL_SETS: u32 = 4096;
 
-/// One command buffer with what it needs between `begin` and `finish`.
+/// A command buffer with the resources that it needs between `begin` and `finish`.
 pub struct Recorder {
     pub(in crate::gpu) context: Arc<Context>,
     pub(in crate::gpu) command: vk::CommandBuffer,
     command_pool: vk::CommandPool,
-    descriptor_pool: vk::DescriptorPool,
+    descriptors: DescriptorPools,
     fence: vk::Fence,
     is_pending: bool,
     acquired: Option<vk::Semaphore>,
@@ -39,10 +38,10 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Makes a recorder.
+    /// Creates a recorder.
     ///
     /// # Errors
-    /// When the driver has no memory left.
+    /// When memory is exhausted.
     pub fn new(context: &Arc<Context>, timing: Timing) -> Result<Self> {
         let pool_info = vk::CommandPoolCreateInfo::default()
             .queue_family_index(context.queue_family)
@@ -57,7 +56,7 @@ impl Recorder {
             context: context.clone(),
             command: vk::CommandBuffer::null(),
             command_pool,
-            descriptor_pool: vk::DescriptorPool::null(),
+            descriptors: DescriptorPools::new(context),
             fence: vk::Fence::null(),
             is_pending: false,
             acquired: None,
@@ -75,41 +74,19 @@ impl Recorder {
         let allocate = vk::CommandBufferAllocateInfo::default()
             .command_pool(command_pool)
             .command_buffer_count(1);
-        // SAFETY: the pool was just made.
+        // SAFETY: the pool was just created.
         recorder.command = unsafe { raw.allocate_command_buffers(&allocate) }
             .during("allocate a command buffer")?[0];
         // SAFETY: the info has no pointers.
         recorder.fence = unsafe { raw.create_fence(&vk::FenceCreateInfo::default(), None) }
             .during("create a fence")?;
-        if context.push_descriptor.is_none() {
-            recorder.descriptor_pool = recorder.create_descriptor_pool()?;
-        }
         Ok(recorder)
     }
 
-    fn create_descriptor_pool(&self) -> Result<vk::DescriptorPool> {
-        let size = |ty, each| vk::DescriptorPoolSize {
-            ty,
-            descriptor_count: each * POOL_SETS,
-        };
-        let sizes = [
-            size(vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 8),
-            size(vk::DescriptorType::UNIFORM_BUFFER, 2),
-            size(vk::DescriptorType::STORAGE_BUFFER, 2),
-            size(vk::DescriptorType::STORAGE_IMAGE, 1),
-        ];
-        let info = vk::DescriptorPoolCreateInfo::default()
-            .max_sets(POOL_SETS)
-            .pool_sizes(&sizes);
-        // SAFETY: `sizes` outlives the call.
-        unsafe { self.context.raw().create_descriptor_pool(&info, None) }
-            .during("create a descriptor pool")
-    }
-
-    /// Starts a frame, after the one that was submitted before is done.
+    /// Starts a frame, after waiting for the previous submission.
     ///
     /// # Errors
-    /// When the driver has no memory left.
+    /// When memory is exhausted or the device is lost.
     pub fn begin(&mut self) -> Result<()> {
         self.wait()?;
         self.uniform_end = 0;
@@ -118,16 +95,7 @@ impl Recorder {
         if let Some(work) = &mut self.work {
             work.reset();
         }
-        if self.descriptor_pool != vk::DescriptorPool::null() {
-            let flags = vk::DescriptorPoolResetFlags::empty();
-            // SAFETY: no submission that uses its sets is pending.
-            unsafe {
-                self.context
-                    .raw()
-                    .reset_descriptor_pool(self.descriptor_pool, flags)
-            }
-            .during("reset the descriptor pool")?;
-        }
+        self.descriptors.reset()?;
         self.begin_commands()
     }
 
@@ -140,17 +108,17 @@ impl Recorder {
         unsafe { self.context.raw().begin_command_buffer(self.command, &info) }.during(begin)
     }
 
-    /// Submits what was recorded and waits until it is done.
+    /// Submits the recorded work and waits until it is done.
     ///
     /// # Errors
-    /// When the device is lost, or a pass could not be recorded.
+    /// When the device is lost or a pass could not be recorded.
     pub fn finish(&mut self) -> Result<()> {
         let submitted = self.submit(None);
         let done = self.wait();
         submitted.and(done)
     }
 
-    /// Submits what was recorded, to run while the CPU goes on; `signal` is signalled at its end.
+    /// Submits the recorded work without waiting; `signal` is signalled at its end.
     pub(in crate::gpu) fn submit(&mut self, signal: Option<vk::Semaphore>) -> Result<()> {
         let raw = self.context.raw();
         let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(self.command)];
@@ -180,15 +148,15 @@ impl Recorder {
         Ok(())
     }
 
-    /// Waits until what was submitted is done, and lets go of what it used.
+    /// Waits until the submitted work is done and releases its resources.
     ///
     /// # Errors
-    /// When the device is lost, or a pass could not be recorded.
+    /// When the device is lost or a pass could not be recorded.
     pub fn wait(&mut self) -> Result<()> {
         let waited = self.wait_for_fence();
         if waited.is_err() {
-            // Memory may have been out for the waiting only: what the work uses must outlive it all the same.
-            // SAFETY: the queue is used by one thread at a time. A lost device has nothing to wait for.
+            // The wait itself may have failed for lack of memory; the resources must still outlive the work.
+            // SAFETY: the queue is used by one thread at a time. On a lost device there is nothing to wait for.
             let _ = unsafe { self.context.raw().device_wait_idle() };
         }
         self.kept.clear();
@@ -207,7 +175,7 @@ impl Recorder {
         }
     }
 
-    /// Whether there was anything to wait for.
+    /// Whether work was pending.
     fn wait_for_fence(&mut self) -> Result<bool> {
         if !std::mem::take(&mut self.is_pending) {
             return Ok(false);
@@ -224,22 +192,23 @@ impl Recorder {
         Ok(true)
     }
 
-    /// The next submission waits for this semaphore before it draws to an acquired image.
+    /// Makes the next submission wait for this semaphore before it writes colour attachments.
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn wait_for(&mut self, acquired: vk::Semaphore) {
         self.acquired = Some(acquired);
     }
 
-    /// Times passes differently from the next frame on ([`Timing::Work`] needs a recorder that was made for it).
+    /// Changes the timing from the next frame on. [`Timing::Work`] needs a recorder that was created with it.
     pub fn set_timing(&mut self, timing: Timing) {
         self.timing = timing;
     }
 
-    /// Times of the last frame that was waited for; empty with [`Timing::Off`].
+    /// Times of the last finished frame; empty with [`Timing::Off`].
     pub fn timings(&self) -> &Timings {
         &self.timings
     }
 
-    /// What the passes of the last finished frame did; empty but with [`Timing::Work`].
+    /// Work of the passes of the last finished frame; empty without [`Timing::Work`].
     pub fn work(&self) -> &[PassWork] {
         self.work.as_ref().map_or(&[], WorkLog::passes)
     }
@@ -249,17 +218,17 @@ impl Recorder {
         &self.context
     }
 
-    /// Starts a pass: bind by the names the shaders declare, then draw.
+    /// Starts a pass. Resources are bound by the names that the shaders declare.
     pub fn pass<'r>(&'r mut self, name: &'static str, pipeline: &'r Pipeline) -> Pass<'r> {
         Pass::new(self, name, pipeline)
     }
 
-    /// Holds a buffer until the work is done.
+    /// Keeps a buffer alive until the work is done.
     pub(in crate::gpu) fn keep(&mut self, buffer: Buffer) {
         self.kept.push(buffer);
     }
 
-    /// Copies a block into the uniform buffer; gives its place.
+    /// Copies a block into the uniform buffer and returns its range.
     pub(in crate::gpu) fn uniform<T: Pod>(&mut self, value: &T) -> vk::DescriptorBufferInfo {
         let bytes = bytemuck::bytes_of(value);
         let align = self
@@ -282,24 +251,36 @@ impl Recorder {
         }
     }
 
-    /// A descriptor set, on devices without push descriptors.
+    /// A descriptor set for this frame, on devices without push descriptors; `finish` reports why there is none.
     pub(in crate::gpu) fn descriptor_set(
         &mut self,
         pipeline: &Pipeline,
     ) -> Option<vk::DescriptorSet> {
-        let layouts = [pipeline.set_layout()];
-        let info = vk::DescriptorSetAllocateInfo::default()
-            .descriptor_pool(self.descriptor_pool)
-            .set_layouts(&layouts);
-        // SAFETY: the pool is alive and not used by another thread.
-        let made = unsafe { self.context.raw().allocate_descriptor_sets(&info) }
-            .during("allocate a descriptor set");
-        match made {
-            Ok(sets) => sets.first().copied(),
-            Err(fault) => {
-                self.fault.get_or_insert(fault);
-                None
-            }
+        let set = self.descriptors.allocate(pipeline.set_layout());
+        set.map_err(|fault| self.fault.get_or_insert(fault)).ok()
+    }
+
+    /// Names the following commands in captures and validation messages.
+    pub(in crate::gpu) fn label(&self, name: &str) {
+        let Some(debug) = &self.context.extensions.debug else {
+            return;
+        };
+        let mut text = [0u8; 64];
+        let length = name.len().min(text.len() - 1);
+        text[..length].copy_from_slice(&name.as_bytes()[..length]);
+        let Ok(text) = std::ffi::CStr::from_bytes_until_nul(&text) else {
+            return;
+        };
+        let info = vk::DebugUtilsLabelEXT::default().label_name(text);
+        // SAFETY: the command buffer is recording.
+        unsafe { debug.cmd_begin_debug_utils_label(self.command, &info) };
+    }
+
+    /// Ends what `label` began.
+    pub(in crate::gpu) fn unlabel(&self) {
+        if let Some(debug) = &self.context.extensions.debug {
+            // SAFETY: pairs with `label`.
+            unsafe { debug.cmd_end_debug_utils_label(self.command) };
         }
     }
 
@@ -318,14 +299,14 @@ impl Recorder {
         }
     }
 
-    /// The part of a timing that must be written inside the rendering, for software drivers to attribute it.
+    /// Ends a timestamp. It is written inside the rendering: software drivers attribute it to the next pass otherwise.
     pub(in crate::gpu) fn end_timing(&self, mark: &Mark) {
         if let Mark::Query(index) = mark {
             self.queries.end(self.command, *index);
         }
     }
 
-    /// With [`Timing::Work`], notes what the pass that was just recorded is made of, and what it touches.
+    /// With [`Timing::Work`], stores draws and traffic of the pass that was just recorded.
     pub(in crate::gpu) fn end_work(
         &mut self,
         mark: &Mark,
@@ -338,7 +319,7 @@ impl Recorder {
         }
     }
 
-    /// With [`Timing::Isolated`], runs the pass that was just recorded and starts anew.
+    /// With [`Timing::Isolated`], submits the pass that was just recorded, waits, and begins the command buffer again.
     pub(in crate::gpu) fn isolate(&mut self, mark: &Mark) {
         let Mark::Wall(name) = mark else { return };
         let start = Stopwatch::start();
@@ -354,17 +335,16 @@ impl Recorder {
 impl Drop for Recorder {
     fn drop(&mut self) {
         let raw = self.context.raw();
-        // SAFETY: work was waited for in `finish` (or lost with the device); null handles are ignored.
+        // SAFETY: the device is idle or lost; null handles are ignored.
         unsafe {
             let _ = raw.device_wait_idle();
             raw.destroy_fence(self.fence, None);
-            raw.destroy_descriptor_pool(self.descriptor_pool, None);
             raw.destroy_command_pool(self.command_pool, None);
         }
     }
 }
 
-/// Where a pass notes its time.
+/// Handle of the timing or work query of a pass.
 pub(in crate::gpu) enum Mark {
     None,
     Query(u32),

@@ -1,4 +1,4 @@
-//! Times of passes, by their names.
+//! Times of passes.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -12,14 +12,14 @@ use crate::gpu::error::{During, Result};
 /// How passes are timed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Timing {
-    /// Not at all.
+    /// Not timed.
     #[default]
     Off,
-    /// By GPU timestamps within the one submission.
+    /// By timestamps within one submission.
     Timestamps,
-    /// Each pass is submitted alone and waited for: wall time, trustworthy on software drivers too.
+    /// By the wall clock, each pass submitted alone and waited for: reliable on software drivers too.
     Isolated,
-    /// Not at all; bytes and pipeline statistics are counted instead (they would disturb the times).
+    /// Not timed: bytes and pipeline statistics are counted, which would distort times.
     Work,
 }
 
@@ -28,10 +28,10 @@ pub enum Timing {
 pub struct PassTime {
     /// Name of the pass.
     pub name: &'static str,
-    /// Milliseconds of the device, or of the wall clock with [`Timing::Isolated`].
+    /// Device time, or wall time with [`Timing::Isolated`], milliseconds.
     pub ms: f64,
-    /// Milliseconds of all threads of this process, with [`Timing::Isolated`]: what a software driver spends. It hardly
-    /// moves with the load of the machine.
+    /// CPU time of all threads of this process with [`Timing::Isolated`], milliseconds. On a software driver it hardly depends
+    /// on the load of the machine.
     pub cpu_ms: f64,
 }
 
@@ -41,7 +41,7 @@ pub struct Timings {
     passes: Vec<PassTime>,
 }
 
-/// Wall clock and CPU clock, started together.
+/// Wall clock and CPU clock of this process.
 #[derive(Debug, Clone, Copy)]
 pub struct Stopwatch {
     wall: Instant,
@@ -49,7 +49,7 @@ pub struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// Starts both.
+    /// Starts both clocks.
     pub fn start() -> Self {
         Self {
             wall: Instant::now(),
@@ -57,7 +57,7 @@ impl Stopwatch {
         }
     }
 
-    /// Milliseconds since: of the wall, and of all threads of this process.
+    /// Wall time and CPU time of all threads since the start, milliseconds.
     pub fn elapsed_ms(&self) -> (f64, f64) {
         let ms = |d: Duration| d.as_secs_f64() * 1e3;
         (ms(self.wall.elapsed()), ms(self.cpu.elapsed()))
@@ -73,7 +73,7 @@ impl Timings {
         self.passes.push(time);
     }
 
-    /// Each pass.
+    /// The passes.
     pub fn passes(&self) -> &[PassTime] {
         &self.passes
     }

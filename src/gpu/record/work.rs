@@ -1,4 +1,4 @@
-//! What passes do, beside how long they take: bytes that formats and sizes make unavoidable, and pipeline statistics.
+//! Work of passes: draws, the least memory traffic, pipeline statistics.
 
 use std::sync::Arc;
 
@@ -13,18 +13,18 @@ use crate::gpu::memory::image::Image;
 pub struct PassWork {
     /// Name of the pass.
     pub name: &'static str,
-    /// Draws, dispatches or copies that it is made of.
+    /// Number of draws, dispatches or copies.
     pub draws: u64,
-    /// Memory that it must touch.
+    /// Memory traffic.
     pub traffic: Traffic,
-    /// What the device counted, where it counts.
+    /// Counters of the device, if it has them.
     pub statistics: Option<PipelineStatistics>,
 }
 
-/// Memory that a pass must touch: a lower bound, as if every byte were fetched once.
+/// Lower bound of the memory traffic of a pass, as if every byte were fetched once.
 ///
-/// Attachments count whole, and twice when their old content stays; a sampled image counts at most a texel to each
-/// pixel of the target; vertex, index and storage buffers count once.
+/// Attachments count whole, and twice when they are loaded; a sampled image counts at most one texel for each pixel of the
+/// target; vertex, index and storage buffers count once.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Traffic {
     /// Pixels of the target, all layers.
@@ -40,17 +40,17 @@ pub struct Traffic {
 pub struct PipelineStatistics {
     /// Vertices read.
     pub vertices: u64,
-    /// Runs of the vertex shader.
+    /// Invocations of the vertex shader.
     pub vertex_invocations: u64,
-    /// Triangles that are left after clipping.
+    /// Triangles after clipping.
     pub clipped_primitives: u64,
-    /// Runs of the fragment shader.
+    /// Invocations of the fragment shader.
     pub fragment_invocations: u64,
-    /// Runs of the compute shader.
+    /// Invocations of the compute shader.
     pub compute_invocations: u64,
 }
 
-/// The counters, in the order of their bits, which is that of the results.
+/// The counters in the order of their bits, which is the order of the results.
 const COUNTERS: [vk::QueryPipelineStatisticFlags; 5] = [
     vk::QueryPipelineStatisticFlags::INPUT_ASSEMBLY_VERTICES,
     vk::QueryPipelineStatisticFlags::VERTEX_SHADER_INVOCATIONS,
@@ -62,7 +62,7 @@ const COUNTERS: [vk::QueryPipelineStatisticFlags; 5] = [
 const MAX_PASSES: u32 = 128;
 
 impl Traffic {
-    /// Nothing yet, for a target of this many pixels.
+    /// No traffic yet, for a target of this many pixels.
     pub(in crate::gpu) fn new(pixels: u64) -> Self {
         Self {
             pixels,
@@ -70,19 +70,19 @@ impl Traffic {
         }
     }
 
-    /// An image that is looked up.
+    /// Adds a sampled image.
     pub(in crate::gpu) fn sample(&mut self, image: &Image) {
         self.bytes_read += texels(image).min(self.pixels) * texel_bytes(image.format());
     }
 
-    /// An attachment or storage image, and whether its old content matters.
+    /// Adds an attachment or storage image; `keeps`: it is loaded too.
     pub(in crate::gpu) fn write(&mut self, image: &Image, keeps: bool) {
         let bytes = texels(image) * texel_bytes(image.format());
         self.bytes_written += bytes;
         self.bytes_read += if keeps { bytes } else { 0 };
     }
 
-    /// An attachment that is tested but not written.
+    /// Adds an attachment that is tested but not written.
     pub(in crate::gpu) fn test(&mut self, image: &Image) {
         self.bytes_read += texels(image) * texel_bytes(image.format());
     }
@@ -104,12 +104,12 @@ pub(in crate::gpu) fn texel_bytes(format: vk::Format) -> u64 {
         F::R16G16B16A16_SFLOAT | F::R16G16B16A16_UNORM | F::R16G16B16A16_UINT => 8,
         F::R32G32_SFLOAT | F::R32G32_UINT => 8,
         F::R32G32B32A32_SFLOAT | F::R32G32B32A32_UINT => 16,
-        // Colour formats of displays, packed formats, pairs of halves, 32-bit numbers, depth.
+        // Display formats, packed formats, pairs of half floats, 32-bit numbers, depth.
         _ => 4,
     }
 }
 
-/// The work of the passes of one frame while it is recorded, and the queries that count it.
+/// Work of the passes of the frame that is recorded, and its queries.
 pub(in crate::gpu) struct WorkLog {
     context: Arc<Context>,
     pool: vk::QueryPool,
@@ -154,7 +154,7 @@ impl WorkLog {
         }
     }
 
-    /// Starts counting, outside of a rendering; gives the number of the pass.
+    /// Starts counting, outside of a rendering; returns the index of the pass.
     pub(in crate::gpu) fn begin(
         &mut self,
         command: vk::CommandBuffer,

@@ -1,6 +1,6 @@
 //! The light of the sky with its true visibility: shadow maps from directions of the sky, averaged over many frames.
 //!
-//! Each frame draws a few orthographic depth maps from directions that [`SkyDome`] draws by luminance, tiles of one image,
+//! Each frame draws a few orthographic depth maps from directions that [`SkySampler`] draws by luminance, tiles of one image,
 //! and adds to each pixel V L cos θ / p of those directions (N), and the same without V (D). The means over the frames
 //! converge to ∫ V L cos dω and to E without occlusion, which the irradiance cube knows better (U): the picture shows
 //! N · U / D. Where nothing hides the sky that is exact from the first frame on, elsewhere errors of N and D cancel in part;
@@ -12,9 +12,9 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::daylight::dome::{DomeLight, SkyDome, ground_light};
 use crate::daylight::sampling;
 use crate::daylight::sky::Daylight;
+use crate::daylight::sky_sampler::{DomeLight, SkySampler, ground_light};
 use crate::gpu::{
     Context, Depth, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
 };
@@ -95,7 +95,7 @@ pub struct Dome {
     radiance: Image,
     /// Mirrors from which the sky is hidden, where there are any.
     mirror: Option<Mirror>,
-    sky: Option<(Daylight, SkyDome)>,
+    sky: Option<(Daylight, SkySampler)>,
     is_shown: bool,
 }
 
@@ -213,7 +213,7 @@ impl Dome {
     /// share of its hemisphere.
     fn lights(&mut self, daylight: &Daylight, index: u32) -> Vec<DomeLight> {
         if self.sky.as_ref().is_none_or(|(drawn, _)| drawn != daylight) {
-            self.sky = Some((daylight.clone(), SkyDome::new(daylight)));
+            self.sky = Some((daylight.clone(), SkySampler::new(daylight)));
         }
         let Some((_, sky)) = &self.sky else {
             return Vec::new();

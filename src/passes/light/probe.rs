@@ -67,7 +67,7 @@ impl Probe {
             precision: Precision::Half,
             ..settings
         };
-        let bytes = ((TEXELS + 1) * Texel::MOST_BYTES) as u64;
+        let bytes = ((TEXELS + 1) * Texel::SLOT_BYTES) as u64;
         Ok(Self {
             illuminance: Lighting::new(context, size, settings)?,
             buffer: Buffer::new(context, "probe", BufferKind::ReadBack, bytes)?,

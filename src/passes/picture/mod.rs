@@ -3,5 +3,6 @@
 pub mod accumulate;
 pub mod exposure;
 pub mod fade;
+#[cfg(feature = "window")]
 pub mod present;
 pub mod tone_map;

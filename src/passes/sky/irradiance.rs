@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use crate::daylight::cube::{texel_direction, texel_solid_angle, texels};
 use crate::daylight::irradiance::{IrradianceMethod, SphericalHarmonics};
-use crate::daylight::refinement::shares;
+use crate::daylight::sample_count::filtered_samples;
 use crate::daylight::sky::Daylight;
 use crate::gpu::{
     Buffer, BufferKind, Context, Format, Image, ImageDesc, Recorder, Result, Sampler, shaders,
@@ -264,7 +264,7 @@ impl Irradiance {
 fn upload_table(recorder: &mut Recorder, settings: &IrradianceSettings) -> Result<Buffer> {
     let edge = COARSE_EDGE as usize;
     let numbers: Vec<f32> = match settings.method {
-        IrradianceMethod::Quasi => filtered_samples(settings.samples),
+        IrradianceMethod::Quasi => sample_table(settings.samples),
         IrradianceMethod::Exact => texels(edge)
             .flat_map(|(face, i, j)| {
                 let direction = texel_direction(face, i, j, edge);
@@ -285,7 +285,7 @@ fn upload_table(recorder: &mut Recorder, settings: &IrradianceSettings) -> Resul
 fn upload_draft(recorder: &mut Recorder, settings: &IrradianceSettings) -> Result<Option<Buffer>> {
     let is_wanted =
         settings.method == IrradianceMethod::Quasi && settings.samples > settings.samples_per_pass;
-    let samples = || bytemuck::cast_slice(&filtered_samples(DRAFT_SAMPLES)).to_vec();
+    let samples = || bytemuck::cast_slice(&sample_table(DRAFT_SAMPLES)).to_vec();
     is_wanted
         .then(|| {
             upload_buffer(
@@ -298,9 +298,9 @@ fn upload_draft(recorder: &mut Recorder, settings: &IrradianceSettings) -> Resul
         .transpose()
 }
 
-/// The low-discrepancy directions, each with the mip level of its share.
-fn filtered_samples(count: u32) -> Vec<f32> {
-    shares(count)
+/// The low-discrepancy directions, each with the mip level of its lookup.
+fn sample_table(count: u32) -> Vec<f32> {
+    filtered_samples(count)
         .into_iter()
         .flat_map(|s| {
             s.direction

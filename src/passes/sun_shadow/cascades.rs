@@ -296,7 +296,7 @@ mod tests {
             count: 3,
             bounds,
             solid: None,
-            is_wound: false,
+            normals_match_winding: false,
         };
         views.shade([&cluster], view.camera.eye, 0.0, &Shadows::default());
         let drawn = views.iter().filter(|v| !v.shade.is_nothing()).count();

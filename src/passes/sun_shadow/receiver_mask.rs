@@ -189,7 +189,7 @@ mod tests {
             count: 3,
             bounds: around(centre),
             solid: None,
-            is_wound: false,
+            normals_match_winding: false,
         }
     }
 

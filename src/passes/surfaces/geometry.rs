@@ -341,7 +341,7 @@ impl Geometry {
 
 /// Whether the pipeline with the fewest vertex attributes can draw a cluster.
 fn is_lean(part: &Part, cluster: &Cluster) -> bool {
-    part.kind.is_bare() && cluster.is_wound
+    part.kind.is_bare() && cluster.normals_match_winding
 }
 
 /// Whether it takes the one with texture coordinates, which finds out which side is the front.

@@ -1,4 +1,4 @@
-//! The connected surfaces of a scene: how thick they are, and whether they are closed.
+//! Connected surfaces of a scene: their thickness, and whether they are closed.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -7,22 +7,22 @@ use glam::{DVec3, Vec3};
 
 use crate::scene::{Bounds, Scene};
 
-/// A connected surface: triangles that share vertices at the same place.
+/// A connected surface: triangles that share vertex positions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
     /// Around its triangles, metres.
     pub bounds: Bounds,
-    /// Length of the mean straight way through it, metres: 4 volume / area (Cauchy), of an open surface that of the cone
-    /// over it from the middle of its box. A thin wall is crossed in twice its thickness.
+    /// Mean chord, metres: 4 volume / area (Cauchy). For an open surface the volume is that of the cone over it from the
+    /// centre of its bounds. The mean chord of a thin wall is twice its thickness.
     pub mean_chord: f32,
-    /// Whether it is the whole surface of a solid, its triangles counter-clockwise seen from outside. From outside, none
-    /// of its back faces can be seen.
+    /// Whether it is the closed surface of a solid, its triangles counter-clockwise seen from outside: then none of its back
+    /// faces is visible from outside.
     pub is_solid: bool,
 }
 
 impl Body {
-    /// How far matter reaches behind its surface, metres: [`Body::mean_chord`], of a solid (of which all is known) less
-    /// than that. What lies behind a sheet is not known: it hides as much as its smaller side is long.
+    /// Thickness behind the surface for ambient occlusion, metres: the mean chord, for a solid a share of it. The thickness
+    /// of a sheet is unknown: the middle extent of its bounds.
     pub fn thickness(&self) -> f32 {
         let mut extents = self.bounds.extent().to_array();
         extents.sort_by(f32::total_cmp);
@@ -35,10 +35,11 @@ impl Body {
     }
 }
 
-/// Share of the mean chord that counts of a solid. The occlusion doubles it: a little over a sphere's diameter, which is 1.5.
+/// Thickness of a solid as a share of its mean chord. The occlusion pass doubles it: to 1.6, a little over the diameter of a
+/// sphere, which is 1.5 mean chords.
 const SOLID: f32 = 0.8;
 
-/// Mean chord over largest extent below which a body is a sheet.
+/// Mean chord over largest extent, below which a body is a sheet.
 const FLAT: f32 = 1e-3;
 
 /// The bodies of a scene.
@@ -46,12 +47,12 @@ const FLAT: f32 = 1e-3;
 pub struct Bodies {
     /// Each body.
     pub list: Vec<Body>,
-    /// Number of the body that each vertex belongs to.
+    /// Index in `list` of the body of each vertex.
     pub of_vertex: Vec<u32>,
 }
 
 impl Bodies {
-    /// Finds the bodies. Vertices are joined where their positions are equal to the bit.
+    /// Finds the bodies. Vertices with equal positions, to the bit, are joined.
     pub fn of(scene: &Scene) -> Self {
         let points = weld(&scene.positions);
         let mut sets = Sets::new(points.len());
@@ -84,13 +85,13 @@ impl Bodies {
     }
 }
 
-/// The first vertex at the place of each.
+/// For each vertex the first one at the same position.
 fn weld(positions: &[[f32; 3]]) -> Vec<u32> {
     let mut first: HashMap<[u32; 3], u32, BuildHasherDefault<Mix>> = HashMap::default();
     first.reserve(positions.len());
     let numbered = positions.iter().enumerate();
     numbered
-        // Adding 0 makes -0 and 0 one place.
+        // Adding zero turns −0 into 0.
         .map(|(i, p)| {
             *first
                 .entry(p.map(|x| (x + 0.0).to_bits()))
@@ -99,7 +100,7 @@ fn weld(positions: &[[f32; 3]]) -> Vec<u32> {
         .collect()
 }
 
-/// Multiplies and folds: positions are no enemies, and there are many of them.
+/// A fast hash: there are many positions, and a slow search is all that a hostile file could cause.
 #[derive(Default)]
 struct Mix(u64);
 
@@ -125,7 +126,7 @@ fn mixed(mut x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
-/// Disjoint sets (Galler and Fischer 1964), paths halved.
+/// Disjoint sets (Galler and Fischer 1964) with path halving.
 struct Sets(Vec<u32>);
 
 impl Sets {
@@ -148,17 +149,17 @@ impl Sets {
     }
 }
 
-/// What is added up over the triangles of a body.
+/// Sums over the triangles of a body.
 #[derive(Clone, Copy)]
 struct Sums {
     bounds: Bounds,
-    /// Corner from which volumes are counted: near, so that they keep their digits.
+    /// Apex of the volumes, metres: a corner of the body, so that they keep their precision.
     origin: Option<DVec3>,
     six_volumes: f64,
-    /// Sum of the triangles' vectors, each twice its area long: 0 when closed.
+    /// Sum of the triangles' area vectors, doubled, m²: zero for a closed surface.
     two_areas: DVec3,
     two_area: f64,
-    /// Each directed edge adds a random number of its own, the opposite edge takes it away: 0 when all are paired.
+    /// Sum of the hashes of directed edges; opposite edges cancel: zero if all edges are paired.
     unpaired: u64,
 }
 
@@ -265,7 +266,7 @@ mod tests {
         let at = Vec3::new(100.0, 50.0, -20.0);
         let solid = |faces, inward| bodies(|s| cuboid(s, at, Vec3::ONE, faces, inward))[0].is_solid;
         assert!(solid(6, false));
-        assert!(!solid(6, true), "a room");
+        assert!(!solid(6, true), "an interior");
         assert!(!solid(5, false), "a box without a lid");
         let mut scene = Scene::default();
         cuboid(&mut scene, at, Vec3::ONE, 6, false);
@@ -274,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sheet_hides_as_much_as_its_smaller_side_is_long() {
+    fn a_sheet_is_as_thick_as_its_smaller_side_is_long() {
         let sheet = bodies(|s| cuboid(s, Vec3::ZERO, Vec3::new(0.0, 3.0, 8.0), 1, false));
         assert_eq!(sheet[0].thickness(), 3.0);
     }

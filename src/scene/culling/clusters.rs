@@ -1,4 +1,4 @@
-//! Small groups of triangles that lie together, so that what a view cannot see need not be drawn.
+//! Clusters: small groups of neighbouring triangles, the unit of culling (also called meshlets).
 
 use std::ops::Range;
 use std::thread;
@@ -8,50 +8,50 @@ use glam::Vec3;
 use crate::scene::{Bodies, Bounds, Scene};
 
 /// Most triangles of a cluster.
-const MOST: usize = 128;
-/// Triangles from which halves are worth a thread of their own.
-const LARGE: usize = 1 << 15;
+const MAX_TRIANGLES: usize = 128;
+/// Fewest triangles that are split on two threads.
+const MIN_PARALLEL: usize = 1 << 15;
 
-/// Triangles that lie together.
+/// Neighbouring triangles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cluster {
-    /// First index.
+    /// First of its indices.
     pub first: u32,
     /// Number of indices.
     pub count: u32,
     /// Around the triangles, metres.
     pub bounds: Bounds,
-    /// Where the triangles are part of solids.
+    /// Set if all triangles belong to solids.
     pub solid: Option<Solid>,
-    /// Whether at every triangle all three stored normals are on the side from which it winds counter-clockwise.
-    pub is_wound: bool,
+    /// Whether the stored normals of every triangle are on the side from which it winds counter-clockwise.
+    pub normals_match_winding: bool,
 }
 
-/// What is known of triangles of solids: from outside, none of their back faces can be seen.
+/// Bounds and normal cone of triangles of solids, whose back faces are not visible from outside.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solid {
-    /// Around all of the solids that the triangles belong to, metres.
+    /// Around the solids that the triangles belong to, metres.
     pub bodies: Bounds,
-    /// Axis of a cone that holds the normals of all the triangles, unit.
+    /// Axis of the normal cone, which contains the normals of all triangles, unit.
     pub axis: Vec3,
-    /// Sine of the angle between the axis and the normal farthest from it; 1 for a right angle and more.
+    /// Sine of the cone's half angle; 1 for a right angle and more.
     pub sine: f32,
 }
 
-/// Indices in another order, and the clusters that they form.
+/// Reordered indices and the clusters that they form.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Clusters {
-    /// Those of the scene, the ones of each run in the order of its clusters.
+    /// The indices of the scene, those of each run in the order of its clusters.
     pub indices: Vec<u32>,
-    /// The clusters, run after run, in the order of their indices.
+    /// All clusters, in the order of their indices.
     pub list: Vec<Cluster>,
-    /// The clusters of each run.
+    /// Range of each run in `list`.
     pub of_run: Vec<Range<usize>>,
 }
 
 impl Clusters {
-    /// Splits runs of a scene's indices (first and count) by halves at the median of the longest side, down to clusters.
-    /// Within a cluster triangles keep their order, which is mostly one that shares vertices.
+    /// Splits runs of a scene's indices (first and count) recursively at the median along the longest axis. Within a cluster
+    /// triangles keep their order, which mostly reuses vertices.
     pub fn of(scene: &Scene, bodies: &Bodies, runs: &[(u32, u32)]) -> Self {
         let mut made = Self {
             indices: scene.indices.clone(),
@@ -81,17 +81,17 @@ impl Clusters {
     }
 }
 
-/// What the triangles of a cluster have in common.
+/// Properties that all triangles of a cluster share.
 #[derive(Clone, Copy)]
 struct Kind {
-    /// Whether they are part of solids.
+    /// Whether they belong to solids.
     is_solid: bool,
-    /// [`Cluster::is_wound`].
-    is_wound: bool,
+    /// [`Cluster::normals_match_winding`].
+    normals_match_winding: bool,
 }
 
 impl Kind {
-    /// In the order of their clusters.
+    /// All kinds, in the order of their clusters.
     const ALL: [Self; 4] = [
         Self::new(true, true),
         Self::new(true, false),
@@ -99,34 +99,37 @@ impl Kind {
         Self::new(false, false),
     ];
 
-    const fn new(is_solid: bool, is_wound: bool) -> Self {
-        Self { is_solid, is_wound }
+    const fn new(is_solid: bool, normals_match_winding: bool) -> Self {
+        Self {
+            is_solid,
+            normals_match_winding,
+        }
     }
 
-    /// Its place among all.
+    /// Position in [`Kind::ALL`].
     fn rank(self) -> usize {
-        2 * usize::from(!self.is_solid) + usize::from(!self.is_wound)
+        2 * usize::from(!self.is_solid) + usize::from(!self.normals_match_winding)
     }
 }
 
-/// A triangle on its way to its cluster.
+/// A triangle that is being sorted.
 #[derive(Clone, Copy)]
 struct Item {
-    /// Three times its centroid.
-    place: Vec3,
+    /// Three times its centroid, metres.
+    centroid: Vec3,
     triangle: u32,
 }
 
-/// Where the indices of some triangles go.
+/// The destination of the indices of some triangles.
 struct Run<'i> {
-    /// Number of the first one.
+    /// Position of the first one.
     first: u32,
     kind: Kind,
     indices: &'i mut [u32],
 }
 
 impl Run<'_> {
-    /// The first `triangles` and the rest.
+    /// Splits it after this many triangles.
     fn halves(&mut self, triangles: usize) -> (Run<'_>, Run<'_>) {
         let (low, high) = self.indices.split_at_mut(3 * triangles);
         let of = |first, indices| Run {
@@ -169,27 +172,27 @@ impl Splitter<'_> {
             let normal = normals.get(v as usize);
             normal.is_some_and(|n| face.dot((*n).into()) > 0.0)
         };
-        let is_wound = self.corners(triangle).into_iter().all(agrees);
-        Kind::new(self.body(triangle).is_solid, is_wound)
+        let normals_match_winding = self.corners(triangle).into_iter().all(agrees);
+        Kind::new(self.body(triangle).is_solid, normals_match_winding)
     }
 
     fn item(&self, triangle: u32) -> Item {
         Item {
-            place: self.positions(triangle).iter().sum(),
+            centroid: self.positions(triangle).iter().sum(),
             triangle,
         }
     }
 
-    /// Clusters of at most [`MOST`] triangles.
+    /// Clusters of at most [`MAX_TRIANGLES`] triangles.
     fn split(&self, items: &mut [Item], mut run: Run<'_>) -> Vec<Cluster> {
         if items.is_empty() {
             return Vec::new();
         }
-        if items.len() <= MOST {
+        if items.len() <= MAX_TRIANGLES {
             return vec![self.cluster(items, run)];
         }
         let middle = items.len() / 2;
-        let is_large = items.len() >= LARGE;
+        let is_large = items.len() >= MIN_PARALLEL;
         halve(items, middle);
         let (low, high) = items.split_at_mut(middle);
         let (low_run, high_run) = run.halves(middle);
@@ -198,7 +201,7 @@ impl Splitter<'_> {
                 let rest = scope.spawn(|| self.split(high, high_run));
                 let clusters = self.split(low, low_run);
                 let rest = rest.join();
-                // A fault of this program is one on this thread too.
+                // A panic on that thread is a panic on this one.
                 (
                     clusters,
                     rest.unwrap_or_else(|fault| std::panic::resume_unwind(fault)),
@@ -226,7 +229,7 @@ impl Splitter<'_> {
             count: run.indices.len() as u32,
             bounds,
             solid: run.kind.is_solid.then(|| self.solid(items)),
-            is_wound: run.kind.is_wound,
+            normals_match_winding: run.kind.normals_match_winding,
         }
     }
 
@@ -239,7 +242,7 @@ impl Splitter<'_> {
             })
         };
         let axis = normals().sum::<Vec3>().normalize_or_zero();
-        // A triangle without area faces nowhere, and is seen from nowhere.
+        // A triangle without area has no normal and is never visible.
         let cosine = normals()
             .filter(|n| *n != Vec3::ZERO)
             .map(|n| n.dot(axis))
@@ -256,13 +259,13 @@ impl Splitter<'_> {
     }
 }
 
-/// Brings the triangles that lie lower on the longest axis before the middle.
+/// Moves the triangles that are lower along the longest axis before position `middle`.
 fn halve(items: &mut [Item], middle: usize) {
-    let extent = Bounds::of(items.iter().map(|item| item.place)).extent();
+    let extent = Bounds::of(items.iter().map(|item| item.centroid)).extent();
     let axis = extent.max_position();
     let order = |a: &Item, b: &Item| {
-        let by_place = a.place[axis].total_cmp(&b.place[axis]);
-        by_place.then(a.triangle.cmp(&b.triangle))
+        let by_centroid = a.centroid[axis].total_cmp(&b.centroid[axis]);
+        by_centroid.then(a.triangle.cmp(&b.triangle))
     };
     items.select_nth_unstable_by(middle, order);
 }
@@ -299,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn every_triangle_is_in_one_cluster_and_lies_in_its_box() {
+    fn every_triangle_is_in_one_cluster_and_within_its_bounds() {
         let scene = sheet(150);
         let count = scene.indices.len() as u32;
         let runs = [(0, 300), (300, count - 300)];
@@ -310,7 +313,7 @@ mod tests {
         let mut next = 0;
         for cluster in &clusters.list {
             assert_eq!(cluster.first, next);
-            assert!(cluster.count as usize <= 3 * MOST && cluster.count > 0);
+            assert!(cluster.count as usize <= 3 * MAX_TRIANGLES && cluster.count > 0);
             assert!(cluster.solid.is_none(), "a sheet has two sides");
             next += cluster.count;
             let range = cluster.first as usize..next as usize;
@@ -335,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn the_cone_holds_all_normals() {
+    fn the_cone_contains_all_normals() {
         let mut scene = Scene {
             positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             // A tetrahedron, counter-clockwise seen from outside.

@@ -1,23 +1,26 @@
-//! How a scene is drawn: its triangles in the order of clusters, and how thick its bodies are. It follows from the mesh
-//! alone and takes as long as reading one, so that the cache keeps it.
+//! The draw layout of a scene: its triangles in the order of clusters, and the thickness of its bodies. It depends on the
+//! mesh only and takes as long to compute as a mesh to read, so the cache stores it too.
 
 use std::ops::Range;
 
-use crate::scene::{Bodies, Body, Cluster, Clusters, Scene};
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
 
-/// What is known of a scene's mesh beside the mesh.
+use crate::scene::{Bodies, Body, Bounds, Cluster, Clusters, Scene, Solid};
+
+/// Data that is derived from the mesh of a scene for drawing.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Layout {
-    /// In the order of their indices.
+    /// All clusters, in the order of their indices.
     pub clusters: Vec<Cluster>,
-    /// The clusters of each part.
+    /// Range of each part in `clusters`.
     pub of_part: Vec<Range<usize>>,
-    /// How far matter reaches behind the surface at each vertex, metres.
+    /// Thickness of the body behind each vertex, metres.
     pub thickness: Vec<f32>,
 }
 
 impl Layout {
-    /// That of a scene, and its indices with the triangles of each part in the order of clusters.
+    /// Computes the layout of a scene, and its indices with the triangles of each part in the order of clusters.
     pub fn of(scene: &Scene) -> (Vec<u32>, Self) {
         let bodies = Bodies::of(scene);
         let runs: Vec<(u32, u32)> = scene
@@ -25,18 +28,18 @@ impl Layout {
             .iter()
             .map(|part| (part.first_index, part.index_count))
             .collect();
-        let made = Clusters::of(scene, &bodies, &runs);
+        let built = Clusters::of(scene, &bodies, &runs);
         let thickness: Vec<f32> = bodies.list.iter().map(Body::thickness).collect();
         let of_vertex = bodies.of_vertex.iter();
         let layout = Self {
-            clusters: made.list,
-            of_part: made.of_run,
+            clusters: built.list,
+            of_part: built.of_run,
             thickness: of_vertex.map(|body| thickness[*body as usize]).collect(),
         };
-        (made.indices, layout)
+        (built.indices, layout)
     }
 
-    /// Whether it can be of this scene: every number in range.
+    /// Whether all its indices are in range for this scene.
     pub(in crate::scene) fn fits(&self, scene: &Scene) -> bool {
         let within =
             |c: &Cluster| u64::from(c.first) + u64::from(c.count) <= scene.indices.len() as u64;
@@ -46,4 +49,85 @@ impl Layout {
             && self.of_part.iter().all(known)
             && self.clusters.iter().all(within)
     }
+}
+
+/// A layout as the cache stores it: arrays of plain numbers.
+pub struct FlatLayout<'l> {
+    pub clusters: Vec<FlatCluster>,
+    pub of_part: Vec<[u32; 2]>,
+    pub thickness: &'l [f32],
+}
+
+impl<'l> FlatLayout<'l> {
+    pub fn of(layout: &'l Layout) -> Self {
+        let ends = |range: &Range<usize>| [range.start as u32, range.end as u32];
+        Self {
+            clusters: layout.clusters.iter().map(FlatCluster::of).collect(),
+            of_part: layout.of_part.iter().map(ends).collect(),
+            thickness: &layout.thickness,
+        }
+    }
+}
+
+/// A [`Cluster`] of plain numbers.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub struct FlatCluster {
+    first: u32,
+    count: u32,
+    bounds: [Vec3; 2],
+    normals_match_winding: u32,
+    /// 0: the fields that follow are unused.
+    is_solid: u32,
+    bodies: [Vec3; 2],
+    axis: Vec3,
+    sine: f32,
+}
+
+impl FlatCluster {
+    fn of(cluster: &Cluster) -> Self {
+        let plain = Self {
+            first: cluster.first,
+            count: cluster.count,
+            bounds: [cluster.bounds.min, cluster.bounds.max],
+            normals_match_winding: cluster.normals_match_winding.into(),
+            ..Self::zeroed()
+        };
+        cluster.solid.map_or(plain, |solid| Self {
+            is_solid: 1,
+            bodies: [solid.bodies.min, solid.bodies.max],
+            axis: solid.axis,
+            sine: solid.sine,
+            ..plain
+        })
+    }
+
+    fn cluster(&self) -> Cluster {
+        Cluster {
+            first: self.first,
+            count: self.count,
+            bounds: bounds(self.bounds),
+            solid: (self.is_solid != 0).then(|| Solid {
+                bodies: bounds(self.bodies),
+                axis: self.axis,
+                sine: self.sine,
+            }),
+            normals_match_winding: self.normals_match_winding != 0,
+        }
+    }
+}
+
+fn bounds([min, max]: [Vec3; 2]) -> Bounds {
+    Bounds { min, max }
+}
+
+/// The inverse of [`FlatLayout::clusters`].
+pub fn clusters(flat: &[FlatCluster]) -> Vec<Cluster> {
+    flat.iter().map(FlatCluster::cluster).collect()
+}
+
+/// The inverse of [`FlatLayout::of_part`].
+pub fn ranges(flat: &[[u32; 2]]) -> Vec<Range<usize>> {
+    let range = |[start, end]: &[u32; 2]| *start as usize..*end as usize;
+    flat.iter().map(range).collect()
 }

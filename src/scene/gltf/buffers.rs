@@ -1,5 +1,4 @@
-//! The buffers of a glTF file, and the numbers that accessors name in them. Every range is checked before anything is
-//! allocated.
+//! The buffers of a glTF file and the accessors into them. Every range is checked before anything is allocated.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -10,30 +9,32 @@ use gltf::accessor::{Accessor, DataType, Dimensions};
 use percent_encoding::percent_decode_str;
 
 use crate::scene::builder::Builder;
-use crate::scene::files::Place;
-use crate::scene::texture::picture::Inner;
+use crate::scene::files::Lookup;
+use crate::scene::texture::picture::EmbeddedImage;
 
 /// The bytes of all buffers.
 #[derive(Debug)]
-pub(in crate::scene) struct Buffers(Vec<Rc<Vec<u8>>>);
+pub struct Buffers(Vec<Rc<Vec<u8>>>);
 
-/// Where bytes that a URI names come from.
-pub(in crate::scene) enum Uri {
-    /// The URI held them itself.
+/// What a URI refers to.
+pub enum Uri {
+    /// The bytes that the URI itself holds.
     Data(Vec<u8>),
-    /// This file.
-    File(Place),
+    /// A file.
+    File(Lookup),
 }
 
-/// Reads a URI of a model at `path`.
-pub(in crate::scene) fn resolve(builder: &Builder, path: &Path, uri: &str) -> Result<Uri, String> {
+/// Resolves a URI in the model at `path`.
+pub fn resolve(builder: &Builder, path: &Path, uri: &str) -> Result<Uri, String> {
     if let Some(data) = uri.strip_prefix("data:") {
-        let (kind, text) = data.split_once(',').ok_or("a data URI without a comma")?;
+        let (kind, text) = data.split_once(',').ok_or("a data URI has no comma")?;
         if !kind.ends_with(";base64") {
-            return Err("a data URI that is not base64".to_owned());
+            return Err("a data URI is not base64".to_owned());
         }
         let bytes = base64::engine::general_purpose::STANDARD.decode(text);
-        return bytes.map(Uri::Data).map_err(|_| "broken base64".to_owned());
+        return bytes
+            .map(Uri::Data)
+            .map_err(|_| "a data URI has invalid base64".to_owned());
     }
     let name = percent_decode_str(uri).decode_utf8_lossy();
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -41,8 +42,9 @@ pub(in crate::scene) fn resolve(builder: &Builder, path: &Path, uri: &str) -> Re
 }
 
 impl Buffers {
+    /// Reads all buffers; those with the same source share their bytes.
     pub fn read<'a>(builder: &Builder, path: &Path, gltf: &'a gltf::Gltf) -> Result<Self, String> {
-        // A thousand buffers may be the same bytes.
+        // A hostile file could name the same source a thousand times.
         let mut known: HashMap<Option<&str>, Rc<Vec<u8>>> = HashMap::new();
         let blob = gltf.blob.clone().map(|blob| (None, Rc::new(blob)));
         known.extend(blob);
@@ -53,12 +55,12 @@ impl Buffers {
             };
             let bytes = match (known.get(&uri), uri) {
                 (Some(bytes), _) => bytes.clone(),
-                (None, None) => return Err("no binary chunk".to_owned()),
+                (None, None) => return Err("the binary chunk is missing".to_owned()),
                 (None, Some(text)) => Rc::new(read_uri(builder, path, text)?),
             };
             known.insert(uri, bytes.clone());
             if bytes.len() < buffer.length() {
-                return Err(format!("buffer {} is cut short", buffer.index()));
+                return Err(format!("buffer {} is truncated", buffer.index()));
             }
             Ok(bytes)
         };
@@ -68,10 +70,10 @@ impl Buffers {
             .map(Self)
     }
 
-    /// The bytes of a view, and the buffer that they are part of.
-    pub fn part(&self, view: &gltf::buffer::View<'_>) -> Result<Inner, String> {
+    /// A picture in a view.
+    pub fn picture(&self, view: &gltf::buffer::View<'_>) -> Result<EmbeddedImage, String> {
         let length = self.view(view)?.len();
-        Ok(Inner {
+        Ok(EmbeddedImage {
             bytes: self.0[view.buffer().index()].clone(),
             range: view.offset()..view.offset() + length,
         })
@@ -82,10 +84,11 @@ impl Buffers {
         let end = view.offset().checked_add(view.length());
         let bytes = self.0.get(view.buffer().index());
         end.and_then(|end| bytes?.get(view.offset()..end))
-            .ok_or_else(|| format!("buffer view {} leaves its buffer", view.index()))
+            .ok_or_else(|| format!("buffer view {} exceeds its buffer", view.index()))
     }
 
-    /// Tuples of `N` numbers; missing components are 0, normalised integers become 0..1 or −1..1. `limit`: most tuples.
+    /// The elements of an accessor, at most `limit`, as `N` numbers. Missing components are 0, normalised integers become
+    /// 0..1 or −1..1.
     pub fn floats<const N: usize>(
         &self,
         accessor: &Accessor<'_>,
@@ -114,13 +117,13 @@ impl Buffers {
         Ok(values)
     }
 
-    /// Indices; `limit`: most of them.
+    /// The indices of an accessor, at most `limit`.
     pub fn indices(&self, accessor: &Accessor<'_>, limit: usize) -> Result<Vec<u32>, String> {
         let layout = Layout::of(accessor, limit)?;
         let kind = layout.kind;
         let view = accessor.view();
         let (1, Some(view), None) = (layout.width, view, accessor.sparse()) else {
-            return Err("indices of an unknown kind".to_owned());
+            return Err("the indices have an unsupported type".to_owned());
         };
         let elements = self.elements(&view, accessor.offset(), &layout)?;
         Ok(elements.map(|bytes| index(bytes, kind)).collect())
@@ -138,7 +141,10 @@ impl Buffers {
         };
         let count = sparse.count();
         if count > layout.count {
-            return Err(format!("accessor {} is not sparse", accessor.index()));
+            return Err(format!(
+                "accessor {} replaces more elements than it has",
+                accessor.index()
+            ));
         }
         let (kind, places) = (sparse.indices().index_type(), sparse.indices());
         let (kind, size) = match kind {
@@ -146,19 +152,27 @@ impl Buffers {
             gltf::accessor::sparse::IndexType::U16 => (DataType::U16, 2),
             gltf::accessor::sparse::IndexType::U32 => (DataType::U32, 4),
         };
-        let where_to = Layout {
+        let index_layout = Layout {
             count,
             kind,
             size,
             width: 1,
         };
-        let what = Layout { count, ..*layout };
-        let places = self.elements(&places.view(), places.offset(), &where_to)?;
-        let news = self.elements(&sparse.values().view(), sparse.values().offset(), &what)?;
-        for (place, new) in places.zip(news) {
+        let value_layout = Layout { count, ..*layout };
+        let places = self.elements(&places.view(), places.offset(), &index_layout)?;
+        let values_at = self.elements(
+            &sparse.values().view(),
+            sparse.values().offset(),
+            &value_layout,
+        )?;
+        for (place, new) in places.zip(values_at) {
             let value = values.get_mut(index(place, kind) as usize);
-            *value.ok_or_else(|| format!("accessor {} is out of range", accessor.index()))? =
-                read(new);
+            *value.ok_or_else(|| {
+                format!(
+                    "accessor {} replaces an element that does not exist",
+                    accessor.index()
+                )
+            })? = read(new);
         }
         Ok(())
     }
@@ -178,34 +192,34 @@ impl Buffers {
         let bytes = self.view(view)?;
         let bytes = bytes.get(offset..).unwrap_or_default();
         if needed.is_none_or(|needed| needed > bytes.len()) || stride < element {
-            return Err(format!("an accessor leaves buffer view {}", view.index()));
+            return Err(format!("an accessor exceeds buffer view {}", view.index()));
         }
         let count = layout.count;
         Ok((0..count).map(move |i| &bytes[i * stride..i * stride + element]))
     }
 }
 
-/// Reads the whole of what a URI names.
+/// Reads all bytes that a URI refers to.
 fn read_uri(builder: &Builder, path: &Path, uri: &str) -> Result<Vec<u8>, String> {
     match resolve(builder, path, uri)? {
         Uri::Data(bytes) => Ok(bytes),
-        Uri::File(Place::Found(file)) => builder.files.read(&file).map_err(|e| e.to_string()),
-        Uri::File(Place::Missing(file)) => Err(format!("{} is missing", file.display())),
-        Uri::File(Place::Outside(file)) => Err(format!(
-            "{} lies outside of the model's folder; allow it with --allow-outside",
+        Uri::File(Lookup::Found(file)) => builder.files.read(&file).map_err(|e| e.to_string()),
+        Uri::File(Lookup::Missing(file)) => Err(format!("{} is missing", file.display())),
+        Uri::File(Lookup::Outside(file)) => Err(format!(
+            "{} is outside the model's folder; pass --allow-outside to allow it",
             file.display()
         )),
     }
 }
 
-/// How the elements of an accessor lie.
+/// Memory layout of an accessor's elements.
 #[derive(Debug, Clone, Copy)]
 struct Layout {
     count: usize,
     kind: DataType,
-    /// Bytes of a number.
+    /// Bytes of a component.
     size: usize,
-    /// Numbers in an element.
+    /// Components of an element.
     width: usize,
 }
 
@@ -223,7 +237,7 @@ impl Layout {
             Dimensions::Vec2 => 2,
             Dimensions::Vec3 => 3,
             Dimensions::Vec4 => 4,
-            _ => return Err(format!("accessor {} holds matrices", accessor.index())),
+            _ => return Err(format!("accessor {} has a matrix type", accessor.index())),
         };
         Ok(Self {
             count,
@@ -239,7 +253,7 @@ fn index(bytes: &[u8], kind: DataType) -> u32 {
         (DataType::U8, [a]) => u32::from(*a),
         (DataType::U16, [a, b]) => u32::from(u16::from_le_bytes([*a, *b])),
         (DataType::U32, [a, b, c, d]) => u32::from_le_bytes([*a, *b, *c, *d]),
-        // No vertex has this number: the triangle is refused.
+        // No vertex has this index: the mesh is refused.
         _ => u32::MAX,
     }
 }

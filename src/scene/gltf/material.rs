@@ -1,4 +1,4 @@
-//! Materials of glTF files, by [`phong_of`] as the lecture's ρ_d, ρ_s and p.
+//! Materials of glTF files, converted to ρ_d, ρ_s and p by [`phong_of`].
 
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -7,34 +7,31 @@ use glam::{Affine2, Vec2};
 use gltf::material::AlphaMode;
 
 use crate::scene::builder::Builder;
-use crate::scene::files::Place;
+use crate::scene::files::Lookup;
 use crate::scene::gltf::buffers::{Buffers, Uri, resolve};
 use crate::scene::material::{MTL_DEFAULT, Material, MetallicRoughness, phong_of};
-use crate::scene::mesh::soup::NONE;
-use crate::scene::texture::picture::{Inner, Wanted};
+use crate::scene::mesh::soup::{MaterialUse, NONE};
+use crate::scene::texture::picture::{EmbeddedImage, TextureKey};
 
 /// A material as meshes use it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::scene) struct Surface {
-    /// Its number in the scene, or [`NONE`] if it is not drawn.
-    pub number: u32,
-    /// Number of the set of texture coordinates.
-    pub texcoords: u32,
-    /// From that set to those of the pictures (v downward).
-    pub texture_from_mesh: Affine2,
-    /// Whether it has a normal map.
-    pub tangents: bool,
+pub struct Surface {
+    /// The material; its transform has v downward.
+    pub material: MaterialUse,
+    /// Which set of texture coordinates it uses.
+    pub texcoord_set: u32,
 }
 
 /// The materials of one file.
 #[derive(Debug)]
-pub(in crate::scene) struct Materials {
+pub struct Materials {
     surfaces: Vec<Surface>,
-    /// Of what names no material.
+    /// For primitives without a material.
     default: Surface,
 }
 
 impl Materials {
+    /// Reads all materials and their textures.
     pub fn read(
         builder: &mut Builder,
         path: &Path,
@@ -51,14 +48,13 @@ impl Materials {
         Self {
             surfaces,
             default: Surface {
-                number: grey,
-                texcoords: 0,
-                texture_from_mesh: Affine2::IDENTITY,
-                tangents: false,
+                material: MaterialUse::plain(grey),
+                texcoord_set: 0,
             },
         }
     }
 
+    /// The material of a primitive.
     pub fn of(&self, material: &gltf::Material<'_>) -> Surface {
         let known = material.index().and_then(|i| self.surfaces.get(i));
         known.copied().unwrap_or(self.default)
@@ -77,25 +73,28 @@ impl Reader<'_, '_> {
         let colour = pbr.base_color_texture();
         let normal = source.normal_texture();
         let material = self.material(source);
-        let (texcoords, texture_from_mesh) = match (&colour, &normal) {
-            (Some(info), _) => placing(info),
+        let (texcoord_set, texture_from_mesh) = match (&colour, &normal) {
+            (Some(info), _) => transform(info),
             (None, Some(info)) => (info.tex_coord(), Affine2::IDENTITY),
             (None, None) => (0, Affine2::IDENTITY),
         };
-        if normal.is_some_and(|n| n.tex_coord() != texcoords) {
-            let what =
-                "a normal map has texture coordinates of its own; it takes those of the colour";
+        if normal.is_some_and(|n| n.tex_coord() != texcoord_set) {
+            let what = "a normal map has its own set of texture coordinates; the base colour's set is used";
             self.builder.warn(self.path, what);
         }
+        let has_normal_map = material.normal_texture.is_some();
+        let index = if material.is_drawn() {
+            self.builder.add_material(material)
+        } else {
+            NONE
+        };
         Surface {
-            tangents: material.normal_texture.is_some(),
-            number: if material.is_drawn() {
-                self.builder.add_material(material)
-            } else {
-                NONE
+            material: MaterialUse {
+                index,
+                texture_from_mesh,
+                has_normal_map,
             },
-            texcoords,
-            texture_from_mesh,
+            texcoord_set,
         }
     }
 
@@ -112,7 +111,7 @@ impl Reader<'_, '_> {
         let normal = source.normal_texture();
         let normal_texture = normal.as_ref().and_then(|info| {
             let picture = self.picture(&info.texture().source())?;
-            let wanted = Wanted::Normals(picture, 1f32.to_bits());
+            let wanted = TextureKey::Normals(picture, 1f32.to_bits());
             self.builder.texture(self.path, wanted)
         });
         let surface = self.metallic_roughness(source, [r, g, b]);
@@ -136,7 +135,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Textures of roughness and metalness count by their means: p is one number for a material.
+    /// Textures of roughness and metalness are replaced by their means: p is constant over a material.
     fn metallic_roughness(
         &mut self,
         source: &gltf::Material<'_>,
@@ -162,27 +161,27 @@ impl Reader<'_, '_> {
     fn colour(&mut self, texture: &gltf::Texture<'_>, cutoff: Option<f32>) -> Option<usize> {
         let picture = self.picture(&texture.source())?;
         let wanted = if cutoff.is_some() {
-            Wanted::ColourAndAlpha(picture)
+            TextureKey::ColourAndAlpha(picture)
         } else {
-            Wanted::Colour(picture)
+            TextureKey::Colour(picture)
         };
         self.builder.texture(self.path, wanted)
     }
 
-    /// The path of an image; those inside of the model get one of their own.
+    /// The path of an image; embedded images get a made-up one.
     fn picture(&mut self, image: &gltf::Image<'_>) -> Option<PathBuf> {
-        let mut inner = self.path.as_os_str().to_owned();
-        inner.push(format!(" image {}", image.index()));
-        let inner = PathBuf::from(inner);
+        let mut name = self.path.as_os_str().to_owned();
+        name.push(format!(" image {}", image.index()));
+        let name = PathBuf::from(name);
         let bytes = match image.source() {
-            gltf::image::Source::View { view, .. } => self.buffers.part(&view).map(Some),
+            gltf::image::Source::View { view, .. } => self.buffers.picture(&view).map(Some),
             gltf::image::Source::Uri { uri, .. } => match resolve(self.builder, self.path, uri) {
-                Ok(Uri::File(Place::Found(path) | Place::Missing(path))) => return Some(path),
-                Ok(Uri::File(Place::Outside(path))) => {
+                Ok(Uri::File(Lookup::Found(path) | Lookup::Missing(path))) => return Some(path),
+                Ok(Uri::File(Lookup::Outside(path))) => {
                     self.builder.warn_outside(self.path, &path);
                     Ok(None)
                 }
-                Ok(Uri::Data(bytes)) => Ok(Some(Inner {
+                Ok(Uri::Data(bytes)) => Ok(Some(EmbeddedImage {
                     range: 0..bytes.len(),
                     bytes: Rc::new(bytes),
                 })),
@@ -191,8 +190,8 @@ impl Reader<'_, '_> {
         };
         match bytes {
             Ok(bytes) => {
-                self.builder.textures.insert(inner.clone(), bytes?);
-                Some(inner)
+                self.builder.textures.insert(name.clone(), bytes?);
+                Some(name)
             }
             Err(what) => {
                 let what = format!("image {}: {what}", image.index());
@@ -203,17 +202,17 @@ impl Reader<'_, '_> {
     }
 }
 
-/// KHR_texture_transform: scale, then rotation, then offset.
-fn placing(info: &gltf::texture::Info<'_>) -> (u32, Affine2) {
+/// The texture coordinate set and KHR_texture_transform: scale, then rotation, then offset.
+fn transform(info: &gltf::texture::Info<'_>) -> (u32, Affine2) {
     let Some(transform) = info.texture_transform() else {
         return (info.tex_coord(), Affine2::IDENTITY);
     };
     let set = transform.tex_coord().unwrap_or(info.tex_coord());
-    // Counter-clockwise as seen, where v runs downward: a turn by minus the angle in these coordinates.
-    let placed = Affine2::from_scale_angle_translation(
+    // Counter-clockwise on the picture, which is clockwise in these coordinates because v runs downward.
+    let texture_from_mesh = Affine2::from_scale_angle_translation(
         Vec2::from(transform.scale()),
         -transform.rotation(),
         Vec2::from(transform.offset()),
     );
-    (set, placed)
+    (set, texture_from_mesh)
 }

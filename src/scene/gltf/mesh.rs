@@ -1,6 +1,6 @@
-//! Primitives of glTF meshes: triangles, strips and fans with what their vertices hold.
+//! Primitives of glTF meshes: triangles, strips and fans, and their vertex attributes.
 
-use glam::{Affine2, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use gltf::Semantic;
 use gltf::mesh::Mode;
 
@@ -10,23 +10,23 @@ use crate::scene::gltf::material::Surface;
 use crate::scene::mesh::arena::append_soup;
 use crate::scene::mesh::instance::Mesh;
 use crate::scene::mesh::soup;
-use crate::scene::mesh::soup::{Corner, Dropped, NONE, Soup, Triangle, Use, sound_face};
+use crate::scene::mesh::soup::{Corner, Dropped, MaterialUse, NONE, Soup, Triangle, sound_face};
 use crate::scene::texture::normal_map::sound_tangent;
 
-/// What a primitive holds, sizes agreeing and indices in range.
+/// The triangles of a primitive; attributes have the same length and indices are in range.
 #[derive(Debug, Default)]
-pub(in crate::scene) struct Faces {
+pub struct Faces {
     positions: Vec<[f32; 3]>,
     normals: Option<Vec<[f32; 3]>>,
-    /// Of the pictures, v downward; empty is (0, 0) everywhere.
+    /// In texture space, v downward; empty for (0, 0) everywhere.
     texcoords: Vec<[f32; 2]>,
     colours: Option<Vec<[f32; 4]>>,
     tangents: Option<Vec<[f32; 4]>>,
     pub indices: Vec<u32>,
 }
 
-/// Reads a primitive; none for points and lines. `limit`: most corners.
-pub(in crate::scene) fn read_faces(
+/// Reads a primitive of at most `limit` corners; none for points and lines.
+pub fn read_faces(
     buffers: &Buffers,
     primitive: &gltf::Primitive<'_>,
     surface: Surface,
@@ -39,7 +39,9 @@ pub(in crate::scene) fn read_faces(
     ) {
         return Ok(None);
     }
-    let positions = primitive.get(&Semantic::Positions).ok_or("no positions")?;
+    let positions = primitive
+        .get(&Semantic::Positions)
+        .ok_or("it has no positions")?;
     let positions = buffers.floats::<3>(&positions, limit)?;
     let count = positions.len();
     let indices = match primitive.indices() {
@@ -47,7 +49,7 @@ pub(in crate::scene) fn read_faces(
         None => (0..count as u32).collect(),
     };
     if indices.iter().any(|i| *i as usize >= count) {
-        return Err(format!("an index is beyond the {count} vertices"));
+        return Err(format!("an index exceeds the {count} vertices"));
     }
     let mut faces = Faces {
         indices: as_triangles(indices, mode),
@@ -57,15 +59,18 @@ pub(in crate::scene) fn read_faces(
         texcoords: Vec::new(),
         colours: read_colours(buffers, primitive, count)?,
     };
-    if surface.tangents {
+    if surface.material.has_normal_map {
         faces.tangents = read(buffers, primitive, &Semantic::Tangents, count)?;
     }
-    let set = Semantic::TexCoords(surface.texcoords);
+    let set = Semantic::TexCoords(surface.texcoord_set);
     faces.texcoords = read(buffers, primitive, &set, count)?.unwrap_or_default();
     for uv in &mut faces.texcoords {
-        let placed = surface.texture_from_mesh.transform_point2(Vec2::from(*uv));
-        *uv = if placed.is_finite() {
-            placed.into()
+        let transformed = surface
+            .material
+            .texture_from_mesh
+            .transform_point2(Vec2::from(*uv));
+        *uv = if transformed.is_finite() {
+            transformed.into()
         } else {
             [0.0; 2]
         };
@@ -83,12 +88,12 @@ fn read<const N: usize>(
         return Ok(None);
     };
     if accessor.count() != count {
-        return Err("its vertices do not have as many of everything".to_owned());
+        return Err("its attributes differ in length".to_owned());
     }
     buffers.floats::<N>(&accessor, count).map(Some)
 }
 
-/// Linear RGBA; files may leave alpha out.
+/// Linear RGBA; alpha is optional.
 fn read_colours(
     buffers: &Buffers,
     primitive: &gltf::Primitive<'_>,
@@ -115,7 +120,7 @@ fn as_triangles(indices: Vec<u32>, mode: Mode) -> Vec<u32> {
         Mode::TriangleStrip => indices
             .windows(3)
             .enumerate()
-            // Every second one is wound the other way.
+            // Every second triangle has the opposite winding.
             .flat_map(|(i, w)| {
                 if i % 2 == 0 {
                     [w[0], w[1], w[2]]
@@ -137,11 +142,10 @@ fn as_triangles(indices: Vec<u32>, mode: Mode) -> Vec<u32> {
 }
 
 impl Faces {
-    /// A mesh with everything that the renderer needs: normals (flat, or smooth below a crease angle, where the file has
-    /// none) and tangents.
+    /// Adds what the renderer needs and the file lacks: normals (flat, or smooth below the crease angle) and tangents.
     pub fn into_mesh(mut self, surface: Surface, smooth_deg: Option<f32>) -> (Mesh, Dropped) {
-        let whole = self.has_sound_normals() && (!surface.tangents || self.tangents.is_some());
-        if !whole {
+        let needs_tangents = surface.material.has_normal_map && self.tangents.is_none();
+        if needs_tangents || !self.has_sound_normals() {
             return self.rebuild(surface, smooth_deg);
         }
         let mut dropped = Dropped::default();
@@ -153,7 +157,7 @@ impl Faces {
             }
         }
         self.indices = kept;
-        (self.finish(surface.number), dropped)
+        (self.finish(surface.material.index), dropped)
     }
 
     fn has_sound_normals(&self) -> bool {
@@ -189,40 +193,39 @@ impl Faces {
         }
     }
 
-    /// By way of a soup, which computes what is missing.
+    /// Builds the mesh from a triangle soup, which computes missing normals and tangents.
     fn rebuild(self, surface: Surface, smooth_deg: Option<f32>) -> (Mesh, Dropped) {
         let has_texcoords = !self.texcoords.is_empty();
         let has_normals = self.normals.is_some();
-        let pick = |i: u32, there: bool| if there { i } else { NONE };
+        let index = |i: u32, exists: bool| if exists { i } else { NONE };
         let corner = |i: u32| Corner {
             position: i,
-            texcoord: pick(i, has_texcoords),
-            normal: pick(i, has_normals),
+            texcoord: index(i, has_texcoords),
+            normal: index(i, has_normals),
         };
         let triangle = |t: &[u32]| Triangle {
             corners: [corner(t[0]), corner(t[1]), corner(t[2])],
             material: 0,
             smoothing: 0,
         };
-        // A soup counts v upward.
-        let turned = |uv: [f32; 2]| Vec2::new(uv[0], 1.0 - uv[1]);
+        // In a soup v runs upward.
+        let flipped = |uv: [f32; 2]| Vec2::new(uv[0], 1.0 - uv[1]);
         let mut soup = Soup {
             positions: self.positions.into_iter().map(Vec3::from).collect(),
             colours: self.colours.unwrap_or_default(),
-            texcoords: self.texcoords.into_iter().map(turned).collect(),
+            texcoords: self.texcoords.into_iter().map(flipped).collect(),
             normals: self.normals.into_iter().flatten().map(Vec3::from).collect(),
             triangles: self.indices.chunks_exact(3).map(triangle).collect(),
             polygons: soup::Polygons::default(),
         };
         let (dropped, faces) = soup.sweep();
-        let of = Use {
-            number: 0,
-            texture_from_mesh: Affine2::IDENTITY,
-            tangents: surface.tangents,
+        let material = MaterialUse {
+            has_normal_map: surface.material.has_normal_map,
+            ..MaterialUse::plain(0)
         };
         let mut scene = Scene::default();
-        append_soup(&mut scene, &soup, &faces, &[of], smooth_deg);
-        (Mesh::of(scene, surface.number), dropped)
+        append_soup(&mut scene, &soup, &faces, &[material], smooth_deg);
+        (Mesh::of(scene, surface.material.index), dropped)
     }
 }
 

@@ -1,6 +1,7 @@
-//! glTF 2.0 (`.gltf`, `.glb`): the nodes of its scene, each with its meshes, as parts of ours.
+//! glTF 2.0 models (`.gltf`, `.glb`).
 //!
-//! Skins and morph targets are drawn at rest; textures repeat; what is blended is cut out at half its opacity.
+//! Skins and morph targets are drawn in their rest pose; textures repeat; blended materials are cut out at half their
+//! opacity.
 
 mod buffers;
 mod material;
@@ -13,20 +14,20 @@ use std::rc::Rc;
 use glam::{Affine3A, Mat4, Vec3};
 
 use crate::scene::builder::Builder;
-use crate::scene::error::SceneError;
+use crate::scene::error::{SceneError, one_line};
 use crate::scene::gltf::buffers::Buffers;
 use crate::scene::gltf::material::{Materials, Surface};
 use crate::scene::gltf::mesh::{Faces, read_faces};
 use crate::scene::mesh::instance::{Mesh, append_instance};
 use crate::scene::mesh::soup::NONE;
-use crate::scene::obj::{Odd, Placement};
+use crate::scene::obj::{ImportReport, Placement};
 use crate::scene::scene_file::NamedCamera;
 
 /// Adds the model of `path` to the scene; returns its cameras.
 ///
 /// # Errors
-/// A file that cannot be read, that is no sound glTF or needs what we do not have, or nothing to draw.
-pub(in crate::scene) fn append_gltf(
+/// A file that cannot be read, that is not valid glTF or needs an unsupported extension, or nothing to draw.
+pub fn append_gltf(
     builder: &mut Builder,
     path: &Path,
     placement: &Placement,
@@ -35,7 +36,7 @@ pub(in crate::scene) fn append_gltf(
     let bytes = builder.files.read(path)?;
     let unsound = |what: String| SceneError::Unsupported {
         path: path.to_owned(),
-        what: format!("is no glTF that can be shown ({what}); export it again"),
+        what: format!("is not a usable glTF file ({what}); export it again"),
     };
     let gltf = parse(&bytes).map_err(|what| unsound(one_line(&what)))?;
     drop(bytes);
@@ -48,11 +49,11 @@ pub(in crate::scene) fn append_gltf(
         buffers,
         known: HashMap::new(),
         triangles: 0,
-        odd: Odd::default(),
+        report: ImportReport::default(),
         cameras: Vec::new(),
     };
     if gltf.skins().len() > 0 {
-        builder.warn(path, "skins are drawn at rest");
+        builder.warn(path, "skins are drawn in their rest pose");
     }
     builder.progress.at(0.5, "building the mesh");
     let drawn_before = builder.scene.triangles();
@@ -61,20 +62,20 @@ pub(in crate::scene) fn append_gltf(
         model.append_node(builder, &node, world_from_node)?;
     }
     let empty = builder.scene.triangles() == drawn_before;
-    model.odd.report(builder, path, empty)?;
+    model.report.tell(builder, path, empty)?;
     Ok(model.cameras)
 }
 
-/// The document and its binary chunk, every number of the document that names something in range.
+/// Parses the document and its binary chunk; every index in the document is in range.
 fn parse(bytes: &[u8]) -> Result<gltf::Gltf, String> {
     let unchecked = gltf::Gltf::from_slice_without_validation(bytes);
     let gltf::Gltf { document, blob } = unchecked.map_err(|e| e.to_string())?;
     let mut root = document.into_json();
-    // The crate's own check looks the accessor of positions up before it checks its number.
+    // The validation of the crate looks up the accessor of positions before it checks the index.
     let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let mut named = primitives.flat_map(|primitive| primitive.attributes.values());
     if named.any(|accessor| accessor.value() >= root.accessors.len()) {
-        return Err("a mesh names an accessor that does not exist".to_owned());
+        return Err("a mesh refers to an accessor that does not exist".to_owned());
     }
     for (number, image) in root.images.iter_mut().enumerate() {
         if image.buffer_view.is_none() && image.uri.is_none() {
@@ -82,7 +83,7 @@ fn parse(bytes: &[u8]) -> Result<gltf::Gltf, String> {
                 "image {number} has neither a URI nor a buffer view"
             ));
         }
-        // The crate insists on a type; the content tells it better.
+        // The crate requires a type, but the decoder finds it from the content.
         let unknown = || gltf::json::image::MimeType("image/png".to_owned());
         image.mime_type.get_or_insert_with(unknown);
     }
@@ -90,7 +91,7 @@ fn parse(bytes: &[u8]) -> Result<gltf::Gltf, String> {
     Ok(gltf::Gltf { document, blob })
 }
 
-/// The nodes of the default scene (or of the first, or of none: all roots), each once, with their places.
+/// The nodes of the default scene (else of the first scene, else all nodes), each once, with their transforms.
 fn nodes(gltf: &gltf::Document) -> Vec<(gltf::Node<'_>, Affine3A)> {
     let scene = gltf.default_scene().or_else(|| gltf.scenes().next());
     let roots: Vec<gltf::Node<'_>> = match scene {
@@ -105,7 +106,7 @@ fn nodes(gltf: &gltf::Document) -> Vec<(gltf::Node<'_>, Affine3A)> {
                 .collect()
         }
     };
-    // Nodes form trees; a file where they do not must not go round for ever.
+    // A malformed file may have cycles.
     let mut seen = HashSet::new();
     let mut open: Vec<_> = roots
         .into_iter()
@@ -130,11 +131,11 @@ struct Model<'m> {
     placement: &'m Placement,
     buffers: Buffers,
     materials: Materials,
-    /// Meshes that were read, for their other instances.
+    /// Meshes read so far, for further instances.
     known: HashMap<usize, Rc<Vec<Mesh>>>,
-    /// That were read, drawn or not, instances not counted.
+    /// Triangles read, drawn or not, without instances.
     triangles: usize,
-    odd: Odd,
+    report: ImportReport,
     cameras: Vec<NamedCamera>,
 }
 
@@ -160,10 +161,10 @@ impl Model<'_> {
             }
         };
         for mesh in meshes.iter() {
-            builder.check_room(self.path, mesh.indices.len() / 3)?;
+            builder.check_triangles(self.path, mesh.indices.len() / 3)?;
             let dropped = append_instance(&mut builder.scene, mesh, &world_from_node);
-            self.odd.dropped.not_finite += dropped.not_finite;
-            self.odd.dropped.degenerate += dropped.degenerate;
+            self.report.dropped.not_finite += dropped.not_finite;
+            self.report.dropped.degenerate += dropped.degenerate;
         }
         Ok(())
     }
@@ -183,7 +184,7 @@ impl Model<'_> {
                 what: format!("mesh {}: {what}; export it again", mesh.index()),
             })?;
             let Some(faces) = faces else {
-                self.odd.not_faces += 1;
+                self.report.not_faces += 1;
                 continue;
             };
             self.triangles += faces.indices.len() / 3;
@@ -193,15 +194,15 @@ impl Model<'_> {
         Ok(meshes)
     }
 
-    /// None where nothing would be seen.
+    /// None for a material that is not drawn.
     fn make_mesh(&mut self, faces: Faces, surface: Surface) -> Option<Mesh> {
-        if surface.number == NONE {
-            self.odd.undrawn += faces.indices.len() / 3;
+        if surface.material.index == NONE {
+            self.report.undrawn += faces.indices.len() / 3;
             return None;
         }
         let (mesh, dropped) = faces.into_mesh(surface, self.placement.smooth_deg);
-        self.odd.dropped.not_finite += dropped.not_finite;
-        self.odd.dropped.degenerate += dropped.degenerate;
+        self.report.dropped.not_finite += dropped.not_finite;
+        self.report.dropped.degenerate += dropped.degenerate;
         Some(mesh)
     }
 
@@ -211,7 +212,7 @@ impl Model<'_> {
         camera: &gltf::Camera<'_>,
         world_from_node: Affine3A,
     ) {
-        // An orthographic camera has no counterpart here.
+        // Orthographic cameras are not supported.
         let gltf::camera::Projection::Perspective(lens) = camera.projection() else {
             return;
         };
@@ -242,8 +243,4 @@ impl Model<'_> {
             ],
         });
     }
-}
-
-pub(in crate::scene) fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

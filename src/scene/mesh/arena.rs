@@ -1,34 +1,34 @@
-//! From the triangles of a mesh to the arena of vertices, indices and parts of the scene.
+//! The arena of vertices, indices and parts of a scene, and the welding of triangle soups into it.
 
 use glam::{Vec2, Vec3};
 
 use crate::scene::bounds::Bounds;
 use crate::scene::mesh::normals::corner_normals;
-use crate::scene::mesh::soup::{Corner, NONE, Soup, Triangle, Use};
-use crate::scene::texture::normal_map::Corners;
+use crate::scene::mesh::soup::{Corner, MaterialUse, NONE, Soup, Triangle};
+use crate::scene::texture::normal_map::TangentInput;
 use crate::scene::{Part, Scene};
 
-/// Vertices at one position that are compared with a new corner; beyond it (no sane model) equal corners get vertices of
-/// their own, or a hostile file would take for ever.
+/// Most vertices at one position that are compared with a new corner. Beyond it equal corners are not welded: this bounds
+/// the time that a hostile file can take.
 const MAX_COMPARED: usize = 64;
 
 /// A vertex of the arena.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::scene) struct Vertex {
-    /// World, metres.
+pub struct Vertex {
+    /// World space, metres.
     pub position: Vec3,
-    /// World, unit.
+    /// World space, unit.
     pub normal: Vec3,
-    /// (0, 0) is the first texel of the first row.
+    /// (0, 0) is the corner of the first texel of the first row.
     pub texcoord: Vec2,
     /// Linear RGBA.
     pub colour: Option<[f32; 4]>,
-    /// World, unit; then the sign of the bitangent.
+    /// World space, unit; then the sign of the bitangent.
     pub tangent: Option<[f32; 4]>,
 }
 
 impl Scene {
-    /// Adds a vertex; returns its number.
+    /// Adds a vertex; returns its index.
     pub(in crate::scene) fn push_vertex(&mut self, vertex: Vertex) -> u32 {
         let number = self.positions.len();
         self.positions.push(vertex.position.to_array());
@@ -47,7 +47,7 @@ impl Scene {
         number as u32
     }
 
-    /// Ends the part that began at `first_index`, if it draws anything.
+    /// Adds the part that starts at `first_index`, unless it has no triangles.
     pub(in crate::scene) fn finish_part(
         &mut self,
         first_index: usize,
@@ -73,20 +73,20 @@ impl Scene {
         });
     }
 
-    /// Whether there are numbers left for this many corners.
-    pub(in crate::scene) fn has_room_for(&self, corners: usize) -> bool {
+    /// Whether 32-bit indices suffice for this many more corners.
+    pub(in crate::scene) fn has_indices_for(&self, corners: usize) -> bool {
         let most = self.positions.len().max(self.indices.len());
         most.saturating_add(corners) < u32::MAX as usize
     }
 }
 
-/// Appends swept triangles, with their face normals, to the scene: corners that agree in everything become one vertex,
-/// triangles of one material one part. There must be room for them.
-pub(in crate::scene) fn append_soup(
+/// Appends triangles without unusable ones, with their face normals: equal corners become one vertex, the triangles of one
+/// material one part. The caller has checked the number of triangles.
+pub fn append_soup(
     scene: &mut Scene,
     soup: &Soup,
     faces: &[Vec3],
-    uses: &[Use],
+    uses: &[MaterialUse],
     smooth_deg: Option<f32>,
 ) {
     let normals = corner_normals(soup, faces, smooth_deg);
@@ -94,33 +94,33 @@ pub(in crate::scene) fn append_soup(
     for (i, triangle) in soup.triangles.iter().enumerate() {
         by_use[triangle.material as usize].push(i as u32);
     }
-    let mut numbers: Vec<usize> = (0..uses.len()).collect();
-    numbers.sort_by_key(|i| uses[*i].number);
+    let mut order: Vec<usize> = (0..uses.len()).collect();
+    order.sort_by_key(|i| uses[*i].index);
     let mut welder = Welder::new(soup.positions.len());
-    for i in numbers {
+    for i in order {
         let triangles = &by_use[i];
-        let mut part = PartMaker {
+        let mut part = PartBuilder {
             soup,
             normals: &normals,
             tangents: Vec::new(),
-            of: uses[i],
+            material: uses[i],
         };
-        if part.of.tangents {
+        if part.material.has_normal_map {
             part.tangents = part.compute_tangents(triangles);
         }
         part.append(scene, triangles, &mut welder);
     }
 }
 
-struct PartMaker<'s> {
+struct PartBuilder<'s> {
     soup: &'s Soup,
     normals: &'s [[Vec3; 3]],
-    /// Of the corners of the part's triangles in order; empty without a normal map.
+    /// One for each corner of the part's triangles; empty without a normal map.
     tangents: Vec<[f32; 4]>,
-    of: Use,
+    material: MaterialUse,
 }
 
-impl PartMaker<'_> {
+impl PartBuilder<'_> {
     fn append(&self, scene: &mut Scene, triangles: &[u32], welder: &mut Welder) {
         let first_index = scene.indices.len();
         welder.begin(scene.positions.len());
@@ -129,11 +129,15 @@ impl PartMaker<'_> {
             for (k, corner) in triangle.corners.iter().enumerate() {
                 let tangent = self.tangents.get(3 * i + k).copied();
                 let vertex = self.vertex(*corner, self.normals[number as usize][k], tangent);
-                let index = welder.number(scene, corner.position, &vertex);
+                let index = welder.index(scene, corner.position, &vertex);
                 scene.indices.push(index);
             }
         }
-        scene.finish_part(first_index, self.of.number, !self.soup.colours.is_empty());
+        scene.finish_part(
+            first_index,
+            self.material.index,
+            !self.soup.colours.is_empty(),
+        );
     }
 
     fn vertex(&self, corner: Corner, normal: Vec3, tangent: Option<[f32; 4]>) -> Vertex {
@@ -142,17 +146,17 @@ impl PartMaker<'_> {
         Vertex {
             position: self.soup.position(corner),
             normal,
-            // OBJ counts v upward from the lowest row of the picture, Vulkan downward from the highest.
+            // v runs upward from the last row in OBJ, downward from the first in Vulkan.
             texcoord: Vec2::new(uv.x, 1.0 - uv.y),
             colour: coloured.then(|| self.soup.colour_of(corner.position)),
             tangent,
         }
     }
 
-    /// v upward.
+    /// With v upward.
     fn texcoord(&self, corner: Corner) -> Vec2 {
         let placed = self
-            .of
+            .material
             .texture_from_mesh
             .transform_point2(self.soup.texcoord(corner));
         if placed.is_finite() {
@@ -163,7 +167,7 @@ impl PartMaker<'_> {
     }
 
     fn compute_tangents(&self, triangles: &[u32]) -> Vec<[f32; 4]> {
-        let mut corners = Corners::default();
+        let mut corners = TangentInput::default();
         for &number in triangles {
             let Triangle { corners: of, .. } = &self.soup.triangles[number as usize];
             for (corner, normal) in of.iter().zip(self.normals[number as usize]) {
@@ -177,13 +181,13 @@ impl PartMaker<'_> {
     }
 }
 
-/// Finds the vertices that a part already has.
+/// Finds equal vertices of the part that is being built.
 struct Welder {
-    /// By position: its newest vertex, or [`NONE`].
+    /// For each position its newest vertex, or [`NONE`].
     newest: Vec<u32>,
-    /// By vertex of the part: the one at the same position before it, or [`NONE`].
+    /// For each vertex of the part the previous one at the same position, or [`NONE`].
     before: Vec<u32>,
-    /// Positions of the vertices of the part, to forget them.
+    /// Positions of the vertices of the part, to reset `newest`.
     used: Vec<u32>,
     first: usize,
 }
@@ -198,7 +202,7 @@ impl Welder {
         }
     }
 
-    /// Forgets the part before; the first vertex of the next one will have number `first`.
+    /// Starts a part whose first vertex has the index `first`.
     fn begin(&mut self, first: usize) {
         for position in self.used.drain(..) {
             self.newest[position as usize] = NONE;
@@ -207,7 +211,8 @@ impl Welder {
         self.first = first;
     }
 
-    fn number(&mut self, scene: &mut Scene, position: u32, vertex: &Vertex) -> u32 {
+    /// The index of a vertex, added at first use.
+    fn index(&mut self, scene: &mut Scene, position: u32, vertex: &Vertex) -> u32 {
         let mut known = self.newest[position as usize];
         for _ in 0..MAX_COMPARED {
             if known == NONE {
@@ -218,14 +223,14 @@ impl Welder {
             }
             known = self.before[known as usize - self.first];
         }
-        let number = scene.push_vertex(*vertex);
+        let index = scene.push_vertex(*vertex);
         self.before.push(self.newest[position as usize]);
         self.used.push(position);
-        self.newest[position as usize] = number;
-        number
+        self.newest[position as usize] = index;
+        index
     }
 
-    /// Position and colour agree already.
+    /// Whether normal, texture coordinate and tangent agree; position and colour do already.
     fn agrees(&self, scene: &Scene, known: usize, vertex: &Vertex) -> bool {
         let near = |i: i16, v: f32| (f32::from(i) / f32::from(i16::MAX) - v).abs() < 1e-3;
         scene.normals[known] == vertex.normal.to_array()
@@ -262,10 +267,10 @@ mod tests {
         }
     }
 
-    fn scene_of(mut soup: Soup, of: Use) -> Scene {
+    fn scene_of(mut soup: Soup, material: MaterialUse) -> Scene {
         let (_, faces) = soup.sweep();
         let mut scene = Scene::default();
-        append_soup(&mut scene, &soup, &faces, &[of], None);
+        append_soup(&mut scene, &soup, &faces, &[material], None);
         scene
     }
 
@@ -273,7 +278,7 @@ mod tests {
     fn equal_corners_become_one_vertex() {
         let mut soup = one_triangle();
         soup.triangles.push(soup.triangles[0]);
-        let scene = scene_of(soup, Use::plain(0));
+        let scene = scene_of(soup, MaterialUse::plain(0));
         let sizes = (
             scene.positions.len(),
             scene.indices.len(),
@@ -290,14 +295,14 @@ mod tests {
     }
 
     #[test]
-    fn colours_and_tangents_only_where_there_are_any() {
+    fn colours_and_tangents_exist_only_where_needed() {
         let mut soup = one_triangle();
         soup.colours = vec![[0.0, 1.0, 0.5, 1.0]];
-        let of = Use {
-            tangents: true,
-            ..Use::plain(0)
+        let material = MaterialUse {
+            has_normal_map: true,
+            ..MaterialUse::plain(0)
         };
-        let scene = scene_of(soup, of);
+        let scene = scene_of(soup, material);
         assert_eq!(scene.colours[0], [0, u16::MAX, 32_768, u16::MAX]);
         assert_eq!(scene.colours[2], [u16::MAX; 4]);
         assert_eq!(scene.tangents.len(), 3);
@@ -305,14 +310,14 @@ mod tests {
     }
 
     #[test]
-    fn textures_are_placed_before_v_is_turned() {
+    fn texture_coordinates_are_transformed_before_v_is_flipped() {
         let mut soup = one_triangle();
         soup.texcoords = vec![Vec2::new(0.25, 0.5)];
         soup.triangles[0].corners[0].texcoord = 0;
-        let of = Use {
+        let material = MaterialUse {
             texture_from_mesh: Affine2::from_scale(Vec2::new(2.0, 3.0)),
-            ..Use::plain(0)
+            ..MaterialUse::plain(0)
         };
-        assert_eq!(scene_of(soup, of).texcoords[0], [0.5, -0.5]);
+        assert_eq!(scene_of(soup, material).texcoords[0], [0.5, -0.5]);
     }
 }

@@ -1,4 +1,4 @@
-//! Instances: one mesh, placed in the arena as often as a scene wants it.
+//! Instances: a mesh that a scene places several times in the arena.
 
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 
@@ -6,9 +6,9 @@ use crate::scene::Scene;
 use crate::scene::mesh::arena::Vertex;
 use crate::scene::mesh::soup::{Dropped, NONE, sound_face};
 
-/// Triangles of one material with their vertices, in a space of their own.
+/// Triangles of one material with their vertices, in mesh space.
 #[derive(Debug)]
-pub(in crate::scene) struct Mesh {
+pub struct Mesh {
     pub positions: Vec<Vec3>,
     /// Unit, one for each position.
     pub normals: Vec<Vec3>,
@@ -18,14 +18,14 @@ pub(in crate::scene) struct Mesh {
     pub colours: Option<Vec<[f32; 4]>>,
     /// Unit, and the sign of the bitangent; one for each position.
     pub tangents: Option<Vec<[f32; 4]>>,
-    /// Three for each triangle; numbers of `positions`.
+    /// Three for each triangle, into `positions`.
     pub indices: Vec<u32>,
-    /// Number of the material in the scene.
+    /// Index of the material in the scene.
     pub material: u32,
 }
 
 impl Mesh {
-    /// All of a scene that holds one mesh.
+    /// The mesh of a scene that holds one mesh.
     pub fn of(scene: Scene, material: u32) -> Self {
         let unorm = |c: [u16; 4]| c.map(|v| f32::from(v) / f32::from(u16::MAX));
         let snorm = |t: [i16; 4]| t.map(|v| f32::from(v) / f32::from(i16::MAX));
@@ -44,37 +44,33 @@ impl Mesh {
     }
 }
 
-/// Adds the mesh at its place as a part; vertices that no triangle uses are left out, triangles that the place makes
-/// unusable are counted. There must be room for it.
-pub(in crate::scene) fn append_instance(
-    scene: &mut Scene,
-    mesh: &Mesh,
-    world_from_mesh: &Affine3A,
-) -> Dropped {
+/// Adds an instance of the mesh as a part, without unused vertices; counts the triangles that the transform makes unusable.
+/// The caller has checked the number of triangles.
+pub fn append_instance(scene: &mut Scene, mesh: &Mesh, world_from_mesh: &Affine3A) -> Dropped {
     let linear = Mat3::from(world_from_mesh.matrix3);
     let determinant = linear.determinant();
     let mut dropped = Dropped::default();
     if determinant == 0.0 || !determinant.is_finite() || !world_from_mesh.is_finite() {
-        // A scale of zero hides things in some programs.
+        // Some programs hide objects by a scale of zero.
         dropped.degenerate = mesh.indices.len() / 3;
         return dropped;
     }
-    let placing = Placing {
+    let instance = Instance {
         mesh,
         world_from_mesh,
         normals: linear.inverse().transpose(),
         mirrored: determinant < 0.0,
     };
     let first_index = scene.indices.len();
-    let mut numbers = vec![NONE; mesh.positions.len()];
+    let mut indices_of = vec![NONE; mesh.positions.len()];
     for t in mesh.indices.chunks_exact(3) {
         let corners = [t[0], t[1], t[2]];
-        let places = corners.map(|i| placing.position(i));
-        if !placing.keeps_area() && sound_face(places, &mut dropped).is_none() {
+        let positions = corners.map(|i| instance.position(i));
+        if !instance.keeps_area() && sound_face(positions, &mut dropped).is_none() {
             continue;
         }
-        let mut indices = corners.map(|i| placing.number(scene, &mut numbers, i));
-        if placing.mirrored {
+        let mut indices = corners.map(|i| instance.index(scene, &mut indices_of, i));
+        if instance.mirrored {
             indices.swap(1, 2);
         }
         scene.indices.extend(indices);
@@ -83,15 +79,15 @@ pub(in crate::scene) fn append_instance(
     dropped
 }
 
-struct Placing<'m> {
+struct Instance<'m> {
     mesh: &'m Mesh,
     world_from_mesh: &'m Affine3A,
     normals: Mat3,
     mirrored: bool,
 }
 
-impl Placing<'_> {
-    /// Whether every triangle of a sound mesh stays sound: no scale squeezes it, no distance swallows it.
+impl Instance<'_> {
+    /// Whether the transform keeps all triangles usable: its scale and its translation are moderate.
     fn keeps_area(&self) -> bool {
         let m = self.world_from_mesh.matrix3;
         let lengths = [m.x_axis, m.y_axis, m.z_axis].map(|axis| axis.length());
@@ -104,9 +100,9 @@ impl Placing<'_> {
         self.world_from_mesh.transform_point3(position)
     }
 
-    /// The number of a vertex in the scene, added at first use.
-    fn number(&self, scene: &mut Scene, numbers: &mut [u32], i: u32) -> u32 {
-        let known = &mut numbers[i as usize];
+    /// The index of a vertex in the scene, added at first use.
+    fn index(&self, scene: &mut Scene, indices_of: &mut [u32], i: u32) -> u32 {
+        let known = &mut indices_of[i as usize];
         if *known == NONE {
             *known = scene.push_vertex(self.vertex(i));
         }
@@ -117,12 +113,12 @@ impl Placing<'_> {
         let at = i as usize;
         let tangent = self.mesh.tangents.as_ref().map(|tangents| {
             let [x, y, z, sign] = tangents[at];
-            let turned = self
+            let rotated = self
                 .world_from_mesh
                 .transform_vector3(Vec3::new(x, y, z))
                 .normalize_or_zero();
             let sign = if self.mirrored { -sign } else { sign };
-            turned.extend(sign).to_array()
+            rotated.extend(sign).to_array()
         });
         Vertex {
             position: self.position(i),
@@ -151,41 +147,41 @@ mod tests {
     }
 
     #[test]
-    fn instances_share_nothing_but_their_mesh() {
+    fn instances_have_vertices_of_their_own() {
         let mut scene = Scene::default();
         for x in [0.0, 5.0] {
-            let place = Affine3A::from_translation(Vec3::new(x, 0.0, 0.0));
+            let transform = Affine3A::from_translation(Vec3::new(x, 0.0, 0.0));
             assert_eq!(
-                append_instance(&mut scene, &mesh(), &place),
+                append_instance(&mut scene, &mesh(), &transform),
                 Dropped::default()
             );
         }
-        assert_eq!(scene.positions.len(), 6, "the unused vertex is left out");
+        assert_eq!(scene.positions.len(), 6, "the unused vertex is not added");
         assert_eq!(scene.indices, [0, 1, 2, 3, 4, 5]);
         assert_eq!(scene.parts[1].bounds.max.x, 6.0);
     }
 
     #[test]
-    fn mirrors_turn_winding_normals_and_bitangents() {
+    fn mirroring_flips_winding_normals_and_bitangents() {
         let mut scene = Scene::default();
-        let place = Affine3A::from_scale(Vec3::new(1.0, 1.0, -1.0));
-        append_instance(&mut scene, &mesh(), &place);
+        let transform = Affine3A::from_scale(Vec3::new(1.0, 1.0, -1.0));
+        append_instance(&mut scene, &mesh(), &transform);
         assert_eq!(scene.indices, [0, 2, 1]);
         assert_eq!(scene.normals[0], [0.0, 0.0, -1.0]);
         assert_eq!(scene.tangents[0], [i16::MAX, 0, 0, -i16::MAX]);
     }
 
     #[test]
-    fn a_scale_of_nothing_drops_everything() {
+    fn unusable_transforms_drop_everything() {
         let mut scene = Scene::default();
-        for place in [
+        for transform in [
             Affine3A::from_scale(Vec3::new(1.0, 0.0, 1.0)),
             Affine3A::from_scale(Vec3::splat(1e-30)),
             Affine3A::from_scale(Vec3::splat(1e30)),
             Affine3A::from_translation(Vec3::splat(f32::NAN)),
         ] {
-            let dropped = append_instance(&mut scene, &mesh(), &place);
-            assert_eq!(dropped.not_finite + dropped.degenerate, 1, "{place:?}");
+            let dropped = append_instance(&mut scene, &mesh(), &transform);
+            assert_eq!(dropped.not_finite + dropped.degenerate, 1, "{transform:?}");
         }
         assert!(scene.indices.is_empty() && scene.parts.is_empty());
     }

@@ -1,8 +1,7 @@
-//! Triangles: reading order to drawing order, normals, tangents.
+//! Meshes: triangulation, normals, welding into the arena of a scene, instances.
 
-pub(in crate::scene) mod arena;
-pub(in crate::scene) mod instance;
-pub(in crate::scene) mod normals;
-pub(in crate::scene) mod soup;
-mod subdivide;
-pub(in crate::scene) mod triangulate;
+pub mod arena;
+pub mod instance;
+pub mod normals;
+pub mod soup;
+pub mod triangulate;

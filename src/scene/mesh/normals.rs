@@ -1,4 +1,4 @@
-//! Normals of corners that the file gave none: flat, by smoothing group, or below a crease angle.
+//! Normals of corners that have none in the file: flat, by smoothing group, or by crease angle.
 
 use std::collections::HashMap;
 
@@ -6,15 +6,16 @@ use glam::{DVec3, Vec3};
 
 use crate::scene::mesh::soup::{NONE, Soup, Triangle};
 
-/// Corners around one point that are compared one by one; beyond it (no sane model) they stay flat, or a hostile file
-/// would take for ever.
+/// Most corners at one position that are compared pairwise. Beyond it they stay flat: this bounds the time that a hostile
+/// file can take.
 const MAX_COMPARED: usize = 512;
 
 /// One unit normal for each corner of each triangle.
 ///
-/// The file's where it is sound, else the face's own, smoothed over the faces around the point: those within `smooth_deg`
-/// degrees if given, otherwise those of the same smoothing group. `face_normals` holds one unit vector per triangle.
-pub(in crate::scene) fn corner_normals(
+/// The file's normal where it is usable, else the face's, smoothed over the faces around the position: those within
+/// `smooth_deg` degrees if given, otherwise those of the same smoothing group. `face_normals` holds one unit vector for
+/// each triangle.
+pub fn corner_normals(
     soup: &Soup,
     face_normals: &[Vec3],
     smooth_deg: Option<f32>,
@@ -37,12 +38,12 @@ pub(in crate::scene) fn corner_normals(
     normals
 }
 
-/// A corner that wants a smooth normal.
+/// A corner that needs a smooth normal.
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     triangle: u32,
     corner: u8,
-    /// The angle of the triangle at this corner, radians: the weight of its face.
+    /// Angle of the triangle at this corner, radians: the weight of its face.
     angle: f32,
 }
 
@@ -69,16 +70,16 @@ fn angle_at(soup: &Soup, triangle: &Triangle, corner: usize) -> f32 {
     if angle.is_finite() { angle } else { 0.0 }
 }
 
-/// The corners that share a point in space, whatever number the file gave it.
+/// Groups corners by position, whatever index the position has in the file.
 fn weld(soup: &Soup, open: &[Corner]) -> Vec<Vec<Corner>> {
-    let mut number: HashMap<[u32; 3], usize> = HashMap::new();
+    let mut index: HashMap<[u32; 3], usize> = HashMap::new();
     let mut points: Vec<Vec<Corner>> = Vec::new();
     for corner in open {
         let triangle = &soup.triangles[corner.triangle as usize];
-        // Adding zero makes −0 and 0 the same.
+        // Adding zero turns −0 into 0.
         let position = soup.position(triangle.corners[usize::from(corner.corner)]) + 0.0;
         let key = position.to_array().map(f32::to_bits);
-        let at = *number.entry(key).or_insert_with(|| {
+        let at = *index.entry(key).or_insert_with(|| {
             points.push(Vec::new());
             points.len() - 1
         });
@@ -103,7 +104,7 @@ fn by_group(soup: &Soup, points: &[Vec<Corner>], faces: &[Vec3], normals: &mut [
 }
 
 fn by_crease(points: &[Vec<Corner>], faces: &[Vec3], degrees: f32, normals: &mut [[Vec3; 3]]) {
-    // A hair more than asked for: 30 degrees smooths a prism of twelve sides.
+    // With a tolerance: 30 degrees smooths a prism of twelve sides.
     let limit = (degrees + 0.01).min(180.0).to_radians().cos();
     for around in points.iter().filter(|around| around.len() <= MAX_COMPARED) {
         for c in around {
@@ -182,7 +183,7 @@ mod tests {
         assert_eq!(
             normals([1, 1], Some(30.0))[0][0],
             Vec3::Y,
-            "the angle rules over the group"
+            "the angle overrides the group"
         );
     }
 }

@@ -1,86 +1,86 @@
-//! Triangles of one mesh between the file and the arena: separate numbers for position, texture and normal.
+//! A triangle soup: the triangles of one mesh between the file and the arena, with separate indices of positions, texture
+//! coordinates and normals.
 
 use glam::{Affine2, Affine3A, Mat3, Vec2, Vec3};
 
 use crate::scene::mesh::triangulate::Triangulator;
 
-/// "No such number" of a [`Corner`].
-pub(in crate::scene) const NONE: u32 = u32::MAX;
+/// "No index" of a [`Corner`] or a [`MaterialUse`].
+pub const NONE: u32 = u32::MAX;
 
-/// Coordinates beyond this are dropped like infinities, metres: squares and sums of larger ones leave `f32`.
+/// Triangles with larger coordinates are dropped, metres: their squares and sums overflow `f32`.
 const MAX_COORDINATE: f32 = 1e9;
 
-/// One corner of a triangle: numbers into the lists of [`Soup`], or [`NONE`].
+/// One corner of a triangle: indices into the lists of [`Soup`], or [`NONE`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::scene) struct Corner {
+pub struct Corner {
     pub position: u32,
     pub texcoord: u32,
     pub normal: u32,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::scene) struct Triangle {
+pub struct Triangle {
     pub corners: [Corner; 3],
-    /// Number of the material in the mesh.
+    /// Index of the material in the mesh.
     pub material: u32,
-    /// The smoothing group; 0 is none.
+    /// Smoothing group; 0 for none.
     pub smoothing: u32,
 }
 
-/// More than three corners in a plane, or nearly so.
+/// A face of more than three corners, flat or nearly so.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::scene) struct Polygon {
-    /// Where its corners end in [`Polygons::corners`]; they start where those of the one before end.
+pub struct Polygon {
+    /// End of its corners in [`Polygons::corners`]; they start at the end of the polygon before.
     end: usize,
     material: u32,
     smoothing: u32,
 }
 
 #[derive(Debug, Default, Clone, PartialEq)]
-pub(in crate::scene) struct Polygons {
+pub struct Polygons {
     corners: Vec<Corner>,
     list: Vec<Polygon>,
 }
 
-/// A material of the scene as a mesh uses it.
+/// How a mesh uses a material of the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::scene) struct Use {
-    /// Its number in the scene.
-    pub number: u32,
-    /// From the texture coordinates of the mesh (v upward) to those of the pictures.
+pub struct MaterialUse {
+    /// Index in [`Scene::materials`](crate::scene::Scene::materials), or [`NONE`] if it is not drawn.
+    pub index: u32,
+    /// From the texture coordinates of the mesh to those of the textures; v runs as in the mesh.
     pub texture_from_mesh: Affine2,
-    /// Whether it has a normal map.
-    pub tangents: bool,
+    /// Whether it has a normal map, which needs tangents.
+    pub has_normal_map: bool,
 }
 
-impl Use {
-    /// A material that takes texture coordinates as they are and has no normal map.
-    #[cfg(test)]
-    pub fn plain(number: u32) -> Self {
+impl MaterialUse {
+    /// A material without a normal map and without a transform of texture coordinates.
+    pub fn plain(index: u32) -> Self {
         Self {
-            number,
+            index,
             texture_from_mesh: Affine2::IDENTITY,
-            tangents: false,
+            has_normal_map: false,
         }
     }
 }
 
 /// The triangles of one mesh.
 #[derive(Debug, Default)]
-pub(in crate::scene) struct Soup {
+pub struct Soup {
     pub positions: Vec<Vec3>,
-    /// RGBA that multiplies ρ_d and the opacity, one for each position; positions beyond its end have none (white).
+    /// Linear RGBA factors on ρ_d and the opacity, one for each position; positions beyond the end are white.
     pub colours: Vec<[f32; 4]>,
     pub texcoords: Vec<Vec2>,
     pub normals: Vec<Vec3>,
     pub triangles: Vec<Triangle>,
-    /// Until [`Soup::triangulate`].
+    /// Empty after [`Soup::triangulate`].
     pub polygons: Polygons,
 }
 
-/// How many triangles [`Soup::sweep`] dropped.
+/// How many triangles were dropped as unusable.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
-pub(in crate::scene) struct Dropped {
+pub struct Dropped {
     pub not_finite: usize,
     pub degenerate: usize,
 }
@@ -90,19 +90,19 @@ impl Soup {
         self.positions[corner.position as usize]
     }
 
-    /// The file's normal of a corner if it has a sound one.
+    /// The unit normal of a corner in the file; none if it is missing, zero or not finite.
     pub fn normal(&self, corner: Corner) -> Option<Vec3> {
         let normal = self.normals.get(corner.normal as usize)?;
         normal.is_finite().then(|| normal.try_normalize()).flatten()
     }
 
-    /// The file's texture coordinate of a corner, (0, 0) without a sound one.
+    /// The texture coordinate of a corner in the file; (0, 0) if it is missing or not finite.
     pub fn texcoord(&self, corner: Corner) -> Vec2 {
         let texcoord = self.texcoords.get(corner.texcoord as usize).copied();
         texcoord.filter(|t| t.is_finite()).unwrap_or(Vec2::ZERO)
     }
 
-    /// The colour of a position; white without one.
+    /// The colour of a position; white if it has none.
     pub fn colour_of(&self, position: u32) -> [f32; 4] {
         let colour = self.colours.get(position as usize).copied();
         colour.unwrap_or([1.0; 4])
@@ -123,8 +123,8 @@ impl Soup {
         });
     }
 
-    /// Adds the triangles and polygons of the next stretch of the same file, with new numbers of materials. Numbers of
-    /// corners are those of the whole file already.
+    /// Appends the next chunk of the same file; `material` maps its material indices. Indices of corners count from the
+    /// start of the file.
     pub fn append(&mut self, mut next: Self, material: impl Fn(u32) -> u32) {
         if !next.colours.is_empty() {
             self.colours.resize(self.positions.len(), [1.0; 4]);
@@ -134,7 +134,7 @@ impl Soup {
             *m = material(*m);
         }
         if self.positions.is_empty() && self.triangles.is_empty() {
-            // The first stretch needs no copy.
+            // The first chunk needs no copy.
             (self.positions, self.triangles) = (next.positions, next.triangles);
             (self.texcoords, self.normals) = (next.texcoords, next.normals);
         } else {
@@ -153,7 +153,7 @@ impl Soup {
         }));
     }
 
-    /// Triangles, with those that the polygons will become.
+    /// Number of triangles once the polygons are split.
     pub fn count(&self) -> usize {
         let polygons = &self.polygons;
         // Each has at least three corners.
@@ -182,8 +182,8 @@ impl Soup {
         }
     }
 
-    /// Moves everything to world space. A mirroring transform also turns the triangles round, so that their winding and
-    /// their normals keep agreeing.
+    /// Transforms everything to world space. A mirroring transform also reverses the winding, so that it still agrees with
+    /// the normals.
     pub fn transform(&mut self, world_from_mesh: &Affine3A) {
         if *world_from_mesh == Affine3A::IDENTITY {
             return;
@@ -201,7 +201,7 @@ impl Soup {
         }
     }
 
-    /// Drops triangles with unusable positions or without area; the rest gets its unit face normals.
+    /// Drops triangles without area or with unusable positions; returns their counts and the unit face normals of the rest.
     pub fn sweep(&mut self) -> (Dropped, Vec<Vec3>) {
         let mut dropped = Dropped::default();
         let mut faces = Vec::with_capacity(self.triangles.len());
@@ -218,8 +218,8 @@ impl Soup {
     }
 }
 
-/// The unit normal of a usable triangle; others are counted.
-pub(in crate::scene) fn sound_face(corners: [Vec3; 3], dropped: &mut Dropped) -> Option<Vec3> {
+/// The unit normal of a usable triangle; counts it in `dropped` otherwise.
+pub fn sound_face(corners: [Vec3; 3], dropped: &mut Dropped) -> Option<Vec3> {
     let usable = |p: Vec3| p.is_finite() && p.abs().max_element() <= MAX_COORDINATE;
     if !corners.into_iter().all(usable) {
         dropped.not_finite += 1;
@@ -230,7 +230,7 @@ pub(in crate::scene) fn sound_face(corners: [Vec3; 3], dropped: &mut Dropped) ->
     face
 }
 
-/// Unit normal of a counter-clockwise triangle, or none if it has no area to speak of.
+/// The unit normal of a counter-clockwise triangle; none if its area is zero within rounding.
 fn face_normal(corners: [Vec3; 3]) -> Option<Vec3> {
     let [a, b, c] = corners.map(|p| p.as_dvec3());
     let cross = (b - a).cross(c - a);

@@ -1,29 +1,29 @@
-//! Polygons to triangles: a fan where the polygon is convex, ear clipping in its own plane where it is not.
+//! Triangulation of polygons: a fan if the polygon is convex, ear clipping in its plane otherwise.
 
 use glam::{DVec2, DVec3};
 
-/// Beyond this many corners a polygon is fanned.
+/// Most corners of a polygon that is clipped; larger ones become fans.
 const MAX_CLIPPED: usize = 512;
-/// Comparisons of ear clipping for each corner of a model: real outlines need a few hundred.
+/// Budget of ear clipping, comparisons for each corner of a model: real outlines need a few hundred.
 const EFFORT: usize = 2_000;
 
-/// Splits polygons with bounded effort: ear clipping is cubic at worst, and no file may take for ever.
+/// Splits polygons with bounded effort, because ear clipping is cubic at worst.
 #[derive(Debug)]
-pub(in crate::scene) struct Triangulator {
-    /// Comparisons left; then every polygon is fanned.
+pub struct Triangulator {
+    /// Comparisons left; without any, polygons become fans.
     effort: usize,
 }
 
 impl Triangulator {
-    /// For the polygons of one model with this many corners together.
+    /// For the polygons of one model, which have this many corners in total.
     pub fn for_corners(corners: usize) -> Self {
         let effort = corners.saturating_mul(EFFORT).max(10_000_000);
         Self { effort }
     }
 
-    /// Splits a polygon of `points` into triangles of point numbers with the same winding, `n - 2` of them.
+    /// Splits a polygon of n points into n − 2 triangles of the same winding, as indices of points.
     ///
-    /// Fewer than three points give nothing. A polygon without a plane (all points on a line) gives degenerate triangles.
+    /// Fewer than three points give none. A polygon without a plane (all points on a line) gives degenerate triangles.
     pub fn triangulate(&mut self, points: &[DVec3]) -> Vec<[usize; 3]> {
         let n = points.len();
         if n < 3 {
@@ -47,7 +47,7 @@ impl Triangulator {
                 self.effort = self.effort.saturating_sub(left.len());
                 self.effort == 0 || is_ear(flat, &left, i)
             });
-            // The outline crosses itself: there is no right answer, and a fan keeps the corners.
+            // The outline crosses itself: no triangulation is right, and a fan keeps the corners.
             let Some(ear) = ear.filter(|_| self.effort > 0) else {
                 break;
             };
@@ -65,7 +65,7 @@ fn fan(corners: &[usize]) -> Vec<[usize; 3]> {
         .collect()
 }
 
-/// Newell's normal: also right for polygons that are concave or not quite flat.
+/// Newell's normal, which also holds for polygons that are concave or not quite flat.
 fn newell_normal(points: &[DVec3]) -> DVec3 {
     let next = points.iter().cycle().skip(1);
     points
@@ -75,7 +75,7 @@ fn newell_normal(points: &[DVec3]) -> DVec3 {
         .sum()
 }
 
-/// The polygon in its own plane, counter-clockwise.
+/// The polygon in its plane, counter-clockwise.
 fn project(points: &[DVec3]) -> Vec<DVec2> {
     let normal = newell_normal(points).normalize_or(DVec3::Y);
     let (s, t) = normal.any_orthonormal_pair();
@@ -86,7 +86,7 @@ fn project(points: &[DVec3]) -> Vec<DVec2> {
         .collect()
 }
 
-/// Twice the signed area of a, b, c: positive when they turn left.
+/// Twice the signed area of a, b, c: positive if they turn left.
 fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
@@ -94,7 +94,7 @@ fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
 fn is_convex(flat: &[DVec2]) -> bool {
     let n = flat.len();
     (0..n).all(|i| turn(flat[i], flat[(i + 1) % n], flat[(i + 2) % n]) >= 0.0)
-        // A star that winds twice turns left everywhere too, but its fan folds back.
+        // A star that winds twice also turns left everywhere, but its fan folds back.
         && (1..n - 1).all(|i| turn(flat[0], flat[i], flat[i + 1]) >= 0.0)
 }
 
@@ -109,7 +109,7 @@ fn is_ear(flat: &[DVec2], left: &[usize], i: usize) -> bool {
         return false;
     }
     let blocks = |p: DVec2| {
-        // Outlines with a slit to a hole visit the same point twice: a corner does not block itself.
+        // An outline with a slit to a hole visits the same point twice: a corner does not block itself.
         p != a
             && p != b
             && p != c
@@ -140,7 +140,7 @@ mod tests {
     }
 
     fn flat(points: &[(f64, f64)]) -> Vec<DVec3> {
-        // On a tilted plane, so that the projection has something to do.
+        // On a tilted plane, to test the projection.
         points
             .iter()
             .map(|(x, y)| DVec3::new(*x, 0.6 * y, 0.8 * y))
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_ends() {
+    fn degenerate_polygons_end() {
         assert!(triangulate(&[]).is_empty());
         assert_eq!(triangulate(&[DVec3::ZERO; 7]).len(), 5);
         let bow = flat(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)]);

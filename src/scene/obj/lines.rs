@@ -1,4 +1,4 @@
-//! The lines of an OBJ file.
+//! Lines of OBJ files.
 
 use std::collections::HashMap;
 
@@ -7,35 +7,35 @@ use glam::{Vec2, Vec3};
 use crate::scene::mesh::soup::{Corner, NONE, Triangle};
 use crate::scene::obj::text::{Counts, ObjText};
 
-/// A line that makes no sense.
+/// A malformed line.
 #[derive(Debug, PartialEq, Eq)]
-pub(in crate::scene) struct LineError {
-    /// Counted from 1.
+pub struct LineError {
+    /// Number of the line, from 1.
     pub line: usize,
     pub what: String,
 }
 
-/// What lines before may have said.
+/// State that earlier lines leave.
 #[derive(Debug, Default, Clone)]
-pub(in crate::scene) struct State {
-    /// Numbers of `v`, `vt` and `vn` lines so far: negative numbers count back from here.
+pub struct State {
+    /// How many `v`, `vt` and `vn` lines there were: negative indices count back from here.
     pub seen: Counts,
-    /// Lines so far.
+    /// How many lines there were.
     pub lines: usize,
-    /// Name of the material; empty is none.
+    /// Name of the material; empty for none.
     pub material: String,
-    /// The smoothing group; 0 is none.
+    /// Smoothing group; 0 for none.
     pub smoothing: u32,
 }
 
-/// A line by its key word, with its rest.
+/// A line by its keyword, with its arguments.
 #[derive(Debug, PartialEq, Eq)]
-pub(in crate::scene) enum Cleared<'t> {
+pub enum Statement<'t> {
     Vertex(&'t str),
     Texcoord(&'t str),
     Normal(&'t str),
     Face(&'t str),
-    /// A point or a line: not drawn.
+    /// A point or a line, which are not drawn.
     Undrawn,
     Smoothing(u32),
     Material(&'t str),
@@ -43,7 +43,7 @@ pub(in crate::scene) enum Cleared<'t> {
     Other,
 }
 
-impl<'t> Cleared<'t> {
+impl<'t> Statement<'t> {
     pub fn of(line: &'t str) -> Self {
         let line = line.trim();
         let end = line.find(|c: char| c.is_whitespace());
@@ -63,7 +63,7 @@ impl<'t> Cleared<'t> {
     }
 }
 
-/// `off`, `0` and anything that is no number end smoothing.
+/// `off`, `0` and anything that is not a number end smoothing.
 fn smoothing_group(word: &str) -> u32 {
     if word.eq_ignore_ascii_case("on") {
         1
@@ -72,15 +72,15 @@ fn smoothing_group(word: &str) -> u32 {
     }
 }
 
-/// Reads line after line into an [`ObjText`].
-pub(in crate::scene) struct LineReader {
+/// Parses lines into an [`ObjText`].
+pub struct LineReader {
     out: ObjText,
     state: State,
-    /// Of the whole file: positive numbers may point ahead.
+    /// Of the whole file: positive indices may refer to later lines.
     total: Counts,
-    /// Number of the state's material in `out`; none until a face uses it.
+    /// Index of the state's material in `out`; none until a face uses it.
     material: Option<u32>,
-    numbers: HashMap<String, u32>,
+    indices: HashMap<String, u32>,
     corners: Vec<[Index; 3]>,
 }
 
@@ -91,7 +91,7 @@ impl LineReader {
             state,
             total,
             material: None,
-            numbers: HashMap::new(),
+            indices: HashMap::new(),
             corners: Vec::new(),
         }
     }
@@ -101,32 +101,32 @@ impl LineReader {
     }
 
     pub fn line(&mut self, line: &str) -> Result<(), String> {
-        match Cleared::of(line) {
-            Cleared::Vertex(rest) => self.vertex(rest)?,
-            Cleared::Texcoord(rest) => {
+        match Statement::of(line) {
+            Statement::Vertex(rest) => self.vertex(rest)?,
+            Statement::Texcoord(rest) => {
                 let uv = numbers::<2>(rest, 1, "a texture coordinate")?;
                 self.out.soup.texcoords.push(Vec2::from(uv));
                 self.state.seen[1] += 1;
             }
-            Cleared::Normal(rest) => {
+            Statement::Normal(rest) => {
                 let normal = numbers::<3>(rest, 3, "a normal")?;
                 self.out.soup.normals.push(Vec3::from(normal));
                 self.state.seen[2] += 1;
             }
-            Cleared::Face(rest) => self.face(rest)?,
-            Cleared::Undrawn => self.out.not_faces += 1,
-            Cleared::Smoothing(group) => self.state.smoothing = group,
-            Cleared::Material(name) => {
+            Statement::Face(rest) => self.face(rest)?,
+            Statement::Undrawn => self.out.not_faces += 1,
+            Statement::Smoothing(group) => self.state.smoothing = group,
+            Statement::Material(name) => {
                 name.clone_into(&mut self.state.material);
                 self.material = None;
             }
-            Cleared::Library(rest) => self.out.libraries.push(rest.to_owned()),
-            Cleared::Other => {}
+            Statement::Library(rest) => self.out.libraries.push(rest.to_owned()),
+            Statement::Other => {}
         }
         Ok(())
     }
 
-    /// Three numbers; a fourth is a weight and left out; six or more end with a colour.
+    /// Three coordinates, a weight that is ignored (it belongs to rational curves), a colour.
     fn vertex(&mut self, rest: &str) -> Result<(), String> {
         let soup = &mut self.out.soup;
         let mut words = rest.split_ascii_whitespace();
@@ -138,7 +138,7 @@ impl LineReader {
             _ => None,
         };
         if let Some(colour) = colour.filter(|rgb| rgb.iter().all(|v| v.is_finite())) {
-            // Those before it had none.
+            // Earlier positions have no colour.
             soup.colours.resize(soup.positions.len(), [1.0; 4]);
             let [r, g, b] = colour;
             soup.colours.push([r, g, b, 1.0]);
@@ -152,7 +152,7 @@ impl LineReader {
         let mut corners = std::mem::take(&mut self.corners);
         corners.clear();
         for word in rest.split_ascii_whitespace() {
-            // A comment behind the face.
+            // A comment after the face.
             if word.starts_with('#') {
                 continue;
             }
@@ -168,12 +168,12 @@ impl LineReader {
     }
 
     fn push_face(&mut self, corners: &[[Index; 3]]) {
-        // A corner without normal or texture takes them from all.
+        // An attribute counts only where all corners have it.
         let every = |kind: usize| corners.iter().all(|c| matches!(c[kind], Index::At(_)));
         let (texcoords, normals) = (every(1), every(2));
-        let nowhere = corners.iter().flatten().any(|i| *i == Index::Nowhere);
-        self.out.dangling += usize::from(nowhere);
-        let material = self.material_number();
+        let is_dangling = corners.iter().flatten().any(|i| *i == Index::OutOfRange);
+        self.out.dangling += usize::from(is_dangling);
+        let material = self.material_index();
         let corner = |c: &[Index; 3]| Corner {
             position: c[0].number(true),
             texcoord: c[1].number(texcoords),
@@ -192,15 +192,15 @@ impl LineReader {
         }
     }
 
-    fn material_number(&mut self) -> u32 {
+    fn material_index(&mut self) -> u32 {
         if let Some(number) = self.material {
             return number;
         }
         let name = &self.state.material;
-        let number = self.numbers.get(name).copied().unwrap_or_else(|| {
+        let number = self.indices.get(name).copied().unwrap_or_else(|| {
             let number = self.out.materials.len() as u32;
             self.out.materials.push(name.clone());
-            self.numbers.insert(name.clone(), number);
+            self.indices.insert(name.clone(), number);
             number
         });
         self.material = Some(number);
@@ -212,7 +212,7 @@ impl LineReader {
         for (kind, part) in word.split('/').enumerate() {
             let place = corner
                 .get_mut(kind)
-                .ok_or_else(|| format!("\"{}\" has more than three numbers", short(word)))?;
+                .ok_or_else(|| format!("\"{}\" has more than three indices", short(word)))?;
             if !part.is_empty() {
                 let value = part
                     .parse()
@@ -222,12 +222,12 @@ impl LineReader {
         }
         match corner[0] {
             Index::At(_) => Ok(corner),
-            Index::None => Err(format!("\"{}\" names no vertex", short(word))),
-            Index::Nowhere if word.split('/').next() == Some("0") => {
-                Err(format!("\"{word}\" has number 0; OBJ counts from 1"))
+            Index::None => Err(format!("\"{}\" has no vertex index", short(word))),
+            Index::OutOfRange if word.split('/').next() == Some("0") => {
+                Err(format!("\"{word}\" has index 0; OBJ indices start at 1"))
             }
-            Index::Nowhere => Err(format!(
-                "\"{}\" names a vertex that does not exist (there are {})",
+            Index::OutOfRange => Err(format!(
+                "\"{}\" refers to a vertex that does not exist (there are {})",
                 short(word),
                 self.total[0]
             )),
@@ -235,7 +235,7 @@ impl LineReader {
     }
 }
 
-/// A word for a message: hostile ones may be megabytes long.
+/// The first 40 characters of a word, for a message: hostile words may be megabytes long.
 fn short(word: &str) -> &str {
     let end = word.char_indices().nth(40).map_or(word.len(), |(i, _)| i);
     &word[..end]
@@ -245,7 +245,7 @@ fn numbers<const N: usize>(rest: &str, least: usize, what: &str) -> Result<[f32;
     numbers_of(&mut rest.split_ascii_whitespace(), least, what)
 }
 
-/// `N` numbers, of which at least `least` must be there; the others are 0.
+/// `N` numbers, of which `least` are required; the others default to 0.
 fn numbers_of<'t, const N: usize>(
     words: &mut impl Iterator<Item = &'t str>,
     least: usize,
@@ -254,7 +254,7 @@ fn numbers_of<'t, const N: usize>(
     let mut values = [0.0; N];
     for (i, value) in values.iter_mut().enumerate() {
         match words.next() {
-            // The C runtime of old Windows programs writes infinities and the like as 1.#INF, 1.#IND, 1.#QNAN.
+            // The C runtime of old Windows programs writes 1.#INF, 1.#IND, 1.#QNAN.
             Some(word) if word.contains('#') && i < least => *value = f32::NAN,
             Some(word) => {
                 let parsed = word.parse().map_err(|_| format!("{what} is not a number"));
@@ -278,15 +278,15 @@ fn numbers_of<'t, const N: usize>(
     Ok(values)
 }
 
-/// Where a number of a face points to.
+/// An index of a face corner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Index {
-    /// It was left out.
+    /// Omitted.
     None,
-    /// It exists; counted from 0.
+    /// In range, from 0.
     At(u32),
-    /// It is out of range.
-    Nowhere,
+    /// Out of range.
+    OutOfRange,
 }
 
 impl Index {
@@ -306,6 +306,6 @@ fn resolve(value: i64, seen: usize, total: usize) -> Index {
     };
     match absolute.and_then(|i| u32::try_from(i).ok()) {
         Some(i) if (i as usize) < total && i != NONE => Index::At(i),
-        _ => Index::Nowhere,
+        _ => Index::OutOfRange,
     }
 }

@@ -1,7 +1,6 @@
-//! OBJ files as parts of a scene.
+//! OBJ models.
 
 mod lines;
-mod map_options;
 mod mtl;
 mod text;
 
@@ -13,24 +12,24 @@ use crate::scene::builder::Builder;
 use crate::scene::error::SceneError;
 use crate::scene::material::{MTL_DEFAULT, Material};
 use crate::scene::mesh::arena::append_soup;
-use crate::scene::mesh::soup::{Dropped, NONE, Soup, Use};
-use crate::scene::obj::mtl::{Libraries, Placed};
+use crate::scene::mesh::soup::{Dropped, MaterialUse, NONE, Soup};
+use crate::scene::obj::mtl::Libraries;
 use crate::scene::obj::text::ObjText;
-use crate::scene::texture::light;
+use crate::scene::texture::linear_from_srgb;
 
-/// How a mesh stands in the world.
+/// How a mesh is placed in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::scene) struct Placement {
+pub struct Placement {
     pub world_from_mesh: Affine3A,
-    /// Smooths corners without a normal below this crease angle, degrees.
+    /// Crease angle below which corners without a normal are smoothed, degrees.
     pub smooth_deg: Option<f32>,
 }
 
 /// Adds the model of `path` to the scene.
 ///
 /// # Errors
-/// A file that cannot be read, a line that makes no sense, or nothing to draw.
-pub(in crate::scene) fn append_obj(
+/// A file that cannot be read, a malformed line, or nothing to draw.
+pub fn append_obj(
     builder: &mut Builder,
     path: &Path,
     placement: &Placement,
@@ -38,7 +37,7 @@ pub(in crate::scene) fn append_obj(
     builder.progress.at(0.0, "reading");
     let text = builder.files.read_text(path)?;
     builder.progress.at(0.1, "parsing");
-    let read = text::read(&text, builder.threads).map_err(|e| SceneError::Malformed {
+    let parsed = text::read(&text, builder.threads).map_err(|e| SceneError::Malformed {
         path: path.to_owned(),
         line: e.line,
         what: e.what,
@@ -46,34 +45,34 @@ pub(in crate::scene) fn append_obj(
     drop(text);
     builder.progress.at(0.5, "reading materials");
     let folder = path.parent().unwrap_or(Path::new(""));
-    let libraries = Libraries::read(builder, path, folder, &read.libraries);
-    warn_of_unknown(builder, path, &read.materials, &libraries);
+    let libraries = Libraries::read(builder, path, folder, &parsed.libraries);
+    warn_of_undefined(builder, path, &parsed.materials, &libraries);
     let ObjText {
         mut soup,
         materials,
         not_faces,
         dangling,
         ..
-    } = read;
-    // Before they are made: a polygon has few bytes for each of its triangles.
-    builder.check_room(path, soup.count())?;
+    } = parsed;
+    // Before the polygons are split: each of their triangles takes few bytes of the file.
+    builder.check_triangles(path, soup.count())?;
     soup.triangulate();
     finish_colours(&mut soup);
-    let uses: Vec<Use> = materials
+    let uses: Vec<MaterialUse> = materials
         .iter()
-        .map(|name| use_of(builder, path, &libraries, name, &soup))
+        .map(|name| material_use(builder, path, &libraries, name, &soup))
         .collect();
     builder.progress.at(0.6, "building the mesh");
-    let mut odd = Odd {
+    let mut report = ImportReport {
         not_faces,
         dangling,
-        ..Odd::default()
+        ..ImportReport::default()
     };
-    odd.undrawn = drop_undrawn(&mut soup, &uses);
+    report.undrawn = drop_undrawn(&mut soup, &uses);
     soup.transform(&placement.world_from_mesh);
     let (dropped, faces) = soup.sweep();
-    odd.dropped = dropped;
-    odd.report(builder, path, soup.triangles.is_empty())?;
+    report.dropped = dropped;
+    report.tell(builder, path, soup.triangles.is_empty())?;
     append_soup(
         &mut builder.scene,
         &soup,
@@ -84,26 +83,21 @@ pub(in crate::scene) fn append_obj(
     Ok(())
 }
 
-/// What is not drawn, or not as the file says.
+/// Counts of what is not drawn, or not as the file says.
 #[derive(Debug, Default, Clone, Copy)]
-pub(in crate::scene) struct Odd {
+pub struct ImportReport {
     pub dropped: Dropped,
-    /// Triangles of materials that nobody would see.
+    /// Triangles of transparent materials.
     pub undrawn: usize,
-    /// Points, lines and the like.
+    /// Points, lines, and faces of fewer than three corners.
     pub not_faces: usize,
-    /// Faces with numbers that lead nowhere.
+    /// Faces with indices out of range.
     pub dangling: usize,
 }
 
-impl Odd {
-    /// Warns of it, or fails with it where nothing is left to draw.
-    pub fn report(
-        &self,
-        builder: &mut Builder,
-        path: &Path,
-        empty: bool,
-    ) -> Result<(), SceneError> {
+impl ImportReport {
+    /// Adds a warning for each count; if the model is `empty`, fails with them instead.
+    pub fn tell(&self, builder: &mut Builder, path: &Path, empty: bool) -> Result<(), SceneError> {
         let left_out = self.lines();
         if empty {
             let why = if left_out.is_empty() {
@@ -126,12 +120,12 @@ impl Odd {
         let rows = [
             (
                 self.dropped.not_finite,
-                "triangles with infinite, NaN or absurdly large positions dropped",
+                "triangles with infinite, NaN or very large coordinates dropped",
             ),
             (self.dropped.degenerate, "triangles without area dropped"),
             (
                 self.undrawn,
-                "triangles of transparent materials (d < 0.5) left undrawn",
+                "triangles of transparent materials (d < 0.5) not drawn",
             ),
             (
                 self.not_faces,
@@ -139,7 +133,7 @@ impl Odd {
             ),
             (
                 self.dangling,
-                "faces name normals or texture coordinates that do not exist; computed instead",
+                "faces refer to normals or texture coordinates that do not exist; computed instead",
             ),
         ];
         rows.into_iter()
@@ -149,25 +143,20 @@ impl Odd {
     }
 }
 
-/// The scene's material of this name, made at first use; the number is [`NONE`] if it is not drawn.
-fn use_of(
+/// The material of this name; its index is [`NONE`] if it is not drawn.
+fn material_use(
     builder: &mut Builder,
     path: &Path,
     libraries: &Libraries,
     name: &str,
     soup: &Soup,
-) -> Use {
-    let placed = libraries.material(builder, path, name);
-    let Placed {
-        material,
-        texture_from_mesh,
-    } = placed.unwrap_or_else(|| Placed {
-        material: without_material(soup),
-        texture_from_mesh: Affine2::IDENTITY,
-    });
-    Use {
-        tangents: material.normal_texture.is_some(),
-        number: if material.is_drawn() {
+) -> MaterialUse {
+    let defined = libraries.material(builder, path, name);
+    let (material, texture_from_mesh) =
+        defined.unwrap_or_else(|| (default_material(soup), Affine2::IDENTITY));
+    MaterialUse {
+        has_normal_map: material.normal_texture.is_some(),
+        index: if material.is_drawn() {
             builder.add_material(material)
         } else {
             NONE
@@ -176,8 +165,8 @@ fn use_of(
     }
 }
 
-/// Grey, or the colours of the vertices themselves.
-fn without_material(soup: &Soup) -> Material {
+/// Grey, or white where the vertices have colours.
+fn default_material(soup: &Soup) -> Material {
     let mut material = MTL_DEFAULT.clone();
     if !soup.colours.is_empty() {
         material.diffuse = [1.0; 3];
@@ -185,15 +174,15 @@ fn without_material(soup: &Soup) -> Material {
     material
 }
 
-fn drop_undrawn(soup: &mut Soup, uses: &[Use]) -> usize {
+fn drop_undrawn(soup: &mut Soup, uses: &[MaterialUse]) -> usize {
     let before = soup.triangles.len();
     soup.triangles
-        .retain(|t| uses[t.material as usize].number != NONE);
+        .retain(|t| uses[t.material as usize].index != NONE);
     before - soup.triangles.len()
 }
 
-/// OBJ has no word for it, but its colours are meant for the screen: sRGB, 0..1 (or 0..255 if any is above 1). White
-/// everywhere is no colour.
+/// Converts colours to linear light. OBJ does not define their encoding; files hold sRGB, 0..1 (or 0..255 if any is above 1).
+/// Colours that are white everywhere are dropped.
 fn finish_colours(soup: &mut Soup) {
     let rgb = |c: &[f32; 4]| [c[0], c[1], c[2]];
     if soup.colours.iter().all(|c| rgb(c) == [1.0; 3]) {
@@ -203,24 +192,24 @@ fn finish_colours(soup: &mut Soup) {
     let largest = soup.colours.iter().flat_map(rgb).fold(0.0, f32::max);
     let scale = if largest > 1.0 { 1.0 / 255.0 } else { 1.0 };
     for colour in &mut soup.colours {
-        let [r, g, b] = rgb(colour).map(|v| light((v * scale).clamp(0.0, 1.0)));
+        let [r, g, b] = rgb(colour).map(|v| linear_from_srgb((v * scale).clamp(0.0, 1.0)));
         *colour = [r, g, b, 1.0];
     }
 }
 
-fn warn_of_unknown(
+fn warn_of_undefined(
     builder: &mut Builder,
     path: &Path,
     materials: &[String],
     libraries: &Libraries,
 ) {
-    let mut unknown: Vec<&str> = materials
+    let mut undefined: Vec<&str> = materials
         .iter()
         .map(String::as_str)
         .filter(|name| !name.is_empty() && !libraries.has(name))
         .collect();
-    unknown.sort_unstable();
-    if let [first, rest @ ..] = unknown.as_slice() {
+    undefined.sort_unstable();
+    if let [first, rest @ ..] = undefined.as_slice() {
         let more = if rest.is_empty() {
             String::new()
         } else {

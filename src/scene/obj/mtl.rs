@@ -1,4 +1,4 @@
-//! MTL files: materials of OBJ models.
+//! MTL files: the materials of OBJ models.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -6,12 +6,11 @@ use std::path::{Path, PathBuf};
 use glam::{Affine2, Vec2};
 
 use crate::scene::builder::Builder;
-use crate::scene::files::Place;
+use crate::scene::files::Lookup;
 use crate::scene::material::{MTL_DEFAULT, Material, MetallicRoughness, phong_of};
-use crate::scene::obj::map_options::{MapOptions, map_options};
-use crate::scene::texture::picture::Wanted;
+use crate::scene::texture::picture::{Channel, TextureKey};
 
-/// What one `newmtl` says.
+/// The lines of one `newmtl`.
 #[derive(Debug, Default, Clone)]
 struct Entry {
     name: String,
@@ -32,10 +31,10 @@ struct Entry {
     roughness_map: Option<Map>,
 }
 
-/// A picture and its options.
+/// The arguments of a `map_..` line.
 #[derive(Debug, Clone)]
 struct Map {
-    /// Of the library.
+    /// Folder of the library.
     folder: PathBuf,
     name: String,
     options: MapOptions,
@@ -51,11 +50,11 @@ impl Map {
         })
     }
 
-    /// Where the picture is or should be; none where the model has no business.
+    /// Path of the picture, which may be missing; none (and a warning) outside the model's folder.
     fn path(&self, builder: &mut Builder, owner: &Path) -> Option<PathBuf> {
         match builder.files.find(&self.folder, &self.name) {
-            Place::Found(path) | Place::Missing(path) => Some(path),
-            Place::Outside(path) => {
+            Lookup::Found(path) | Lookup::Missing(path) => Some(path),
+            Lookup::Outside(path) => {
                 builder.warn_outside(owner, &path);
                 None
             }
@@ -63,23 +62,15 @@ impl Map {
     }
 }
 
-/// A material, and how its texture coordinates come from those of the mesh.
-#[derive(Debug, Clone, PartialEq)]
-pub(in crate::scene) struct Placed {
-    pub material: Material,
-    /// Texture coordinates as OBJ has them (v upward).
-    pub texture_from_mesh: Affine2,
-}
-
 /// The material libraries of one OBJ file.
 #[derive(Debug, Default)]
-pub(in crate::scene) struct Libraries {
+pub struct Libraries {
     entries: Vec<Entry>,
     by_name: HashMap<String, usize>,
 }
 
 impl Libraries {
-    /// Reads what the rests of the `mtllib` lines name. A library that is missing is a warning.
+    /// Reads the libraries that the arguments of the `mtllib` lines name. A missing library is a warning.
     pub fn read(builder: &mut Builder, obj: &Path, folder: &Path, names: &[String]) -> Self {
         let mut libraries = Self::default();
         let mut seen: HashSet<PathBuf> = HashSet::new();
@@ -89,7 +80,9 @@ impl Libraries {
             if found.is_empty() {
                 builder.warn(
                     obj,
-                    &format!("material library \"{rest}\" is missing; drawn grey"),
+                    &format!(
+                        "material library \"{rest}\" is missing; its materials are drawn grey"
+                    ),
                 );
             }
             for path in found {
@@ -105,7 +98,7 @@ impl Libraries {
         libraries
     }
 
-    pub(in crate::scene) fn add(&mut self, builder: &mut Builder, path: &Path, text: &str) {
+    pub fn add(&mut self, builder: &mut Builder, path: &Path, text: &str) {
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut bad = Vec::new();
         for (number, line) in text.lines().enumerate() {
@@ -115,14 +108,14 @@ impl Libraries {
         }
         if let Some(first) = bad.first() {
             let what = format!(
-                "{} lines are not understood and left out, the first is line {first}",
+                "{} malformed lines ignored, the first is line {first}",
                 bad.len()
             );
             builder.warn(path, &what);
         }
     }
 
-    /// False for nonsense.
+    /// Reads a line; false if it is malformed.
     fn line(&mut self, folder: &Path, line: &str) -> bool {
         let (key, rest) = line
             .split_once(|c: char| c.is_whitespace())
@@ -134,7 +127,7 @@ impl Libraries {
             return true;
         }
         let Some(entry) = self.entries.last_mut() else {
-            // Before the first material there is nothing to say.
+            // Lines before the first material belong to none.
             return true;
         };
         let map = || Map::read(folder, rest);
@@ -166,7 +159,7 @@ impl Libraries {
 
     fn begin(&mut self, name: &str) {
         let name = if name.is_empty() { "unnamed" } else { name };
-        // The first of two materials with one name is meant, as with other readers.
+        // The first of two materials of the same name counts, as in other readers.
         let number = self.entries.len();
         self.by_name.entry(name.to_owned()).or_insert(number);
         self.entries.push(Entry {
@@ -180,14 +173,20 @@ impl Libraries {
         self.by_name.contains_key(name)
     }
 
-    /// The material of this name, its textures decoded.
-    pub fn material(&self, builder: &mut Builder, obj: &Path, name: &str) -> Option<Placed> {
+    /// The material of this name with its textures decoded, and the transform from the mesh's texture coordinates (v upward)
+    /// to those of the textures.
+    pub fn material(
+        &self,
+        builder: &mut Builder,
+        obj: &Path,
+        name: &str,
+    ) -> Option<(Material, Affine2)> {
         let entry = &self.entries[*self.by_name.get(name)?];
-        Some(entry.place(builder, obj))
+        Some((entry.material(builder, obj), entry.texture_from_mesh()))
     }
 }
 
-/// Takes a value that could be read; false if it could not.
+/// Replaces a value by one that was read; false if none was.
 fn set<T>(place: &mut Option<T>, value: Option<T>) -> bool {
     let read = value.is_some();
     *place = value.or(place.take());
@@ -195,43 +194,40 @@ fn set<T>(place: &mut Option<T>, value: Option<T>) -> bool {
 }
 
 impl Entry {
-    fn place(&self, builder: &mut Builder, obj: &Path) -> Placed {
+    /// The transform of the first map: all maps of a material share their texture coordinates.
+    fn texture_from_mesh(&self) -> Affine2 {
         let maps = [
             &self.diffuse_map,
             &self.mask,
             &self.bump,
             &self.specular_map,
         ];
-        let placing = maps.into_iter().flatten().next();
-        let texture_from_mesh = placing.map_or(Affine2::IDENTITY, |map| {
+        let first = maps.into_iter().flatten().next();
+        first.map_or(Affine2::IDENTITY, |map| {
             let MapOptions { scale, offset, .. } = map.options;
             Affine2::from_scale_angle_translation(Vec2::from(scale), 0.0, Vec2::from(offset))
-        });
-        Placed {
-            material: self.material(builder, obj),
-            texture_from_mesh,
-        }
+        })
     }
 
     fn material(&self, builder: &mut Builder, obj: &Path) -> Material {
         let diffuse_texture = self.diffuse_texture(builder, obj);
         let specular_texture = self.specular_map.as_ref().and_then(|map| {
             let path = map.path(builder, obj)?;
-            builder.texture(obj, Wanted::Colour(path))
+            builder.texture(obj, TextureKey::Colour(path))
         });
         let normal_texture = self.bump.as_ref().and_then(|map| {
             let path = map.path(builder, obj)?;
-            builder.texture(obj, Wanted::Normals(path, map.options.bump.to_bits()))
+            builder.texture(obj, TextureKey::Normals(path, map.options.bump.to_bits()))
         });
         let has_mask = self.mask.is_some() && diffuse_texture.is_some();
-        // A texture alone is the reflectance itself; without anything the body is grey and has no gloss.
-        let bare_diffuse = if diffuse_texture.is_some() && self.diffuse_map.is_some() {
+        // A texture without `Kd` is the reflectance itself; without either the surface is grey.
+        let default_diffuse = if diffuse_texture.is_some() && self.diffuse_map.is_some() {
             1.0
         } else {
             0.5
         };
         let unit = |rgb: [f32; 3]| rgb.map(|v| v.clamp(0.0, 1.0));
-        let base = unit(self.diffuse.unwrap_or([bare_diffuse; 3]));
+        let base = unit(self.diffuse.unwrap_or([default_diffuse; 3]));
         let (diffuse, specular, shininess) = self
             .metallic_roughness(builder, obj, base)
             .map(|surface| phong_of(&surface))
@@ -258,13 +254,13 @@ impl Entry {
         if !self.has_highlights() {
             return [0.0; 3];
         }
-        let bare = if texture.is_some() { 1.0 } else { 0.0 };
+        let default = if texture.is_some() { 1.0 } else { 0.0 };
         self.specular
-            .unwrap_or([bare; 3])
+            .unwrap_or([default; 3])
             .map(|v| v.clamp(0.0, 1.0))
     }
 
-    /// The PBR keys, if any is there: `Pm`, `Pr` and the means of their maps. `Ni` is the index of refraction.
+    /// The PBR keys, if there are any: `Pm`, `Pr` and the means of their maps. `Ni` is the index of refraction.
     fn metallic_roughness(
         &self,
         builder: &mut Builder,
@@ -298,20 +294,20 @@ impl Entry {
         let (colour, mask) = (path(&self.diffuse_map), path(&self.mask));
         let channel = self.mask.as_ref().map(|map| map.options.channel);
         let wanted = match mask {
-            Some(mask) => Wanted::Masked(colour, mask, channel.unwrap_or_default()),
-            None => Wanted::Colour(colour?),
+            Some(mask) => TextureKey::Masked(colour, mask, channel.unwrap_or_default()),
+            None => TextureKey::Colour(colour?),
         };
         builder.texture(obj, wanted)
     }
 
-    /// Whether the material reflects specularly at all. The illumination models 0 and 1 of MTL (`illum`) have no highlights;
-    /// many exporters write a stray `Ks` beside them.
+    /// Whether the material has a specular lobe. The illumination models 0 and 1 (`illum`) have none; many exporters write
+    /// a meaningless `Ks` with them.
     fn has_highlights(&self) -> bool {
         !matches!(self.illumination, Some(0 | 1))
     }
 
-    /// `d`, else 1 − `Tr`. `Tr 1` alone is read as opaque: some exporters mean that, and nobody exports the invisible. So is
-    /// `d 0` beside a mask: the mask says where it is opaque.
+    /// `d`, else 1 − `Tr`, 0..1. `Tr 1` alone is opaque: some exporters mean that. So is `d 0` with a mask: the mask decides
+    /// where the surface is opaque.
     fn opacity(&self) -> f32 {
         let opacity = match (self.dissolve, self.transparency) {
             (Some(d), _) if d <= 0.0 && self.mask.is_some() => 1.0,
@@ -342,28 +338,148 @@ fn number(rest: &str) -> Option<f32> {
     value.is_finite().then_some(value)
 }
 
-/// The libraries that the rest of one `mtllib` line names: one file with spaces in its name, or several files with
+/// The libraries that the arguments of one `mtllib` line name: one file with spaces in its name, or several files with
 /// `\ ` for a space.
-pub(in crate::scene) fn find_libraries(
+pub fn find_libraries(
     builder: &mut Builder,
     obj: &Path,
     folder: &Path,
     rest: &str,
 ) -> Vec<PathBuf> {
-    if let Place::Found(path) = builder.files.find(folder, rest.trim_matches('"')) {
+    if let Lookup::Found(path) = builder.files.find(folder, rest.trim_matches('"')) {
         return vec![path];
     }
-    // No file name holds a NUL, so it can stand for an escaped space while the line is split.
+    // File names have no NUL, so it can stand for an escaped space while the line is split.
     let escaped = rest.replace("\\ ", "\0");
     let mut found = Vec::new();
     for name in escaped.split_whitespace() {
         match builder.files.find(folder, &name.replace('\0', " ")) {
-            Place::Found(path) => found.push(path),
-            Place::Outside(path) => builder.warn_outside(obj, &path),
-            Place::Missing(_) => {}
+            Lookup::Found(path) => found.push(path),
+            Lookup::Outside(path) => builder.warn_outside(obj, &path),
+            Lookup::Missing(_) => {}
         }
     }
     found
+}
+
+/// Options of a `map_..` line. `-clamp`, `-blendu`, `-blendv`, `-mm`, `-t`, `-type` and unknown ones are ignored.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct MapOptions {
+    /// `-s`: factor on the texture coordinates.
+    scale: [f32; 2],
+    /// `-o`: offset of the texture coordinates, added after the factor.
+    offset: [f32; 2],
+    /// `-bm`: factor on the heights of a bump map.
+    bump: f32,
+    /// `-imfchan`: channel of a mask.
+    channel: Channel,
+}
+
+impl Default for MapOptions {
+    fn default() -> Self {
+        Self {
+            scale: [1.0; 2],
+            offset: [0.0; 2],
+            bump: 1.0,
+            channel: Channel::Automatic,
+        }
+    }
+}
+
+/// Options that may also follow the file name.
+const TRAILING_OPTIONS: [&str; 10] = [
+    " -bm ",
+    " -o ",
+    " -s ",
+    " -t ",
+    " -imfchan ",
+    " -clamp ",
+    " -blendu ",
+    " -blendv ",
+    " -mm ",
+    " -texres ",
+];
+
+/// The file name, perhaps with spaces, and the options: exporters write both in any order.
+fn map_options(rest: &str) -> (&str, MapOptions) {
+    let mut options = MapOptions::default();
+    let rest = options.take_leading(rest.trim());
+    let end = TRAILING_OPTIONS.iter().filter_map(|o| rest.find(o)).min();
+    let (name, mut trailing) = rest.split_at(end.unwrap_or(rest.len()));
+    // Here the last argument of the last option ends the line.
+    while let Some((option, tail)) = option_word(trailing.trim_start()) {
+        trailing = options.take(option, tail, true);
+    }
+    (name.trim().trim_matches('"'), options)
+}
+
+fn option_word(rest: &str) -> Option<(&str, &str)> {
+    let (word, tail) = rest.split_once(char::is_whitespace)?;
+    let letters = word.strip_prefix('-')?;
+    (!letters.is_empty() && letters.chars().all(char::is_alphabetic))
+        .then_some((letters, tail.trim_start()))
+}
+
+impl MapOptions {
+    fn take_leading<'a>(&mut self, mut rest: &'a str) -> &'a str {
+        while let Some((option, tail)) = option_word(rest) {
+            rest = self.take(option, tail, false);
+        }
+        rest
+    }
+
+    /// Reads the arguments of an option; returns what follows. `last`: the arguments may end the line.
+    fn take<'a>(&mut self, option: &str, tail: &'a str, last: bool) -> &'a str {
+        let numbers_only = matches!(option, "o" | "s" | "t");
+        let most = match option {
+            "o" | "s" | "t" => 3,
+            "mm" => 2,
+            _ => 1,
+        };
+        let (mut rest, mut arguments) = (tail, [""; 3]);
+        for argument in arguments.iter_mut().take(most) {
+            let (word, tail) = match rest.split_once(char::is_whitespace) {
+                Some(both) => both,
+                None if last => (rest, ""),
+                // The last word is always the file name.
+                None => break,
+            };
+            if numbers_only && word.parse::<f32>().is_err() {
+                break;
+            }
+            (*argument, rest) = (word, tail.trim_start());
+        }
+        self.set(option, arguments);
+        rest
+    }
+
+    fn set(&mut self, option: &str, arguments: [&str; 3]) {
+        let number = |i: usize| {
+            let value = arguments[i].parse::<f32>().ok();
+            value.filter(|v| v.is_finite() && v.abs() < 1e6)
+        };
+        match option {
+            // A missing second number is scale 1, offset 0.
+            "s" => {
+                let u = number(0).unwrap_or(1.0);
+                self.scale = [u, number(1).unwrap_or(1.0)];
+            }
+            "o" => self.offset = [number(0).unwrap_or(0.0), number(1).unwrap_or(0.0)],
+            "bm" => self.bump = number(0).unwrap_or(1.0),
+            "imfchan" => self.channel = channel(arguments[0]),
+            _ => {}
+        }
+    }
+}
+
+fn channel(word: &str) -> Channel {
+    match word {
+        "r" => Channel::Number(0),
+        "g" => Channel::Number(1),
+        "b" => Channel::Number(2),
+        "m" => Channel::Number(3),
+        _ => Channel::Automatic,
+    }
 }
 
 #[cfg(test)]

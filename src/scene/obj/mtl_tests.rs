@@ -1,4 +1,4 @@
-//! Tests of MTL reading.
+//! Tests of the MTL parser.
 
 use super::*;
 use crate::scene::LoadOptions;
@@ -26,7 +26,7 @@ fn read(mtl: &str) -> Vec<Material> {
         libraries.add(builder, Path::new("m.mtl"), mtl);
         let entries = libraries.entries.iter();
         entries
-            .map(|entry| entry.place(builder, Path::new("m.obj")).material)
+            .map(|entry| entry.material(builder, Path::new("m.obj")))
             .collect()
     })
 }
@@ -44,11 +44,11 @@ fn libraries_are_found_by_any_spelling() {
     assert_eq!(find("C:\\models\\c.mtl"), [Path::new("c.mtl")]);
     assert!(find("none.mtl").is_empty());
     let picture = Files::embedded(FILES).find(Path::new(""), "tex\\wood.png");
-    assert_eq!(picture, Place::Found("tex/wood.png".into()));
+    assert_eq!(picture, Lookup::Found("tex/wood.png".into()));
 }
 
 #[test]
-fn values_are_bounded_and_nonsense_is_left_out() {
+fn values_are_clamped_and_malformed_ones_ignored() {
     let materials =
         read("newmtl a\nKd 2 -1 0.5\nKs 0.3\nNs 0\nnewmtl b\nKd 1 0\nKs nan 0 0\nNs x\nd 1e400\n");
     assert_eq!(materials[0].diffuse, [1.0, 0.0, 0.5]);
@@ -62,7 +62,7 @@ fn values_are_bounded_and_nonsense_is_left_out() {
 }
 
 #[test]
-fn dissolve_rules_over_transparency() {
+fn dissolve_overrides_transparency() {
     let opacity = |lines: &str| read(&format!("newmtl a\n{lines}"))[0].dissolve;
     assert_eq!(opacity("d 0.75\nTr 0.5\n"), 0.75);
     assert_eq!(opacity("Tr 0.6\n"), 1.0 - 0.6f32);
@@ -72,7 +72,7 @@ fn dissolve_rules_over_transparency() {
 }
 
 #[test]
-fn a_texture_that_fails_leaves_the_plain_colour() {
+fn a_texture_that_fails_leaves_the_colour() {
     assert_eq!(read("newmtl a\nmap_Kd tex/wood.png\n")[0].diffuse, [0.5; 3]);
     assert_eq!(
         read("newmtl a\nKd 0.2 0.3 0.4\nmap_Kd none.png\n")[0].diffuse,
@@ -81,7 +81,7 @@ fn a_texture_that_fails_leaves_the_plain_colour() {
 }
 
 #[test]
-fn illumination_models_without_highlights_have_no_gloss() {
+fn illumination_models_without_highlights_have_no_specular_lobe() {
     for (line, glossy) in [
         ("", true),
         ("illum 0", false),
@@ -94,9 +94,40 @@ fn illumination_models_without_highlights_have_no_gloss() {
 }
 
 #[test]
-fn pbr_keys_rule_over_phong() {
+fn pbr_keys_override_phong() {
     let material = &read("newmtl a\nKd 0.8 0.8 0.8\nKs 1 1 1\nNs 10\nPm 1\nPr 0.5\n")[0];
     assert!((material.specular[0] - 0.2).abs() < 1e-6, "{material:?}");
     assert!((material.diffuse[0] - 0.6).abs() < 1e-6, "{material:?}");
     assert!((material.shininess - 30.0).abs() < 1e-3, "{material:?}");
+}
+
+#[test]
+fn file_names_are_found_among_options() {
+    for (line, name) in [
+        ("wood.png", "wood.png"),
+        ("texture 01.png", "texture 01.png"),
+        ("-s 0.1 0.2 specular.jpg", "specular.jpg"),
+        ("-o 0.1 diffuse.jpg", "diffuse.jpg"),
+        ("-t 0.1 0.2 0.3 a b.jpg", "a b.jpg"),
+        ("-colorspace sRGB -o 0.1 d.jpg", "d.jpg"),
+        ("-imfchan r bump.jpg -bm 1.5", "bump.jpg"),
+        ("-mm 0.1 0.3 s.jpg", "s.jpg"),
+        ("-type cube_top s.jpg", "s.jpg"),
+        ("-s 1 1 1 2", "2"),
+        ("\"quoted name.png\"", "quoted name.png"),
+        ("-bm", "-bm"),
+    ] {
+        assert_eq!(map_options(line).0, name, "{line}");
+    }
+}
+
+#[test]
+fn options_count_before_and_after_the_name() {
+    let options = |line| map_options(line).1;
+    assert_eq!(options("-s 2 3 1 -o 0.5 0.25 a.png").scale, [2.0, 3.0]);
+    assert_eq!(options("-s 2 3 1 -o 0.5 0.25 a.png").offset, [0.5, 0.25]);
+    assert_eq!(options("-imfchan g a b.png -bm 1.5").bump, 1.5);
+    assert_eq!(options("-imfchan g a.png").channel, Channel::Number(1));
+    assert_eq!(options("-s nan 1e30 a.png").scale, [1.0, 1.0]);
+    assert_eq!(options("a.png"), MapOptions::default());
 }

@@ -1,7 +1,7 @@
-//! The text of an OBJ file: cut at line ends into stretches that are read at the same time, each into a [`Soup`].
+//! The text of an OBJ file: cut at line ends into chunks that are parsed in parallel, each into a [`Soup`].
 //!
-//! A first look counts what each stretch holds and the state at its end (material, smoothing group), so that every
-//! stretch can start as if those before it had been read.
+//! A prescan counts the vertices of each chunk and finds the state at its end (material, smoothing group), so that every
+//! chunk starts in the state that the chunks before it leave.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -10,45 +10,45 @@ use std::thread;
 use memchr::{memchr_iter, memrchr};
 
 use crate::scene::mesh::soup::Soup;
-use crate::scene::obj::lines::{Cleared, LineError, LineReader, State};
+use crate::scene::obj::lines::{LineError, LineReader, State, Statement};
 
-/// Texts are cut into stretches of at least this many bytes: shorter ones are not worth a thread.
-const SHORTEST: usize = 1 << 20;
+/// Smallest chunk, bytes: a shorter one is not worth a thread.
+const MIN_CHUNK: usize = 1 << 20;
 
-/// What an OBJ file holds; materials of the triangles are numbers in `materials`.
+/// The content of an OBJ file. Triangles refer to their material by its index in `materials`.
 #[derive(Debug, Default)]
-pub(in crate::scene) struct ObjText {
+pub struct ObjText {
     pub soup: Soup,
-    /// The names of the `usemtl` lines that triangles use; the empty name is no material.
+    /// Names of the materials that faces use; the empty name means no material.
     pub materials: Vec<String>,
-    /// The rests of the `mtllib` lines.
+    /// Arguments of the `mtllib` lines.
     pub libraries: Vec<String>,
-    /// Points, lines, and faces of fewer than three corners: skipped.
+    /// Number of points, lines, and faces of fewer than three corners, all skipped.
     pub not_faces: usize,
-    /// Faces that name normals or texture coordinates that do not exist.
+    /// Number of faces with an index of a normal or texture coordinate that is out of range.
     pub dangling: usize,
 }
 
-/// Numbers of `v`, `vt` and `vn` lines.
-pub(in crate::scene) type Counts = [usize; 3];
+/// How many `v`, `vt` and `vn` lines there are.
+pub type Counts = [usize; 3];
 
-/// Reads a whole file on `threads` threads.
+/// Parses a whole file on up to `threads` threads.
 ///
 /// # Errors
-/// The first line that makes no sense, or a face that names a vertex that does not exist.
-pub(in crate::scene) fn read(text: &str, threads: usize) -> Result<ObjText, LineError> {
-    let stretches = cut(text, threads.clamp(1, 1 + text.len() / SHORTEST));
-    let looks: Vec<Look> = at_once(&stretches, |text| look(text));
-    let mut starts = Vec::with_capacity(stretches.len());
+/// The first malformed line, or the first face with the index of a vertex that does not exist.
+pub fn read(text: &str, threads: usize) -> Result<ObjText, LineError> {
+    let chunks = cut(text, threads.clamp(1, 1 + text.len() / MIN_CHUNK));
+    let prescans: Vec<Prescan> = in_parallel(&chunks, |text| prescan(text));
+    let mut starts = Vec::with_capacity(chunks.len());
     let mut state = State::default();
-    for look in &looks {
+    for prescan in &prescans {
         starts.push(state.clone());
-        look.advance(&mut state);
+        prescan.advance(&mut state);
     }
     let total = state.seen;
-    let jobs: Vec<(&str, State)> = stretches.into_iter().zip(starts).collect();
-    let parts = at_once(&jobs, |(text, state)| {
-        read_stretch(text, state.clone(), total)
+    let jobs: Vec<(&str, State)> = chunks.into_iter().zip(starts).collect();
+    let parts = in_parallel(&jobs, |(text, state)| {
+        read_chunk(text, state.clone(), total)
     });
     let (mut whole, mut known) = (ObjText::default(), HashMap::new());
     for part in parts {
@@ -57,8 +57,8 @@ pub(in crate::scene) fn read(text: &str, threads: usize) -> Result<ObjText, Line
     Ok(whole)
 }
 
-/// Does the work for all items, each on a thread of its own but the first.
-fn at_once<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+/// Runs `work` on all items: the first on this thread, each other on its own.
+fn in_parallel<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let work = &work;
     let Some((first, rest)) = items.split_first() else {
         return Vec::new();
@@ -70,7 +70,7 @@ fn at_once<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<
             .collect();
         let mut results = vec![work(first)];
         for thread in threads {
-            // A panic there is a panic here.
+            // A panic on that thread is a panic on this one.
             let result = thread.join();
             results.push(result.unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
         }
@@ -78,20 +78,20 @@ fn at_once<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<
     })
 }
 
-/// About equal stretches that end with whole logical lines.
+/// `count` chunks of about equal length that end at the end of a logical line.
 fn cut(text: &str, count: usize) -> Vec<&str> {
-    let mut stretches = Vec::with_capacity(count);
+    let mut chunks = Vec::with_capacity(count);
     let mut rest = text;
     for left in (2..=count).rev() {
-        let (stretch, behind) = rest.split_at(line_end(rest, rest.len() / left));
-        stretches.push(stretch);
+        let (chunk, behind) = rest.split_at(line_end(rest, rest.len() / left));
+        chunks.push(chunk);
         rest = behind;
     }
-    stretches.push(rest);
-    stretches
+    chunks.push(rest);
+    chunks
 }
 
-/// Where the first logical line ends that ends behind `from`.
+/// End of the first logical line that ends after byte `from`.
 fn line_end(text: &str, from: usize) -> usize {
     let bytes = text.as_bytes();
     let mut start = memrchr(b'\n', &bytes[..from]).map_or(0, |i| i + 1);
@@ -104,7 +104,7 @@ fn line_end(text: &str, from: usize) -> usize {
     text.len()
 }
 
-/// Lines with their numbers, counted from 1; a backslash at the end continues a line.
+/// Logical lines and the numbers of their first lines, from 1; a backslash at the end of a line continues it.
 fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     let mut lines = text.lines().enumerate();
     std::iter::from_fn(move || {
@@ -121,16 +121,16 @@ fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     })
 }
 
-/// What a stretch does to the state of the reader.
+/// How a chunk changes the state of the parser.
 #[derive(Debug, Default)]
-struct Look<'t> {
+struct Prescan<'t> {
     counts: Counts,
     lines: usize,
     material: Option<Cow<'t, str>>,
     smoothing: Option<u32>,
 }
 
-impl Look<'_> {
+impl Prescan<'_> {
     fn advance(&self, state: &mut State) {
         for (seen, count) in state.seen.iter_mut().zip(self.counts) {
             *seen += count;
@@ -143,25 +143,25 @@ impl Look<'_> {
     }
 }
 
-fn look(text: &str) -> Look<'_> {
-    let mut look = Look {
+fn prescan(text: &str) -> Prescan<'_> {
+    let mut found = Prescan {
         lines: memchr_iter(b'\n', text.as_bytes()).count(),
-        ..Look::default()
+        ..Prescan::default()
     };
     for (_, line) in logical_lines(text) {
-        match Cleared::of(&line) {
-            Cleared::Vertex(_) => look.counts[0] += 1,
-            Cleared::Texcoord(_) => look.counts[1] += 1,
-            Cleared::Normal(_) => look.counts[2] += 1,
-            Cleared::Material(name) => look.material = Some(Cow::Owned(name.to_owned())),
-            Cleared::Smoothing(group) => look.smoothing = Some(group),
+        match Statement::of(&line) {
+            Statement::Vertex(_) => found.counts[0] += 1,
+            Statement::Texcoord(_) => found.counts[1] += 1,
+            Statement::Normal(_) => found.counts[2] += 1,
+            Statement::Material(name) => found.material = Some(Cow::Owned(name.to_owned())),
+            Statement::Smoothing(group) => found.smoothing = Some(group),
             _ => {}
         }
     }
-    look
+    found
 }
 
-fn read_stretch(text: &str, state: State, total: Counts) -> Result<ObjText, LineError> {
+fn read_chunk(text: &str, state: State, total: Counts) -> Result<ObjText, LineError> {
     let first_line = state.lines;
     let mut reader = LineReader::new(state, total);
     for (number, line) in logical_lines(text) {
@@ -174,7 +174,7 @@ fn read_stretch(text: &str, state: State, total: Counts) -> Result<ObjText, Line
 }
 
 impl ObjText {
-    /// Adds what the next stretch holds; `known` has the numbers of the materials so far.
+    /// Appends the next chunk; `known` holds the indices of the materials so far.
     fn append(&mut self, next: Self, known: &mut HashMap<String, u32>) {
         let mut number = |name: String| {
             *known.entry(name).or_insert_with_key(|name| {

@@ -1,4 +1,4 @@
-//! Tests of reading OBJ text.
+//! Tests of the OBJ parser.
 
 use glam::Vec3;
 
@@ -16,7 +16,7 @@ fn positions(corners: &[Corner; 3]) -> [u32; 3] {
 }
 
 #[test]
-fn lines_continue_behind_a_backslash() {
+fn a_backslash_continues_a_line() {
     let out = good(&format!(
         "# c\n{TRIANGLE}\nf 1 2 \\\n 3\nusemtl\tred stone\nf 1 2 3\n"
     ));
@@ -27,7 +27,7 @@ fn lines_continue_behind_a_backslash() {
 }
 
 #[test]
-fn negative_numbers_count_back() {
+fn negative_indices_count_back() {
     let out = good(&format!("{TRIANGLE}f -3 -2 -1\nv 5 5 5\nf -4 -3 -1"));
     let corners: Vec<_> = out
         .soup
@@ -46,19 +46,19 @@ fn groups_and_missing_normals_are_kept_per_face() {
     let kept = |t: &crate::scene::mesh::soup::Triangle| (t.smoothing, t.corners[0].normal != NONE);
     let kept: Vec<_> = out.soup.triangles.iter().map(kept).collect();
     assert_eq!(kept, [(3, true), (0, false), (0, false)]);
-    assert_eq!(out.dangling, 1, "only the last names what does not exist");
+    assert_eq!(out.dangling, 1, "only the last has an index out of range");
 }
 
 #[test]
 fn bad_faces_name_their_line() {
     for (face, part) in [
         ("f 1 2 9", "does not exist"),
-        ("f 0 1 2", "counts from 1"),
+        ("f 0 1 2", "start at 1"),
         ("f 1 2 -4", "does not exist"),
         ("f 1 2 99999999999999999999999", "not a corner"),
         ("f -9223372036854775808 1 2", "does not exist"),
         ("f 1 2 x", "not a corner"),
-        ("f 1 2 /3", "names no vertex"),
+        ("f 1 2 /3", "has no vertex index"),
         ("f 1/1/1/1 2 3", "more than three"),
         ("v 1 2", "three numbers"),
     ] {
@@ -69,7 +69,7 @@ fn bad_faces_name_their_line() {
 }
 
 #[test]
-fn points_and_lines_are_left_out() {
+fn points_and_lines_are_skipped() {
     let out = good("v 0 0 0\nv 1 0 0 0.5\nv 1.#IND 1 0\nl 1 2\np 1\nf 1 2\nvt 0.5\n");
     assert_eq!(out.not_faces, 3);
     assert_eq!(out.soup.positions[1], Vec3::X);
@@ -83,13 +83,13 @@ fn colours_follow_the_position() {
     assert_eq!(
         out.soup.colours,
         [[1.0; 4], [0.5, 0.25, 1.0, 1.0], [0.1, 0.2, 0.3, 1.0]],
-        "the fourth has no sound colour; the list is filled up later"
+        "the fourth colour is not finite; the list is padded later"
     );
 }
 
-/// The same file read in one and in many stretches.
+/// The same file parsed in one chunk and in four.
 #[test]
-fn stretches_give_what_the_whole_gives() {
+fn chunks_give_what_the_whole_gives() {
     let mut text = String::new();
     for i in 0..60_000 {
         let colour = if i % 3 == 0 { " 0.5 0.5 0.5" } else { "" };
@@ -102,7 +102,7 @@ fn stretches_give_what_the_whole_gives() {
             _ => text += "f -3/-1 -2/-1 -1/-1\nl 1 2\n",
         }
     }
-    assert!(text.len() > 3 * SHORTEST, "{}", text.len());
+    assert!(text.len() > 3 * MIN_CHUNK, "{}", text.len());
     let (whole, parts) = (read(&text, 1).expect("good"), read(&text, 4).expect("good"));
     assert_eq!(cut(&text, 4).len(), 4);
     assert_eq!(whole.soup.triangles, parts.soup.triangles);

@@ -1,25 +1,25 @@
-//! Textures: sRGB colours or plain numbers as bytes, and their mip levels filtered in linear light.
+//! Textures: sRGB colours or linear values as bytes, and their mip levels filtered in linear light.
 
-pub(in crate::scene) mod normal_map;
-pub(in crate::scene) mod picture;
+pub mod normal_map;
+pub mod picture;
 
 use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
-/// What the bytes of a [`Texture`] mean; alpha is always linear.
+/// Encoding of the red, green and blue of a [`Texture`]; alpha is always linear.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Encoding {
-    /// Red, green and blue are sRGB-encoded colours.
+    /// sRGB.
     Srgb,
-    /// They are numbers as they stand: normals of a normal map, 0..255 for −1..1.
+    /// Linear: normals of a normal map, 0..255 for −1..1.
     Linear,
 }
 
-/// A picture, or one mip level of it: RGBA, rows from the top, no padding.
+/// A picture or one of its mip levels: RGBA, rows from the top, no padding.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Texture {
-    /// File name, for messages and debug labels.
+    /// File name, for messages and debug names.
     pub name: String,
     /// Texels in a row, at least 1.
     pub width: u32,
@@ -27,13 +27,13 @@ pub struct Texture {
     pub height: u32,
     /// `4 * width * height` bytes.
     pub rgba8: Vec<u8>,
-    /// What they mean.
+    /// Encoding of the bytes.
     pub encoding: Encoding,
 }
 
 impl Texture {
-    /// All mip levels below this one, down to 1 x 1: each texel is the average, in linear light, of the texels that it
-    /// covers in the level above.
+    /// All mip levels below this one, down to 1 x 1. Each texel is the average, in linear light, of the texels that it covers
+    /// in the level above.
     pub fn mip_levels(&self) -> Vec<Texture> {
         let mut levels: Vec<Texture> = Vec::new();
         loop {
@@ -58,7 +58,7 @@ impl Texture {
     }
 }
 
-/// The next mip level: half the size, rounded down. An odd edge is shared between its two neighbours by area.
+/// The next mip level: half the size, rounded down. With an odd size, texels that straddle two are shared by area.
 fn halve(above: &Texture) -> Texture {
     let (width, height) = ((above.width / 2).max(1), (above.height / 2).max(1));
     let mut rgba8 = Vec::with_capacity(4 * width as usize * height as usize);
@@ -80,7 +80,7 @@ fn halve(above: &Texture) -> Texture {
             let [r, g, b, a] = sum;
             let plain = |v: f32| (v * 255.0).round() as u8;
             let byte = |v: f32| match above.encoding {
-                Encoding::Srgb => encode(v),
+                Encoding::Srgb => srgb8_from_linear(v),
                 Encoding::Linear => plain(v),
             };
             rgba8.extend([byte(r), byte(g), byte(b), plain(a)]);
@@ -95,7 +95,7 @@ fn halve(above: &Texture) -> Texture {
     }
 }
 
-/// The up to three texels above that texel `i` of `small` covers, with weights that sum to 1.
+/// The up to three of `large` texels that texel `i` of `small` covers, with weights that sum to 1.
 fn footprint(i: u32, large: u32, small: u32) -> [(u32, f32); 3] {
     let ratio = f64::from(large) / f64::from(small);
     let (start, end) = (f64::from(i) * ratio, f64::from(i + 1) * ratio);
@@ -113,7 +113,7 @@ fn footprint(i: u32, large: u32, small: u32) -> [(u32, f32); 3] {
     })
 }
 
-/// IEC 61966-2-1 as tables: `linear` decodes, `threshold[v]` is the light above which byte `v` becomes `v + 1`.
+/// IEC 61966-2-1 as tables: `linear` decodes; `threshold[v]` is the linear value above which byte `v` becomes `v + 1`.
 struct Codec {
     linear: [f32; 256],
     threshold: [f32; 255],
@@ -133,13 +133,13 @@ fn decode(signal: f64) -> f64 {
     }
 }
 
-/// Linear light, 0..1, of an sRGB-encoded value, 0..1.
-pub(in crate::scene) fn light(signal: f32) -> f32 {
+/// IEC 61966-2-1, section 5.2: sRGB signal to linear light, both 0..1.
+pub fn linear_from_srgb(signal: f32) -> f32 {
     decode(f64::from(signal)) as f32
 }
 
-/// The byte whose light is nearest in the signal, for light 0..1.
-pub(in crate::scene) fn encode(light: f32) -> u8 {
+/// The sRGB byte nearest to linear light 0..1.
+pub fn srgb8_from_linear(light: f32) -> u8 {
     CODEC
         .threshold
         .partition_point(|threshold| *threshold < light) as u8
@@ -166,9 +166,16 @@ mod tests {
     #[test]
     fn encoding_undoes_decoding() {
         for v in 0..=255u8 {
-            assert_eq!(encode(CODEC.linear[usize::from(v)]), v);
+            assert_eq!(srgb8_from_linear(CODEC.linear[usize::from(v)]), v);
         }
-        assert_eq!((encode(-1.0), encode(2.0), encode(f32::NAN)), (0, 255, 0));
+        assert_eq!(
+            (
+                srgb8_from_linear(-1.0),
+                srgb8_from_linear(2.0),
+                srgb8_from_linear(f32::NAN)
+            ),
+            (0, 255, 0)
+        );
     }
 
     #[test]
@@ -198,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn a_constant_stays_and_odd_edges_lose_no_light() {
+    fn a_constant_stays_and_odd_sizes_lose_no_light() {
         let grey = texture(7, 5, |_, _| [90, 120, 3, 255]);
         assert!(
             grey.mip_levels()

@@ -1,11 +1,11 @@
-//! Normal maps: tangents for them, and heights turned into them.
+//! Normal maps: the tangents that they need, and conversion from height maps.
 
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 use glam::Vec3;
 
-/// Corners of triangles as MikkTSpace wants them: three after each other for a triangle.
+/// Corners of triangles as MikkTSpace expects them, three for each triangle.
 #[derive(Debug, Default)]
-pub(in crate::scene) struct Corners {
+pub struct TangentInput {
     pub positions: Vec<[f32; 3]>,
     pub normals: Vec<[f32; 3]>,
     pub texcoords: Vec<[f32; 2]>,
@@ -13,11 +13,11 @@ pub(in crate::scene) struct Corners {
     pub tangents: Vec<[f32; 4]>,
 }
 
-impl Corners {
-    /// Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited": the tangents that makers of normal maps agree on.
+impl TangentInput {
+    /// Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited": the tangents that programs that bake normal maps use.
     pub fn compute_tangents(&mut self) {
         self.tangents = vec![[0.0; 4]; self.positions.len()];
-        // It fails only where there are no faces.
+        // Fails only without faces.
         let _ = generate_tangents(self);
         for (tangent, normal) in self.tangents.iter_mut().zip(&self.normals) {
             *tangent = sound_tangent(*tangent, Vec3::from(*normal));
@@ -25,8 +25,8 @@ impl Corners {
     }
 }
 
-/// A unit tangent at right angles to `normal`, with a sign; any one where the given one is unusable.
-pub(in crate::scene) fn sound_tangent([x, y, z, w]: [f32; 4], normal: Vec3) -> [f32; 4] {
+/// A unit tangent at right angles to `normal`, and the sign of the bitangent; an arbitrary one if the given one is unusable.
+pub fn sound_tangent([x, y, z, w]: [f32; 4], normal: Vec3) -> [f32; 4] {
     let given = Vec3::new(x, y, z);
     let flat = given - normal * normal.dot(given);
     let unit = if flat.is_finite() && flat.length_squared() > 1e-8 {
@@ -37,7 +37,7 @@ pub(in crate::scene) fn sound_tangent([x, y, z, w]: [f32; 4], normal: Vec3) -> [
     unit.extend(if w < 0.0 { -1.0 } else { 1.0 }).to_array()
 }
 
-impl Geometry for Corners {
+impl Geometry for TangentInput {
     fn num_faces(&self) -> usize {
         self.positions.len() / 3
     }
@@ -65,27 +65,22 @@ impl Geometry for Corners {
     }
 }
 
-/// Whether a picture (RGBA) holds heights: grey everywhere. A normal map is bluish.
-pub(in crate::scene) fn is_height_field(rgba8: &[u8]) -> bool {
+/// Whether a picture (RGBA) is a height map: grey everywhere. A normal map is bluish.
+pub fn is_height_field(rgba8: &[u8]) -> bool {
     rgba8
         .chunks_exact(4)
         .all(|t| t[0].abs_diff(t[1]) <= 2 && t[1].abs_diff(t[2]) <= 2)
 }
 
-/// The normal map of a repeating height map (RGBA, grey): white is `strength` texels high.
-pub(in crate::scene) fn normals_from_heights(
-    rgba8: &[u8],
-    width: u32,
-    height: u32,
-    strength: f32,
-) -> Vec<u8> {
+/// The normal map of a repeating height map (RGBA, grey) in which white is `strength` texels high.
+pub fn normals_from_heights(rgba8: &[u8], width: u32, height: u32, strength: f32) -> Vec<u8> {
     let (w, h) = (width as usize, height as usize);
     let at = |x: usize, y: usize| f32::from(rgba8[4 * (y % h * w + x % w)]) / 255.0 * strength;
     let mut normals = Vec::with_capacity(rgba8.len());
     for y in 0..h {
         for x in 0..w {
             let slope_x = 0.5 * (at(x + 1, y) - at(x + w - 1, y));
-            // Rows run downward, the green of a normal map points upward.
+            // Rows run downward; the green channel points upward.
             let slope_y = 0.5 * (at(x, y + h - 1) - at(x, y + 1));
             let n = Vec3::new(-slope_x, -slope_y, 1.0).normalize();
             let byte = |v: f32| ((0.5 * v + 0.5) * 255.0).round() as u8;
@@ -102,7 +97,7 @@ mod tests {
     #[test]
     fn tangents_follow_the_texture() {
         // A square on the floor whose u runs along -z.
-        let mut corners = Corners {
+        let mut corners = TangentInput {
             positions: vec![[0.0; 3], [0.0, 0.0, -1.0], [-1.0, 0.0, -1.0]],
             normals: vec![[0.0, 1.0, 0.0]; 3],
             texcoords: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]],

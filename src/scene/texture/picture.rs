@@ -1,4 +1,4 @@
-//! Pictures of any common format, bounded before they are decoded, as the textures of a scene.
+//! Decoding of pictures of all common formats into the textures of a scene, with limits that are checked before decoding.
 
 use std::collections::HashMap;
 use std::io::Cursor;
@@ -9,59 +9,61 @@ use std::rc::Rc;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
 use crate::scene::LoadOptions;
+use crate::scene::error::one_line;
 use crate::scene::files::Files;
 use crate::scene::texture::normal_map::{is_height_field, normals_from_heights};
-use crate::scene::texture::{Encoding, Texture, encode};
+use crate::scene::texture::{Encoding, Texture, srgb8_from_linear};
 
-/// Which channel of a picture is the mask of a cut-out (MTL `-imfchan`).
+/// Channel of a picture that is the mask of a cut-out (MTL `-imfchan`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub(in crate::scene) enum Channel {
-    /// Alpha if the picture has any, else luminance.
+pub enum Channel {
+    /// Alpha if the picture has any, else the mean of red, green and blue.
     #[default]
     Automatic,
     /// Red, green, blue or alpha: 0..3.
     Number(u8),
 }
 
-/// What a texture is made of: the same wish gives the same texture.
+/// What a texture is made of: equal keys give the same texture.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub(in crate::scene) enum Wanted {
-    /// A colour; its alpha is 1.
+pub enum TextureKey {
+    /// Colours; alpha becomes 1.
     Colour(PathBuf),
-    /// A colour with the alpha of the picture.
+    /// Colours with the alpha of the picture.
     ColourAndAlpha(PathBuf),
-    /// The alpha from the second picture; without a first one the colour is white.
+    /// Colours of the first picture (white without one), alpha from a channel of the second.
     Masked(Option<PathBuf>, PathBuf, Channel),
-    /// Numbers as they stand: a normal map, or a height map (its slopes multiplied by the `f32` of these bits) turned into one.
+    /// A normal map, or a height map that is converted into one; the `f32` of these bits is a factor on its slopes.
     Normals(PathBuf, u32),
 }
 
-/// Makes each texture once and bounds what all of them may take.
+/// Makes each texture once and bounds their memory and the work of decoding.
 #[derive(Debug)]
-pub(in crate::scene) struct TextureStore {
+pub struct TextureStore {
     max_edge: u32,
     bytes_left: u64,
-    /// Texels that may still be decoded, in bytes: also for pictures that fail in the end, and for those that are no textures.
+    /// Bytes that may still be decoded, for pictures that fail or are not textures too.
     effort_left: u64,
-    known: HashMap<Wanted, Option<usize>>,
-    /// Pictures inside of models, by the names that the reader of the model made up for them.
-    inner: HashMap<PathBuf, Inner>,
+    known: HashMap<TextureKey, Option<usize>>,
+    /// Pictures embedded in models, by the names that the importer gave them.
+    embedded: HashMap<PathBuf, EmbeddedImage>,
     means: HashMap<PathBuf, Result<[f32; 3], String>>,
 }
 
-/// A picture inside of a model.
+/// A picture embedded in a model.
 #[derive(Debug)]
-pub(in crate::scene) struct Inner {
-    /// What it is a part of; many may be parts of the same.
+pub struct EmbeddedImage {
+    /// The buffer that holds it, which pictures may share.
     pub bytes: Rc<Vec<u8>>,
-    /// Which part.
+    /// Its bytes in the buffer.
     pub range: Range<usize>,
 }
 
-/// Times the bytes of all textures that decoding may take: nobody waits for thousands of pictures that fail.
+/// Budget of decoding as a multiple of the texture limit: bounds the work for thousands of pictures that fail.
 const EFFORT: u64 = 4;
 
-const PLAIN: &str = "; drawn in its plain colour";
+/// End of the warning about a picture that cannot be used.
+const WITHOUT: &str = "; drawn without it";
 
 impl TextureStore {
     pub fn new(options: &LoadOptions) -> Self {
@@ -71,54 +73,54 @@ impl TextureStore {
             effort_left: options.max_texture_bytes.saturating_mul(EFFORT),
             means: HashMap::new(),
             known: HashMap::new(),
-            inner: HashMap::new(),
+            embedded: HashMap::new(),
         }
     }
 
-    /// Makes a picture inside of a model known as `name`.
-    pub fn insert(&mut self, name: PathBuf, picture: Inner) {
-        self.inner.insert(name, picture);
+    /// Registers a picture embedded in a model under a name.
+    pub fn insert(&mut self, name: PathBuf, picture: EmbeddedImage) {
+        self.embedded.insert(name, picture);
     }
 
-    /// The number of the texture in `textures`. None if it failed before; an error says why the first time.
+    /// Index of the texture in `textures`; none if it failed before. The first failure is an error.
     pub fn get(
         &mut self,
         files: &Files,
-        wanted: Wanted,
+        key: TextureKey,
         textures: &mut Vec<Texture>,
     ) -> Result<Option<usize>, String> {
-        if let Some(known) = self.known.get(&wanted) {
+        if let Some(known) = self.known.get(&key) {
             return Ok(*known);
         }
-        let made = self.make(files, &wanted);
-        let number = made.as_ref().ok().map(|_| textures.len());
-        self.known.insert(wanted, number);
+        let made = self.make(files, &key);
+        let index = made.as_ref().ok().map(|_| textures.len());
+        self.known.insert(key, index);
         textures.push(made?);
-        Ok(number)
+        Ok(index)
     }
 
-    fn make(&mut self, files: &Files, wanted: &Wanted) -> Result<Texture, String> {
-        match wanted {
-            Wanted::Colour(path) => {
+    fn make(&mut self, files: &Files, key: &TextureKey) -> Result<Texture, String> {
+        match key {
+            TextureKey::Colour(path) => {
                 let mut texture = self.colours(files, path)?;
                 texture.rgba8.chunks_exact_mut(4).for_each(|t| t[3] = 255);
                 Ok(texture)
             }
-            Wanted::ColourAndAlpha(path) => self.colours(files, path),
-            Wanted::Masked(colour, mask, channel) => {
+            TextureKey::ColourAndAlpha(path) => self.colours(files, path),
+            TextureKey::Masked(colour, mask, channel) => {
                 let mask = self.colours(files, mask)?;
-                // A colour that fails leaves white: the holes are still right.
+                // Without the colour the mask still cuts out the right holes.
                 let colour = colour.as_ref().and_then(|p| self.colours(files, p).ok());
                 Ok(masked(colour, mask, *channel))
             }
-            Wanted::Normals(path, strength) => {
+            TextureKey::Normals(path, strength) => {
                 let image = self.decode(files, path)?;
                 Ok(normals(name_of(path), image, f32::from_bits(*strength)))
             }
         }
     }
 
-    /// The mean red, green and blue of a picture that is no texture by itself, 0..1 as they stand.
+    /// Mean red, green and blue of a picture, 0..1 as encoded.
     pub fn mean(&mut self, files: &Files, path: &Path) -> Result<[f32; 3], String> {
         if let Some(mean) = self.means.get(path) {
             return mean.clone();
@@ -156,24 +158,24 @@ impl TextureStore {
 
     fn decode(&mut self, files: &Files, path: &Path) -> Result<DynamicImage, String> {
         let read;
-        let bytes = match self.inner.get(path) {
-            Some(Inner { bytes, range }) => &bytes[range.clone()],
+        let bytes = match self.embedded.get(path) {
+            Some(EmbeddedImage { bytes, range }) => &bytes[range.clone()],
             None if !files.has(path) => {
-                return Err(format!("texture {} is missing{PLAIN}", path.display()));
+                return Err(format!("texture {} is missing{WITHOUT}", path.display()));
             }
             None => {
                 read = files
                     .read(path)
-                    .map_err(|error| format!("texture {error}{PLAIN}"))?;
+                    .map_err(|error| format!("texture {error}{WITHOUT}"))?;
                 &read
             }
         };
-        let fails = |what: String| format!("texture {} {what}{PLAIN}", name_of(path));
+        let fails = |what: String| format!("texture {} {what}{WITHOUT}", name_of(path));
         let (decoder, size) =
             open_bounded(path, bytes, self.max_edge, self.bytes_left).map_err(fails)?;
         let left = self.effort_left.checked_sub(size);
         self.effort_left = left.ok_or_else(|| {
-            fails("is one picture too many to decode; raise --max-texture-mib".to_owned())
+            fails("exceeds the limit on decoding pictures; raise --max-texture-mib".to_owned())
         })?;
         let image = DynamicImage::from_decoder(decoder).map_err(|e| fails(undecodable(&e)))?;
         self.bytes_left -= size;
@@ -190,7 +192,7 @@ fn undecodable(error: &image::ImageError) -> String {
     format!("cannot be decoded ({})", one_line(&error.to_string()))
 }
 
-/// A picture whose header is read, and the bytes that it takes as a texture. Refuses by the header alone what is too large.
+/// Reads the header of a picture and checks its size. Returns the decoder and the bytes that the texture will take.
 fn open_bounded<'b>(
     path: &Path,
     bytes: &'b [u8],
@@ -199,25 +201,25 @@ fn open_bounded<'b>(
 ) -> Result<(impl ImageDecoder + 'b, u64), String> {
     let unreadable = |error: image::ImageError| undecodable(&error);
     let mut reader = ImageReader::new(Cursor::new(bytes));
-    // The content decides; TGA alone has no signature, so there the name does.
+    // The content decides the format; only TGA has no signature, so there the name decides.
     match image::guess_format(bytes)
         .ok()
         .or_else(|| ImageFormat::from_path(path).ok())
     {
         Some(format) => reader.set_format(format),
-        None => return Err("is in no known format (use PNG or JPEG)".to_owned()),
+        None => return Err("has an unknown format; convert it to PNG or JPEG".to_owned()),
     }
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(max_edge);
     limits.max_image_height = Some(max_edge);
-    // Decoders of 16 and 32 bit a channel need more than the result does.
+    // Decoders of 16 and 32 bits a channel need more memory than the result.
     limits.max_alloc = Some(bytes_left.saturating_mul(4));
     reader.limits(limits);
     let decoder = reader.into_decoder().map_err(unreadable)?;
     let (width, height) = decoder.dimensions();
     let size = 4 * u64::from(width) * u64::from(height);
     if width == 0 || height == 0 {
-        return Err("has no texels".to_owned());
+        return Err("is empty".to_owned());
     }
     if width.max(height) > max_edge {
         return Err(format!(
@@ -232,16 +234,16 @@ fn open_bounded<'b>(
     Ok((decoder, size))
 }
 
-/// Eight bits a channel, sRGB. Float pictures (HDR) hold linear light and are encoded; all others are sRGB already.
+/// Eight bits a channel, sRGB. Float pictures (HDR) are linear and get encoded; all others are sRGB already.
 fn to_srgb8(image: DynamicImage) -> Vec<u8> {
     match image {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
             let texels = image.into_rgba32f();
             let byte = |v: &[f32; 4]| {
                 [
-                    encode(v[0]),
-                    encode(v[1]),
-                    encode(v[2]),
+                    srgb8_from_linear(v[0]),
+                    srgb8_from_linear(v[1]),
+                    srgb8_from_linear(v[2]),
                     (v[3].clamp(0.0, 1.0) * 255.0).round() as u8,
                 ]
             };
@@ -269,7 +271,7 @@ fn normals(name: String, image: DynamicImage, strength: f32) -> Texture {
     }
 }
 
-/// The colour with the mask as its alpha, each taken at the size of the colour, or of the mask if there is no colour.
+/// The colour with the mask as alpha, in the size of the colour, or of the mask if there is no colour.
 fn masked(colour: Option<Texture>, mask: Texture, channel: Channel) -> Texture {
     let mut colour = colour.unwrap_or_else(|| Texture {
         rgba8: vec![255; mask.rgba8.len()],
@@ -279,7 +281,7 @@ fn masked(colour: Option<Texture>, mask: Texture, channel: Channel) -> Texture {
     let pick = |t: &[u8]| match channel {
         Channel::Number(i) => t[usize::from(i.min(3))],
         Channel::Automatic if has_alpha => t[3],
-        // Masks are drawn in black and white: the mean serves as well as a luminance.
+        // Masks are grey: the mean serves as well as the luminance.
         Channel::Automatic => ((u16::from(t[0]) + u16::from(t[1]) + u16::from(t[2])) / 3) as u8,
     };
     let nearest =
@@ -293,10 +295,6 @@ fn masked(colour: Option<Texture>, mask: Texture, channel: Channel) -> Texture {
         }
     }
     colour
-}
-
-fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]
@@ -314,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn masks_become_alpha_at_the_size_of_the_colour() {
+    fn masks_become_alpha_in_the_size_of_the_colour() {
         let mask = texture(2, &[[0, 0, 0, 255], [255, 255, 255, 255]]);
         let red = texture(4, &[[200, 0, 0, 255]; 8]);
         let both = masked(Some(red), mask.clone(), Channel::Automatic);
@@ -326,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mask_with_alpha_means_its_alpha() {
+    fn the_alpha_of_a_mask_counts_if_it_has_any() {
         let mask = texture(2, &[[9, 9, 9, 0], [9, 9, 9, 255]]);
         let both = masked(None, mask.clone(), Channel::Automatic);
         assert_eq!((both.rgba8[3], both.rgba8[7]), (0, 255));

@@ -1,10 +1,12 @@
-//! The clock that advances the time of day.
+//! The clock of the window: time that passes while one looks.
 
-use chrono::TimeDelta;
+use chrono::{Datelike, TimeDelta};
 
+use crate::daylight::place::Place;
+use crate::daylight::sun_position::YEARS;
 use crate::settings::SunInput;
 
-/// Speeds to choose from: simulated seconds per second.
+/// Speeds to choose from: seconds of the sun's time per second of the user's.
 pub(super) const SPEEDS: [(f64, &str); 4] = [
     (60.0, "1 min/s"),
     (600.0, "10 min/s"),
@@ -12,11 +14,11 @@ pub(super) const SPEEDS: [(f64, &str); 4] = [
     (86_400.0, "1 day/s"),
 ];
 
-/// Whether and how fast the time of day advances.
+/// Whether time passes, and how fast.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Clock {
     runs: bool,
-    /// Simulated seconds per second.
+    /// Seconds of the sun's time per second of the user's.
     pub(super) speed: f64,
 }
 
@@ -35,17 +37,17 @@ impl Clock {
         self.runs = !self.runs;
     }
 
-    /// Whether the clock is running.
+    /// Whether it runs.
     pub(super) fn is_on(&self) -> bool {
         self.runs
     }
 
-    /// Whether the clock moves this sun; a direction has no time.
+    /// Whether it runs and moves this sun: a direction has no time.
     pub(super) fn is_running(&self, sun: &SunInput) -> bool {
         self.runs && !matches!(sun, SunInput::Direction { .. })
     }
 
-    /// Advances the sun's time by `seconds` of real time.
+    /// Moves the sun by `seconds` of the user's time.
     pub(super) fn advance(&self, sun: &mut SunInput, seconds: f64) {
         if self.is_running(sun) {
             shift(sun, seconds * self.speed);
@@ -53,13 +55,28 @@ impl Clock {
     }
 }
 
-/// Shifts the sun's time by `seconds`; a direction does not change.
+/// Moves the sun's time by `seconds`, within [`YEARS`]; a direction stays. A clock that shows the time of the place changes to
+/// and from summer time.
 pub(in crate::commands::view) fn shift(sun: &mut SunInput, seconds: f64) {
     match sun {
-        SunInput::Place { when, .. } => {
-            let milliseconds = (seconds * 1e3) as i64;
-            if let Some(later) = when.checked_add_signed(TimeDelta::milliseconds(milliseconds)) {
-                *when = later;
+        SunInput::Place {
+            latitude,
+            longitude,
+            when,
+        } => {
+            let (latitude, longitude) = (*latitude, *longitude);
+            let zone = Place {
+                latitude,
+                longitude,
+            }
+            .zone();
+            let later = when.checked_add_signed(TimeDelta::milliseconds((seconds * 1e3) as i64));
+            if let Some(later) = later.filter(|later| YEARS.contains(&later.year())) {
+                *when = if zone.has_offset_of(*when) {
+                    zone.clock(later)
+                } else {
+                    later
+                };
             }
         }
         SunInput::Solar { day, hours, .. } => {
@@ -95,6 +112,34 @@ mod tests {
         };
         assert_eq!(day, 365);
         assert!((hours - 23.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_clock_keeps_summer_time_where_it_shows_the_time_of_the_place() {
+        let shifted = |when: &str, seconds: f64| {
+            let mut sun = SunInput::Place {
+                latitude: 55.79,
+                longitude: 12.52,
+                when: chrono::DateTime::parse_from_rfc3339(when).expect("a moment"),
+            };
+            shift(&mut sun, seconds);
+            let SunInput::Place { when, .. } = sun else {
+                panic!("{sun:?}")
+            };
+            when.to_rfc3339()
+        };
+        let day = 86_400.0;
+        assert_eq!(
+            shifted("2026-10-24T15:00:00+02:00", day),
+            "2026-10-25T14:00:00+01:00"
+        );
+        // Another clock goes on as it is.
+        assert_eq!(
+            shifted("2026-10-24T15:00:00+05:00", day),
+            "2026-10-25T15:00:00+05:00"
+        );
+        let last = "3000-12-31T23:00:00+01:00";
+        assert_eq!(shifted(last, day), last);
     }
 
     #[test]

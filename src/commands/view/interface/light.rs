@@ -6,7 +6,7 @@ use super::choice;
 use crate::commands::light::conditions;
 use crate::commands::view::document::Document;
 use crate::daylight::irradiance::IrradianceMethod;
-use crate::daylight::refinement::Refinement;
+use crate::daylight::sample_count::ErrorEstimate;
 use crate::daylight::sky::Conditions;
 
 /// Shadow map resolutions to choose from, texels.
@@ -15,7 +15,7 @@ const SHADOW_SIZES: [u32; 4] = [1024, 2048, 4096, 8192];
 /// Estimated error of the sky irradiance, cached by the conditions that it belongs to.
 #[derive(Default)]
 pub(super) struct Readout {
-    estimate: Option<(Conditions, Refinement)>,
+    estimate: Option<(Conditions, ErrorEstimate)>,
     error: Option<(u32, f64)>,
 }
 
@@ -66,16 +66,16 @@ impl Readout {
         let now = conditions(&document.job.settings, &document.job.sun);
         if self.estimate.as_ref().is_none_or(|(of, _)| *of != now) {
             let daylight = &document.job.daylight;
-            let refinement = Refinement::new(|direction| daylight.radiance(direction));
-            (self.estimate, self.error) = (Some((now, refinement)), None);
+            let estimate = ErrorEstimate::new(|direction| daylight.radiance(direction));
+            (self.estimate, self.error) = (Some((now, estimate)), None);
         }
-        let (Some((_, refinement)), None) = (&self.estimate, self.error.filter(|e| e.0 == done))
+        let (Some((_, estimate)), None) = (&self.estimate, self.error.filter(|e| e.0 == done))
         else {
             return self.error.map_or(0.0, |e| e.1);
         };
         let error = match method {
-            IrradianceMethod::MonteCarlo => refinement.monte_carlo_error(done.max(1)),
-            _ => refinement.quasi_error(done.max(1)),
+            IrradianceMethod::MonteCarlo => estimate.monte_carlo_error(done.max(1)),
+            _ => estimate.quasi_error(done.max(1)),
         };
         self.error = Some((done, error));
         error

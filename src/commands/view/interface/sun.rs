@@ -1,34 +1,39 @@
 //! Position of the sun: by place and time, by solar time, or as a direction.
 
-use chrono::{
-    DateTime, Datelike, FixedOffset, NaiveDate, NaiveDateTime, NaiveTime, TimeDelta, Timelike,
-};
-use egui::{Color32, DragValue, Response, Slider, TextEdit, Ui, pos2, vec2};
+use chrono::{DateTime, Datelike, FixedOffset, NaiveDate, NaiveDateTime, NaiveTime, Timelike};
+use egui::{Color32, DragValue, Key, Response, Slider, TextEdit, Ui, pos2, vec2};
 
 use super::clock::{Clock, SPEEDS};
 use crate::commands::view::document::Document;
 use crate::commands::view::style;
 use crate::daylight::cities;
-use crate::daylight::sun_position::{SunEvents, SunPosition, sun_events};
+use crate::daylight::moment::default_moment;
+use crate::daylight::place::{Axis, Place, Zone};
+use crate::daylight::sun_position::{SunEvents, SunPosition, YEARS, sun_events};
 use crate::settings::{Settings, SunInput};
 
 /// Most cities that a search lists.
-const MOST_FOUND: usize = 8;
-/// Distance within which a city names the place, km.
+const MAX_FOUND: usize = 8;
+/// A place within this distance of a city is named after it, km.
 const NEAR_KM: f64 = 30.0;
 
-/// The search for a place.
+/// The field in which a place is searched.
 #[derive(Debug, Default)]
-pub(super) struct Place {
+pub(super) struct PlaceField {
     text: String,
-    /// Sunrise, noon and sunset, cached by day.
+    /// Sunrise, noon and sunset of the day for which they were computed last.
     events: Option<(Day, SunEvents)>,
 }
 
 /// A calendar day somewhere: date, UTC offset (s), latitude and longitude (bits).
 type Day = (NaiveDate, i32, [u64; 2]);
 
-pub(super) fn show(ui: &mut Ui, document: &mut Document, place: &mut Place, clock: &mut Clock) {
+pub(super) fn show(
+    ui: &mut Ui,
+    document: &mut Document,
+    field: &mut PlaceField,
+    clock: &mut Clock,
+) {
     let sun = document.job.sun;
     let settings = &mut document.job.settings;
     kind(ui, settings, &sun);
@@ -38,11 +43,15 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, place: &mut Place, cloc
             longitude,
             when,
         } => {
-            place.search(ui, latitude, longitude, when);
-            date(ui, when);
-            let events = place.events(*when, *latitude, *longitude);
-            day(ui, when, events.as_ref());
-            playback(ui, clock);
+            field.show(ui, latitude, longitude, when);
+            let place = Place {
+                latitude: *latitude,
+                longitude: *longitude,
+            };
+            date(ui, when, place.zone());
+            let events = field.events(*when, place);
+            time_of_day(ui, when, place.zone(), events.as_ref());
+            clock_buttons(ui, clock);
             if let Some(events) = &events {
                 ui.weak(events_text(events));
             }
@@ -59,7 +68,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, place: &mut Place, cloc
             );
             ui.add(Slider::new(day, 1..=365).text("day of the year"));
             ui.add(Slider::new(hours, 0.0..=24.0).text("solar time, h"));
-            playback(ui, clock);
+            clock_buttons(ui, clock);
         }
         SunInput::Direction {
             azimuth_deg,
@@ -83,13 +92,14 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, place: &mut Place, cloc
     ));
 }
 
-/// Switches between the three ways to set the sun, keeping as much as possible.
+/// Switches between the three kinds of input, keeping what they share.
 fn kind(ui: &mut Ui, settings: &mut Settings, sun: &SunPosition) {
     let now = std::mem::discriminant(&settings.sun);
+    let default = Place::default();
     let place = SunInput::Place {
-        latitude: 55.79,
-        longitude: 12.52,
-        when: default_moment(),
+        latitude: default.latitude,
+        longitude: default.longitude,
+        when: default_moment(default),
     };
     let solar = solar_of(&settings.sun);
     let direction = SunInput::Direction {
@@ -108,17 +118,6 @@ fn kind(ui: &mut Ui, settings: &mut Settings, sun: &SunPosition) {
             }
         }
     });
-}
-
-fn default_moment() -> DateTime<FixedOffset> {
-    let date = NaiveDate::from_ymd_opt(2026, 6, 21).unwrap_or_default();
-    moment_at(date, 15.0 * 3600.0, FixedOffset::east_opt(7200))
-}
-
-fn moment_at(date: NaiveDate, seconds: f64, offset: Option<FixedOffset>) -> DateTime<FixedOffset> {
-    let offset = offset.unwrap_or(FixedOffset::east_opt(0).unwrap_or_else(|| unreachable!("UTC")));
-    let local = date.and_time(NaiveTime::MIN) + TimeDelta::milliseconds((seconds * 1e3) as i64);
-    DateTime::from_naive_utc_and_offset(local - offset, offset)
 }
 
 /// The same day, time and latitude in solar time.
@@ -144,8 +143,36 @@ fn solar_of(sun: &SunInput) -> SunInput {
     }
 }
 
-impl Place {
-    fn search(
+/// What a text in the field may mean: the coordinates that it holds, the cities that it finds, or the one spelled most like it.
+fn suggestions(text: &str) -> Vec<(String, Place)> {
+    if text.trim().is_empty() {
+        return Vec::new();
+    }
+    if text.contains(|c: char| c.is_ascii_digit()) {
+        let place = Place::parse(text).ok();
+        return place.map(|p| (p.to_string(), p)).into_iter().collect();
+    }
+    let mut found = cities::search(text);
+    if found.is_empty() {
+        found.push(cities::alike(text));
+    }
+    let named = found.into_iter().map(|city| {
+        let name = format!("{}, {}", city.name, city.country);
+        let (latitude, longitude) = (city.latitude, city.longitude);
+        (
+            name,
+            Place {
+                latitude,
+                longitude,
+            },
+        )
+    });
+    named.take(MAX_FOUND).collect()
+}
+
+impl PlaceField {
+    /// The field with its suggestions, of which Enter takes the first, and the coordinates.
+    fn show(
         &mut self,
         ui: &mut Ui,
         latitude: &mut f64,
@@ -158,32 +185,33 @@ impl Place {
         } else {
             "search for a city".to_owned()
         };
-        ui.add(TextEdit::singleline(&mut self.text).hint_text(hint));
-        if !self.text.trim().is_empty() {
-            for city in cities::search(&self.text).into_iter().take(MOST_FOUND) {
-                let name = format!("{}, {}", city.name, city.country);
-                if ui.selectable_label(false, name).clicked() {
-                    (*latitude, *longitude) = (city.latitude, city.longitude);
-                    // The local time stays: 15:00 there.
-                    *when = city.moment(when.naive_local());
-                    self.text.clear();
-                    break;
-                }
+        let field = ui.add(TextEdit::singleline(&mut self.text).hint_text(hint));
+        let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        let mut chosen = None;
+        for (i, (name, place)) in suggestions(&self.text).into_iter().enumerate() {
+            let is_first = i == 0;
+            if ui.selectable_label(is_first, name).clicked() || (is_first && is_entered) {
+                chosen = Some(place);
             }
         }
+        if let Some(place) = chosen {
+            (*latitude, *longitude) = (place.latitude, place.longitude);
+            // The clock shows the same time, there.
+            *when = place.zone().nearest_moment(when.naive_local());
+            self.text.clear();
+        }
         ui.horizontal(|ui| {
-            coordinate(ui, latitude, 90.0, "° N");
-            coordinate(ui, longitude, 180.0, "° E");
+            coordinate(ui, latitude, 90.0, Axis::Latitude);
+            coordinate(ui, longitude, 180.0, Axis::Longitude);
         });
     }
 
-    /// Sunrise, noon and sunset of the day.
-    fn events(
-        &mut self,
-        when: DateTime<FixedOffset>,
-        latitude: f64,
-        longitude: f64,
-    ) -> Option<SunEvents> {
+    /// Sunrise, noon and sunset of the day; computed once a day.
+    fn events(&mut self, when: DateTime<FixedOffset>, place: Place) -> Option<SunEvents> {
+        let Place {
+            latitude,
+            longitude,
+        } = place;
         let offset = *when.offset();
         let key = (
             when.date_naive(),
@@ -198,50 +226,62 @@ impl Place {
     }
 }
 
-fn coordinate(ui: &mut Ui, degrees: &mut f64, most: f64, suffix: &str) {
+fn coordinate(ui: &mut Ui, degrees: &mut f64, limit: f64, axis: Axis) {
     let value = DragValue::new(degrees)
-        .range(-most..=most)
+        .range(-limit..=limit)
         .speed(0.1)
-        .max_decimals(3)
-        .suffix(suffix);
+        .custom_formatter(move |degrees, _| axis.written(degrees))
+        .custom_parser(move |text| axis.parse(text));
     ui.add(value);
 }
 
 /// The day of the year on a slider, and the year.
-fn date(ui: &mut Ui, when: &mut DateTime<FixedOffset>) {
+fn date(ui: &mut Ui, when: &mut DateTime<FixedOffset>, zone: Zone) {
     let local = when.naive_local();
     let (mut ordinal, mut year) = (local.ordinal(), local.year());
-    let slider = Slider::new(&mut ordinal, 1..=365)
+    let days = if local.date().leap_year() { 366 } else { 365 };
+    let slider = Slider::new(&mut ordinal, 1..=days)
         .show_value(false)
         .text(local.format("%e %B").to_string());
     let mut changed = ui.add(slider).changed();
     ui.horizontal(|ui| {
-        changed |= ui.add(DragValue::new(&mut year).range(1..=3000)).changed();
+        changed |= ui.add(DragValue::new(&mut year).range(YEARS)).changed();
         ui.weak(format!("year, UTC{}", when.offset()));
     });
-    if changed && let Some(date) = NaiveDate::from_yo_opt(year, ordinal) {
-        set_local(when, date.and_time(local.time()));
+    // The last day of a leap year is the last of another.
+    let date = NaiveDate::from_yo_opt(year, ordinal).or(NaiveDate::from_yo_opt(year, 365));
+    if changed && let Some(date) = date {
+        set_local(when, date.and_time(local.time()), zone);
     }
 }
 
-fn set_local(when: &mut DateTime<FixedOffset>, local: NaiveDateTime) {
+/// Sets date and time. A clock that shows the time of the place changes to and from summer time; another keeps its offset.
+fn set_local(when: &mut DateTime<FixedOffset>, local: NaiveDateTime, zone: Zone) {
     let offset = *when.offset();
-    *when = DateTime::from_naive_utc_and_offset(local - offset, offset);
+    *when = if zone.has_offset_of(*when) {
+        zone.nearest_moment(local)
+    } else {
+        Zone::Offset(offset).nearest_moment(local)
+    };
 }
 
-/// The time of day on a slider with marks of sunrise and sunset.
-fn day(ui: &mut Ui, when: &mut DateTime<FixedOffset>, events: Option<&SunEvents>) {
+/// The time of day on a slider with marks at sunrise and sunset.
+fn time_of_day(
+    ui: &mut Ui,
+    when: &mut DateTime<FixedOffset>,
+    zone: Zone,
+    events: Option<&SunEvents>,
+) {
     let local = when.naive_local();
     let mut hours = f64::from(local.time().num_seconds_from_midnight()) / 3600.0;
     let slider = Slider::new(&mut hours, 0.0..=23.99)
         .show_value(false)
         .text(local.format("%H:%M").to_string());
     let response = ui.add(slider);
-    let rail = response.rect;
     if response.changed() {
         let seconds = (hours * 3600.0) as u32;
         if let Some(time) = NaiveTime::from_num_seconds_from_midnight_opt(seconds.min(86_399), 0) {
-            set_local(when, local.date().and_time(time));
+            set_local(when, local.date().and_time(time), zone);
         }
     }
     let date = local.date();
@@ -251,21 +291,16 @@ fn day(ui: &mut Ui, when: &mut DateTime<FixedOffset>, events: Option<&SunEvents>
         .flatten()
         .filter(|e| e.date_naive() == date)
     {
-        mark(
-            ui,
-            rail.left(),
-            &response,
-            event.num_seconds_from_midnight(),
-        );
+        mark(ui, &response, event.num_seconds_from_midnight());
     }
 }
 
 /// A tick under the slider's rail at a time of the day.
-fn mark(ui: &Ui, left: f32, response: &Response, seconds: u32) {
-    // The handle moves within the rail less its own radius at each end.
+fn mark(ui: &Ui, response: &Response, seconds: u32) {
+    // The centre of the handle stays its radius away from both ends of the rail.
     let radius = response.rect.height() / 2.5;
     let width = ui.spacing().slider_width;
-    let x = left + radius + (width - 2.0 * radius) * seconds as f32 / 86_400.0;
+    let x = response.rect.left() + radius + (width - 2.0 * radius) * seconds as f32 / 86_400.0;
     let y = response.rect.bottom();
     let tip = pos2(x, y - 4.0);
     ui.painter().add(egui::Shape::convex_polygon(
@@ -275,8 +310,8 @@ fn mark(ui: &Ui, left: f32, response: &Response, seconds: u32) {
     ));
 }
 
-/// The play button and the speeds.
-fn playback(ui: &mut Ui, clock: &mut Clock) {
+/// Starts and stops the clock, and sets its speed.
+fn clock_buttons(ui: &mut Ui, clock: &mut Clock) {
     ui.horizontal(|ui| {
         let text = if clock.is_on() { "stop" } else { "play" };
         if ui.button(text).clicked() {
@@ -299,4 +334,46 @@ fn events_text(events: &SunEvents) -> String {
         clock(events.noon),
         clock(events.sunset)
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(text: &str) -> Vec<String> {
+        suggestions(text)
+            .into_iter()
+            .map(|(name, _)| name)
+            .collect()
+    }
+
+    #[test]
+    fn a_field_suggests_cities_and_coordinates() {
+        assert_eq!(names("  "), [""; 0]);
+        assert_eq!(names("toky"), ["Tokyo, JP"]);
+        assert_eq!(names("tokio"), ["Tokyo, JP"]);
+        assert_eq!(names("-33.87 N, 151.21"), ["33.87° S, 151.21° E"]);
+        assert_eq!(names("33.87"), [""; 0]);
+        assert_eq!(names("a").len(), MAX_FOUND);
+    }
+
+    #[test]
+    fn sliders_keep_summer_time_and_a_clock_of_the_users_own() {
+        let zone = Zone::parse("Europe/Copenhagen").expect("a zone");
+        let winter = |when: &str| {
+            let mut when = DateTime::parse_from_rfc3339(when).expect("a moment");
+            let date = NaiveDate::from_ymd_opt(2026, 12, 21).expect("a date");
+            let local = date.and_time(when.time());
+            set_local(&mut when, local, zone);
+            when.to_rfc3339()
+        };
+        assert_eq!(
+            winter("2026-06-21T15:00:00+02:00"),
+            "2026-12-21T15:00:00+01:00"
+        );
+        assert_eq!(
+            winter("2026-06-21T15:00:00+05:00"),
+            "2026-12-21T15:00:00+05:00"
+        );
+    }
 }

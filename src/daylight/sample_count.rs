@@ -1,7 +1,7 @@
-//! How many samples a sampled irradiance needs: filtered samples, and the error that they leave.
+//! The samples of the device's irradiance map, and how many of them an error needs.
 //!
-//! The directions are the device's own table, and the lookups are those of its sampler, so the estimate is that of the
-//! map which the device computes; it is made on a coarser cube, which takes milliseconds.
+//! [`filtered_samples`] is the table that the shader reads for `quasi`. [`ErrorEstimate`] applies it with the lookups of the
+//! device's sampler (trilinear, in a cube of 64 texels instead of the device's), in milliseconds on the CPU.
 
 use std::f64::consts::PI;
 
@@ -9,37 +9,37 @@ use glam::DVec3;
 
 use super::colour::luminance;
 use super::cube::CubeMap;
-use super::frame;
 use super::irradiance::IrradianceMethod;
 use super::quadrature::SphereQuadrature;
 use super::sampling::{cosine_hemisphere, hammersley};
+use super::tangent_frame;
 
-/// Coarser levels of a sky cube smear light across the horizon without lowering the error further: eight texels along an
-/// edge are the fewest that are looked up.
+/// Edge of the coarsest mip level that is looked up, texels: coarser ones leak light across the horizon and no longer lower
+/// the error.
 const COARSEST_EDGE: f64 = 8.0;
 /// Edge of the cube on which errors are estimated, texels.
 const ESTIMATE_EDGE: usize = 64;
-/// Lookups are this much finer than the shares, levels: bilinear filtering widens them again. Chosen, as the next
-/// constant, by the error on the reference normals and skies: 0.10 % with 1024 samples, 0.12 % without either.
+/// Subtracted from the mip level of a sample's solid angle, since bilinear filtering widens the lookup. Chosen, with
+/// [`MIN_COSINE`], for the least error on the reference normals and skies: 0.10 % with 1024 samples, 0.12 % without both.
 const LEVEL_BIAS: f64 = 0.125;
-/// Shares grow toward the horizon of the normal; from 45° on they are taken as no wider. Wider lookups around an
-/// upward normal would mix the ground into the brightest part of a low sun's sky.
-const WIDEST_COSINE: f64 = 0.7;
-/// Fewer samples are not worth a pass.
-const FEWEST: u32 = 32;
+/// Least cosine in a sample's solid angle, that of 45°: toward the horizon of the normal the samples grow, and wider lookups
+/// around an upward normal would mix the ground into the brightest part of a low sun's sky.
+const MIN_COSINE: f64 = 0.7;
+/// Least number of samples; fewer do not pay for a pass.
+const MIN_SAMPLES: u32 = 32;
 
-/// A direction around +Z with the solid angle of the hemisphere that it stands for, sr.
+/// A sample direction around +Z with its solid angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Share {
+pub struct FilteredSample {
     /// Unit direction, cosine-weighted.
     pub direction: DVec3,
-    /// 1/(N pdf) = π/(N cos θ), sr, but no more than at 45°.
+    /// 1/(N pdf) = π/(N cos θ), sr, with cos θ at least that of 45°.
     pub solid_angle: f64,
 }
 
-impl Share {
+impl FilteredSample {
     /// Křivánek & Colbert 2008, *Real-time Shading with Filtered Importance Sampling*, eq. 12: the mip level of a cube of
-    /// `edge` texels whose texels are as large as the share.
+    /// `edge` texels whose texels have the solid angle of the sample.
     pub fn level(&self, edge: u32) -> f64 {
         let texel = 4.0 * PI / (6.0 * f64::from(edge) * f64::from(edge));
         let coarsest = (f64::from(edge) / COARSEST_EDGE).log2().max(0.0);
@@ -47,23 +47,23 @@ impl Share {
     }
 }
 
-/// Hammersley's `count` points as cosine-weighted directions, in steps of the golden section, so that the first few
-/// already cover the hemisphere.
-pub fn shares(count: u32) -> Vec<Share> {
+/// Hammersley's `count` points as cosine-weighted directions, permuted by a golden-ratio stride so that every prefix covers
+/// the hemisphere.
+pub fn filtered_samples(count: u32) -> Vec<FilteredSample> {
     let stride = golden_stride(count);
-    let share = |k: u32| {
+    let sample = |k: u32| {
         let index = (u64::from(k) * u64::from(stride) % u64::from(count)) as u32;
         let direction = cosine_hemisphere(hammersley(index, count));
-        let solid_angle = PI / (f64::from(count) * direction.z.max(WIDEST_COSINE));
-        Share {
+        let solid_angle = PI / (f64::from(count) * direction.z.max(MIN_COSINE));
+        FilteredSample {
             direction,
             solid_angle,
         }
     };
-    (0..count).map(share).collect()
+    (0..count).map(sample).collect()
 }
 
-/// The number next below 0.618 `count` that has no divisor in common with it: its multiples visit every index.
+/// The largest number below 0.618 `count` that is coprime to it, so that its multiples visit every index.
 fn golden_stride(count: u32) -> u32 {
     let divisor = |mut a: u32, mut b: u32| {
         while b != 0 {
@@ -86,8 +86,8 @@ pub fn normals() -> impl Iterator<Item = DVec3> {
         .filter_map(DVec3::try_normalize)
 }
 
-/// A sky as the estimate sees it: a cube with its mip levels, and its irradiances.
-pub struct Refinement {
+/// Error of the sampled irradiance of one sky, by number of samples.
+pub struct ErrorEstimate {
     levels: Vec<CubeMap>,
     /// Normals with E, lux.
     exact: Vec<(DVec3, f64)>,
@@ -96,7 +96,7 @@ pub struct Refinement {
     up: f64,
 }
 
-impl Refinement {
+impl ErrorEstimate {
     /// Prepares a radiance, cd/m² in a unit direction.
     pub fn new(radiance: impl Fn(DVec3) -> DVec3) -> Self {
         let mut levels = vec![CubeMap::from_fn(ESTIMATE_EDGE, &radiance)];
@@ -132,9 +132,9 @@ impl Refinement {
 
     /// rms error over the normals of `count` filtered samples, relative to E of the up normal.
     pub fn quasi_error(&self, count: u32) -> f64 {
-        let shares = shares(count);
+        let samples = filtered_samples(count);
         let square = |&(normal, exact): &(DVec3, f64)| {
-            let sum: f64 = shares.iter().map(|s| self.look_up(s, normal)).sum();
+            let sum: f64 = samples.iter().map(|s| self.look_up(s, normal)).sum();
             (sum * PI / f64::from(count) - exact).powi(2)
         };
         let mean = self.exact.iter().map(square).sum::<f64>() / self.exact.len() as f64;
@@ -146,8 +146,8 @@ impl Refinement {
         (self.variance / f64::from(count)).sqrt() / self.up
     }
 
-    /// The fewest samples, in powers of two and at most `most`, that leave no larger error. Methods that do not sample
-    /// need one.
+    /// Least number of samples, a power of two or `most`, whose error (relative to E of the up normal) is at most `error`; 1
+    /// for methods that do not sample.
     pub fn samples(&self, method: IrradianceMethod, error: f64, most: u32) -> u32 {
         let enough = |count: u32| match method {
             IrradianceMethod::MonteCarlo => self.monte_carlo_error(count) <= error,
@@ -157,15 +157,15 @@ impl Refinement {
         if !method.is_sampled() || self.up <= 0.0 {
             return 1;
         }
-        let mut counts =
-            std::iter::successors(Some(FEWEST), |n| n.checked_mul(2)).take_while(|n| *n < most);
+        let mut counts = std::iter::successors(Some(MIN_SAMPLES), |n| n.checked_mul(2))
+            .take_while(|n| *n < most);
         counts.find(|n| enough(*n)).unwrap_or(most)
     }
 
-    /// Luminance of a share around `normal`, cd/m², trilinear.
-    fn look_up(&self, share: &Share, normal: DVec3) -> f64 {
-        let direction = frame::to_world(share.direction, normal);
-        let level = share.level(ESTIMATE_EDGE as u32);
+    /// Luminance at a sample around `normal`, cd/m²; trilinear.
+    fn look_up(&self, sample: &FilteredSample, normal: DVec3) -> f64 {
+        let direction = tangent_frame::to_world(sample.direction, normal);
+        let level = sample.level(ESTIMATE_EDGE as u32);
         let (lower, blend) = (level.floor() as usize, level.fract());
         let at = |level: usize| self.levels[level.min(self.levels.len() - 1)].bilinear(direction);
         luminance(at(lower).lerp(at(lower + 1), blend))
@@ -177,28 +177,28 @@ mod tests {
     use super::*;
     use crate::daylight::sky::{Conditions, Daylight};
 
-    fn sky(elevation: f64) -> Refinement {
+    fn sky(elevation: f64) -> ErrorEstimate {
         let conditions = Conditions {
             sun_elevation_deg: elevation,
             ground_albedo: 0.0,
             ..Conditions::default()
         };
         let daylight = Daylight::new(&conditions);
-        Refinement::new(|direction| daylight.radiance(direction))
+        ErrorEstimate::new(|direction| daylight.radiance(direction))
     }
 
     #[test]
-    fn shares_spread_over_the_hemisphere() {
+    fn samples_cover_the_hemisphere() {
         for count in [64, 100, 1024] {
-            let shares = shares(count);
-            assert_eq!(shares.len(), count as usize);
-            // Away from the horizon a share times its cosine is π/N.
+            let samples = filtered_samples(count);
+            assert_eq!(samples.len(), count as usize);
+            // Away from the horizon the solid angle times the cosine is π/N.
             let expected = PI / f64::from(count);
-            for share in shares.iter().filter(|s| s.direction.z > WIDEST_COSINE) {
-                assert!((share.solid_angle * share.direction.z - expected).abs() < 1e-12);
+            for sample in samples.iter().filter(|s| s.direction.z > MIN_COSINE) {
+                assert!((sample.solid_angle * sample.direction.z - expected).abs() < 1e-12);
             }
             // The first quarter, too, is centred.
-            let quarter = &shares[..shares.len() / 4];
+            let quarter = &samples[..samples.len() / 4];
             let mean = quarter.iter().map(|s| s.direction).sum::<DVec3>() / quarter.len() as f64;
             assert!(mean.truncate().length() < 0.1, "{mean}");
         }
@@ -206,12 +206,12 @@ mod tests {
 
     #[test]
     fn a_constant_sky_needs_no_samples() {
-        let constant = Refinement::new(|_| DVec3::ONE);
-        assert!(constant.quasi_error(FEWEST) < 1e-4);
-        assert!(constant.monte_carlo_error(FEWEST) < 1e-2);
+        let constant = ErrorEstimate::new(|_| DVec3::ONE);
+        assert!(constant.quasi_error(MIN_SAMPLES) < 1e-4);
+        assert!(constant.monte_carlo_error(MIN_SAMPLES) < 1e-2);
         assert_eq!(
             constant.samples(IrradianceMethod::Quasi, 1e-3, 4096),
-            FEWEST
+            MIN_SAMPLES
         );
     }
 

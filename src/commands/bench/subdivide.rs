@@ -1,4 +1,4 @@
-//! More triangles for the same surfaces: what the cost of triangles alone is measured with.
+//! Subdivision: more triangles for the same surfaces, to measure the cost of triangles alone.
 
 use std::collections::HashMap;
 
@@ -6,39 +6,37 @@ use glam::{Vec2, Vec3};
 
 use crate::scene::Scene;
 
-impl Scene {
-    /// The same surfaces with every triangle cut into `k`² of the same shape (`k` at least 1). Neighbours still share the
-    /// vertices of their edge; normals are interpolated and made unit.
-    pub fn subdivided(&self, k: u32) -> Self {
-        let mut cutter = Cutter {
-            fine: Self {
-                indices: Vec::with_capacity(self.indices.len() * (k * k) as usize),
-                layout: None,
-                ..self.clone()
-            },
-            k,
-            edges: HashMap::new(),
-        };
-        for triangle in self.indices.chunks_exact(3) {
-            cutter.cut([triangle[0], triangle[1], triangle[2]]);
-        }
-        for part in &mut cutter.fine.parts {
-            part.first_index *= k * k;
-            part.index_count *= k * k;
-        }
-        cutter.fine
+/// The same surfaces with every triangle split into `k`² similar ones (`k` at least 1). Neighbours still share the vertices
+/// of their edge; normals are interpolated and normalised.
+pub fn subdivided(scene: &Scene, k: u32) -> Scene {
+    let mut splitter = Splitter {
+        fine: Scene {
+            indices: Vec::with_capacity(scene.indices.len() * (k * k) as usize),
+            layout: None,
+            ..scene.clone()
+        },
+        k,
+        edges: HashMap::new(),
+    };
+    for triangle in scene.indices.chunks_exact(3) {
+        splitter.split([triangle[0], triangle[1], triangle[2]]);
     }
+    for part in &mut splitter.fine.parts {
+        part.first_index *= k * k;
+        part.index_count *= k * k;
+    }
+    splitter.fine
 }
 
-struct Cutter {
+struct Splitter {
     fine: Scene,
     k: u32,
-    /// The vertex at a step from the first to the second vertex of an edge; the first has the lower number.
+    /// The vertex at a step along an edge, from its vertex of lower index to the other one.
     edges: HashMap<(u32, u32, u32), u32>,
 }
 
-impl Cutter {
-    fn cut(&mut self, corners: [u32; 3]) {
+impl Splitter {
+    fn split(&mut self, corners: [u32; 3]) {
         let k = self.k;
         // Row by row from the first edge to the third corner.
         let mut below: Vec<u32> = (0..=k).map(|i| self.vertex(corners, i, 0)).collect();
@@ -87,7 +85,7 @@ impl Cutter {
         made
     }
 
-    /// A new vertex, the mean of three with these weights.
+    /// Adds the weighted mean of three vertices.
     fn blend(&mut self, corners: [(u32, u32); 3]) -> u32 {
         let scene = &mut self.fine;
         let weighted = |of: &dyn Fn(usize) -> Vec3| -> Vec3 {
@@ -98,7 +96,7 @@ impl Cutter {
         let normal = weighted(&|v| Vec3::from(scene.normals[v]));
         let texcoord = weighted(&|v| Vec2::from(scene.texcoords[v]).extend(0.0));
         scene.positions.push(position.into());
-        // Opposite normals cancel out: one of them then.
+        // Opposite normals cancel out: then the first one.
         let fallback = Vec3::from(scene.normals[corners[0].0 as usize]);
         let unit = normal.try_normalize().unwrap_or(fallback);
         scene.normals.push(unit.into());
@@ -112,7 +110,7 @@ impl Cutter {
             scene.colours.push(std::array::from_fn(mix));
         }
         if !scene.tangents.is_empty() {
-            // For the cost of a tangent it need not be a new one.
+            // An interpolated tangent would cost the same.
             scene.tangents.push(scene.tangents[corners[0].0 as usize]);
         }
         (scene.positions.len() - 1) as u32
@@ -138,7 +136,7 @@ mod tests {
     #[test]
     fn surfaces_parts_and_shared_edges_stay() {
         let scene = bundled(&LoadOptions::default()).expect("a scene").scene;
-        let fine = scene.subdivided(3);
+        let fine = subdivided(&scene, 3);
         assert_eq!(fine.triangles(), 9 * scene.triangles());
         let (old, new) = (area(&scene), area(&fine));
         assert!((new / old - 1.0).abs() < 1e-4, "{old} m² became {new}");
@@ -158,21 +156,21 @@ mod tests {
     }
 
     #[test]
-    fn colours_and_tangents_are_cut_too() {
+    fn colours_and_tangents_are_interpolated_too() {
         let mut scene = bundled(&LoadOptions::default()).expect("a scene").scene;
         let vertices = scene.positions.len();
         scene.colours = vec![[65_535, 100, 0, 65_535]; vertices];
         scene.tangents = vec![[32_767, 0, 0, -32_767]; vertices];
-        let fine = scene.subdivided(2);
+        let fine = subdivided(&scene, 2);
         assert_eq!(fine.colours, vec![scene.colours[0]; fine.positions.len()]);
         assert_eq!(fine.tangents, vec![scene.tangents[0]; fine.positions.len()]);
     }
 
     #[test]
-    fn one_cut_is_none() {
+    fn one_piece_changes_nothing() {
         let mut scene = bundled(&LoadOptions::default()).expect("a scene").scene;
-        // It would be that of other indices.
+        // It would hold for other indices.
         scene.layout = None;
-        assert_eq!(scene.subdivided(1), scene);
+        assert_eq!(subdivided(&scene, 1), scene);
     }
 }

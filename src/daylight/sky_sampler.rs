@@ -1,7 +1,7 @@
-//! The sky as a set of directional lights: directions drawn by luminance, each with the light it stands for.
+//! Importance sampling of the sky: directional lights drawn with a density proportional to luminance.
 //!
-//! ∫ V L cos dω ≈ 1/n Σ V(ω_i) cos θ_i L(ω_i)/p(ω_i): p follows the luminance, so that all directions are of nearly equal
-//! luminance, and L/p keeps the spectrum. The points are of one low-discrepancy sequence, so that every prefix is well spread.
+//! ∫ V L cos dω ≈ 1/n Σ V(ω_i) cos θ_i L(ω_i)/p(ω_i). p is proportional to the luminance, so all lights have nearly equal
+//! luminance, and L/p keeps the colour.
 
 use std::f64::consts::{PI, TAU};
 
@@ -18,12 +18,12 @@ const COLUMNS: usize = 256;
 /// Solid angle of a cell, sr.
 const CELL: f64 = TAU / (ROWS * COLUMNS) as f64;
 
-/// A directional light that stands for a part of the sky or of the ground.
+/// A directional light: one sample of the sky or of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DomeLight {
     /// Unit vector toward the light.
     pub direction: DVec3,
-    /// L/p: illuminance at normal incidence of the whole hemisphere, were it all there; linear BT.709 RGB, lux.
+    /// L/p: illuminance at normal incidence, linear BT.709 RGB, lux. The mean over n lights, not the sum, is the sky's.
     pub illuminance: DVec3,
 }
 
@@ -31,14 +31,14 @@ pub struct DomeLight {
 ///
 /// The density is constant in each cell of a table, and L is evaluated at the direction itself, so the estimate has no bias.
 #[derive(Clone, Debug)]
-pub struct SkyDome {
-    /// Cumulative shares of the rows, from the horizon; the last is 1.
+pub struct SkySampler {
+    /// Cumulative distribution over the rows, from the horizon; the last is 1.
     rows: Vec<f64>,
-    /// Cumulative shares within each row.
+    /// Cumulative distribution within each row.
     columns: Vec<Vec<f64>>,
 }
 
-impl SkyDome {
+impl SkySampler {
     /// The table of a daylight.
     pub fn new(daylight: &Daylight) -> Self {
         let cell = |row: usize, column: usize| {
@@ -55,7 +55,7 @@ impl SkyDome {
         }
     }
 
-    /// The light for a point in [0, 1)².
+    /// The light of a point in [0, 1)².
     pub fn light(&self, daylight: &Daylight, xi: DVec2) -> DomeLight {
         let (row, y, row_share) = invert(&self.rows, xi.y);
         let (column, x, column_share) = invert(&self.columns[row], xi.x);
@@ -68,7 +68,7 @@ impl SkyDome {
     }
 }
 
-/// The light of the ground far below the horizon for a point in [0, 1)²: directions of the lower hemisphere, uniform.
+/// The light of the ground of a point in [0, 1)²: directions of uniform density in the lower hemisphere.
 pub fn ground_light(daylight: &Daylight, xi: DVec2) -> DomeLight {
     let up = sampling::uniform_sphere(DVec2::new(0.5 * xi.x, xi.y));
     DomeLight {
@@ -77,12 +77,12 @@ pub fn ground_light(daylight: &Daylight, xi: DVec2) -> DomeLight {
     }
 }
 
-/// Irradiance of the ground far below the horizon on a plane, nothing in between: π L (1 − n_y)/2, lux.
+/// Irradiance of the unoccluded ground on a plane: π L (1 − n_y)/2, lux.
 pub fn ground_irradiance(daylight: &Daylight, normal: DVec3) -> DVec3 {
     daylight.ground_luminance * (0.5 * PI * (1.0 - normal.y))
 }
 
-/// Direction of a point of the table: x in columns, y in rows.
+/// Unit direction of a point of the table: x in columns, y in rows.
 fn toward(at: DVec2) -> DVec3 {
     let sine = at.y / ROWS as f64;
     let cosine = (1.0 - sine * sine).max(0.0).sqrt();
@@ -90,7 +90,7 @@ fn toward(at: DVec2) -> DVec3 {
     DVec3::new(s * cosine, sine, -c * cosine)
 }
 
-/// Shares up to and with each value; of a sum of 0, equal ones.
+/// Cumulative distribution of `values`; uniform where they sum to 0.
 fn cumulative(values: &[f64]) -> Vec<f64> {
     let total: f64 = values.iter().sum();
     let share = |v: &f64| {
@@ -114,7 +114,7 @@ fn cumulative(values: &[f64]) -> Vec<f64> {
     list
 }
 
-/// The cell in which `xi` in [0, 1) falls, its place in it (0..1), and the cell's share.
+/// Inverts a cumulative distribution at `xi` in [0, 1): the cell, the position in it (0..=1), and the cell's probability.
 fn invert(cumulative: &[f64], xi: f64) -> (usize, f64, f64) {
     let cell = cumulative
         .partition_point(|c| *c <= xi)
@@ -139,7 +139,7 @@ mod tests {
     }
 
     fn estimate(daylight: &Daylight, count: u32, normal: DVec3) -> DVec3 {
-        let dome = SkyDome::new(daylight);
+        let dome = SkySampler::new(daylight);
         let sum: DVec3 = (0..count)
             .map(|i| dome.light(daylight, sampling::r2(i)))
             .map(|l| l.illuminance * l.direction.dot(normal).max(0.0))
@@ -174,7 +174,7 @@ mod tests {
     #[test]
     fn lights_are_of_nearly_equal_luminance() {
         let daylight = day(SkyModel::Preetham, 20.0);
-        let dome = SkyDome::new(&daylight);
+        let dome = SkySampler::new(&daylight);
         let mean = (0..1024)
             .map(|i| luminance(dome.light(&daylight, sampling::r2(i)).illuminance))
             .sum::<f64>()

@@ -1,0 +1,26 @@
+//! Stands in for `surface` in a build without the feature `window`: no value of these types exists.
+
+use std::convert::Infallible;
+use std::ffi::c_char;
+
+use ash::vk;
+
+use crate::gpu::error::Result;
+
+pub(in crate::gpu) type Window = Infallible;
+
+pub(in crate::gpu) fn instance_extensions(window: &Window) -> Result<&'static [*const c_char]> {
+    match *window {}
+}
+
+pub(in crate::gpu) struct RawSurface(Infallible);
+
+impl RawSurface {
+    pub(in crate::gpu) fn new(_: &ash::Entry, _: &ash::Instance, window: Window) -> Result<Self> {
+        match window {}
+    }
+
+    pub(in crate::gpu) fn is_supported(&self, _: vk::PhysicalDevice, _: u32) -> Result<bool> {
+        match self.0 {}
+    }
+}

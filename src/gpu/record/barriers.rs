@@ -1,0 +1,87 @@
+//! Recording of the barriers between accesses of images and buffers.
+
+use arrayvec::ArrayVec;
+use ash::vk;
+
+use crate::gpu::memory::image::{Image, is_depth};
+use crate::gpu::record::access::{BufferAccess, ImageAccess, buffer_barrier};
+use crate::gpu::record::recorder::Recorder;
+
+type Barriers = ArrayVec<vk::ImageMemoryBarrier2<'static>, 32>;
+
+impl Recorder {
+    /// Fills a colour image with a constant.
+    pub fn clear(&mut self, image: &Image, color: [f32; 4]) {
+        self.transition([(image, ImageAccess::CopyTarget)].into_iter());
+        let value = vk::ClearColorValue { float32: color };
+        // SAFETY: the image is in this layout; the command buffer is recording outside of a rendering.
+        unsafe {
+            self.context.raw().cmd_clear_color_image(
+                self.command,
+                image.raw(),
+                vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+                &value,
+                &[image.whole()],
+            );
+        }
+    }
+
+    /// Transitions the attachments of the following passes now, so that no barrier stands between these passes: those that do
+    /// not read each other's images may then overlap.
+    pub fn prepare<'i>(&self, targets: impl Iterator<Item = &'i Image>) {
+        let barriers = targets.filter_map(|image| {
+            image.prepare(if is_depth(image.format()) {
+                ImageAccess::DepthAttachment
+            } else {
+                ImageAccess::ColorAttachment
+            })
+        });
+        self.image_barriers(&barriers.collect());
+    }
+
+    /// Transitions images to their next access with one barrier command.
+    pub(in crate::gpu) fn transition<'i>(
+        &self,
+        accesses: impl Iterator<Item = (&'i Image, ImageAccess)>,
+    ) {
+        let barriers = accesses.filter_map(|(image, next)| image.next(next));
+        self.image_barriers(&barriers.collect());
+    }
+
+    /// Transitions one mip level; see [`Image::level_barrier`].
+    pub(in crate::gpu) fn level_transition(
+        &self,
+        image: &Image,
+        level: u32,
+        from: ImageAccess,
+        to: ImageAccess,
+    ) {
+        let barriers = image.level_barrier(level, from, to).into_iter();
+        self.image_barriers(&barriers.collect());
+    }
+
+    /// Makes what was written to buffers visible to their next access.
+    pub(in crate::gpu) fn buffer_barrier(&self, previous: BufferAccess, next: BufferAccess) {
+        let Some(barrier) = buffer_barrier(previous, next) else {
+            return;
+        };
+        let barriers = [vk::MemoryBarrier2::default()
+            .src_stage_mask(barrier.src_stage)
+            .src_access_mask(barrier.src_access)
+            .dst_stage_mask(barrier.dst_stage)
+            .dst_access_mask(barrier.dst_access)];
+        self.barrier(&vk::DependencyInfo::default().memory_barriers(&barriers));
+    }
+
+    fn image_barriers(&self, barriers: &Barriers) {
+        if !barriers.is_empty() {
+            self.barrier(&vk::DependencyInfo::default().image_memory_barriers(barriers));
+        }
+    }
+
+    fn barrier(&self, info: &vk::DependencyInfo<'_>) {
+        let raw = self.context.raw();
+        // SAFETY: the command buffer is recording outside of a rendering; the images are alive.
+        unsafe { raw.cmd_pipeline_barrier2(self.command, info) };
+    }
+}

@@ -35,7 +35,7 @@ fn build() -> Result<(), String> {
         let stage = compile(&compiler, Path::new(SOURCES), &name, debug)?;
         let reflected = compile(&compiler, Path::new(SOURCES), &name, true)?;
         let file = name.rsplit('/').next().unwrap_or_default();
-        let constant = file.to_uppercase().replace(['.', '-'], "_");
+        let constant = file.to_uppercase().replace(['.', '-', '+'], "_");
         let declared = declarations(&name, &reflected)?;
         // What a stage declared when it was compiled in: a stage that is reloaded must declare the same.
         let kept = if reloads {
@@ -47,7 +47,7 @@ fn build() -> Result<(), String> {
             generated,
             "/// Stage `{name}`.\npub static {constant}: Shader = Shader {{ name: {name:?}, stage: Stage::{}, \
              {declared}, words: &{stage:?}{kept} }};",
-            stage_name(Path::new(&name)).unwrap_or_default()
+            stage_name(&name).unwrap_or_default()
         );
         names.push(constant);
     }
@@ -61,8 +61,9 @@ fn build() -> Result<(), String> {
 }
 
 /// The stage of a file, by its extension.
-fn stage_name(path: &Path) -> Option<&'static str> {
-    match path.extension()?.to_str()? {
+fn stage_name(name: &str) -> Option<&'static str> {
+    let file = name.split('+').next()?;
+    match Path::new(file).extension()?.to_str()? {
         "vert" => Some("Vertex"),
         "geom" => Some("Geometry"),
         "frag" => Some("Fragment"),
@@ -95,8 +96,17 @@ fn tell_commit() {
     println!("cargo:rustc-env=SKYLIGHT_COMMIT={commit}");
 }
 
-/// Every stage, as a path below the folder of all shaders with `/` between its parts. File names are unique: they name
-/// constants.
+/// Variants of a stage, as its source lists them: each line `// Variant: A B` asks for the stage with the macros A and B defined,
+/// which is called by the name of its file, `+A+B`. Specialization constants do for all that is not an interface of the stage.
+fn variants(source: &str) -> impl Iterator<Item = String> {
+    let listed = source
+        .lines()
+        .filter_map(|l| l.strip_prefix("// Variant: "));
+    listed.map(|macros| macros.split_whitespace().map(|m| format!("+{m}")).collect())
+}
+
+/// Every stage and its variants, as paths below the folder of all shaders with `/` between their parts. File names are unique:
+/// they name constants.
 fn stage_files() -> Result<Vec<String>, String> {
     let mut found = Vec::new();
     let mut folders = vec![String::new()];
@@ -108,7 +118,10 @@ fn stage_files() -> Result<Vec<String>, String> {
             let name = format!("{folder}{}", entry.file_name().to_string_lossy());
             if entry.path().is_dir() {
                 folders.push(name + "/");
-            } else if stage_name(Path::new(&name)).is_some() {
+            } else if stage_name(&name).is_some() {
+                let source = fs::read_to_string(entry.path());
+                let source = source.map_err(|e| format!("{name}: {e}"))?;
+                found.extend(variants(&source).map(|macros| format!("{name}{macros}")));
                 found.push(name);
             }
         }

@@ -23,7 +23,7 @@ use crate::passes::dome::gather::Gathered;
 use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{Light, Lighting, Show};
 use crate::passes::light::probe::Probe;
-use crate::passes::occlusion::height_map::Cover;
+use crate::passes::occlusion::height_map::HeightMap;
 use crate::passes::occlusion::ssao::Ssao;
 use crate::passes::picture::accumulate::Accumulate;
 use crate::passes::picture::exposure::Exposure;
@@ -64,7 +64,7 @@ pub struct Frame {
     irradiance: Irradiance,
     shadow: Shadow,
     gbuffer: Gbuffer,
-    cover: Cover,
+    cover: HeightMap,
     ssao: Ssao,
     lighting: Lighting,
     background: Background,
@@ -96,7 +96,7 @@ impl Frame {
             let lighting = scope.spawn(move || Lighting::new(device, size, settings.lighting));
             let background = scope.spawn(move || Background::new(device, settings.lighting));
             Ok(Self {
-                cover: Cover::new(device, &geometry)?,
+                cover: HeightMap::new(device, &geometry)?,
                 shadow: settings.shadow(device, &geometry)?,
                 gbuffer: Gbuffer::new(device, &geometry, size, asked.converges())?,
                 converging: Converging::new(device, &geometry, &settings)?,

@@ -11,7 +11,7 @@
 //! | Solar radiation | black body of 5800 K, the sun's spectrum | [`planck`](crate::daylight::spectrum::planck), [`extraterrestrial_radiance`](crate::daylight::sunlight::extraterrestrial_radiance); drawn by `skylight sky --plot` | – | `plots_are_whole_svg_files_with_their_curves` |
 //! | Spectrum to RGB | ∫ C(λ) (x̄, ȳ, z̄) dλ | [`xyz_from_spectrum`](crate::daylight::spectrum::xyz_from_spectrum) | – | `cie_1931_colour_matching_functions` |
 //! | Gamut mapping | RGB = M XYZ | [`rgb_from_xyz`](crate::daylight::colour::rgb_from_xyz), [`xyz_from_rgb`](crate::daylight::colour::xyz_from_rgb) | `include/colour.glsl`: `RGB_FROM_XYZ` | `srgb_matrices` |
-//! | Gamut mapping | Y = 0.2126 R + 0.7152 G + 0.0722 B | [`luminance`](crate::daylight::colour::luminance) | `include/constants.glsl`: `luminance` | `white_is_white` |
+//! | Gamut mapping | Y = 0.2126 R + 0.7152 G + 0.0722 B | [`luminance`](crate::daylight::colour::luminance) | `include/colour.glsl`: `luminance` | `white_is_white` |
 //! | Tone mapping | (s R)^(1/γ) | [`linear_gamma`](crate::daylight::tone_curve::linear_gamma) | `picture/tone_map.frag`: `inverse_gamma` | `tone_curves` |
 //! | Tone mapping | (1 - e^(-R))^(1/γ) | [`exponential`](crate::daylight::tone_curve::exponential) | `include/tone_curve.glsl`: `tone_exponential` | `tone_curves` |
 //! | Analytical sky models | Preetham's L(θ, γ) | [`Preetham`](crate::daylight::preetham::Preetham), [`perez`](crate::daylight::preetham::perez) | `include/sky_preetham.glsl`: `perez` | `preetham_sky` |
@@ -31,7 +31,7 @@
 //! | Irradiance environment map | six faces by gl_Layer | [`IrradianceMethod`](crate::daylight::IrradianceMethod) | `sky/cube_faces.geom`: `gl_Layer` | `exact_of_a_64_cube` |
 //! | Irradiance environment map | rnd(t) | [`rnd`](crate::daylight::sampling::rnd), [`tea`](crate::daylight::sampling::tea) | `include/random.glsl`: `rnd` | `rnd_is_uniform` |
 //! | Illumination model | L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r)) | [`Show`](crate::settings::Show) | `light/lighting.frag`: `r_dot_l` | `each_addend_is_in_the_picture_once` |
-//! | Rendering equation | ρ_s V(x, r) L_sky(r), V over the lobe around r | [`Reflections::Hidden`](crate::settings::Reflections::Hidden) | `dome/dome_mirror.frag`: `along_r` | `a_mirror_on_the_floor_shows_the_sky_in_the_opening_and_nowhere_else` |
+//! | Rendering equation | ρ_s V(x, r) L_sky(r), V over the lobe around r | [`Reflections::Hidden`](crate::settings::Reflections::Hidden) | `dome/dome_specular.frag`: `along_r` | `a_mirror_on_the_floor_shows_the_sky_in_the_opening_and_nowhere_else` |
 //! | Rendering equation | V(x, ω) L_sky(ω) cos θ over the sky | [`SkySampler`](crate::daylight::sky_sampler::SkySampler) | `dome/dome_gather.frag`: `light_of_directions` | `a_room_with_an_opening_gets_the_light_of_its_configuration_factor` |
 //!
 //! # The slips, and what is done instead

@@ -1,11 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "colour.glsl"
 #include "constants.glsl"
+#include "dome.glsl"
 #include "materials.glsl"
 #include "octahedral.glsl"
-#include "view.glsl"
-#include "dome.glsl"
 
 // The light of the sky by shadow maps from directions of the sky: E = 1/n sum V (n.w) L/p, and what it would be without V.
 // Both are averaged over the frames, with everything else that the frames show; their quotient is A, weighted by the light.
@@ -25,23 +25,19 @@ layout(constant_id = 3) const int DIRECTIONS = 4;
 layout(constant_id = 4) const bool ALBEDO_IMAGE = true;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform usampler2D words;
+layout(set = 0, binding = 1) uniform usampler2D normal_material;
 layout(set = 0, binding = 2) uniform sampler2D albedo;         // with ALBEDO_IMAGE; else any
 layout(set = 0, binding = 3) uniform sampler2D frame;          // kcd/m^2, without the sky's light
 layout(set = 0, binding = 4) uniform sampler2D previous_sky;
 layout(set = 0, binding = 5) uniform sampler2D previous_rest;
-layout(set = 0, binding = 6) uniform sampler2D maps;           // reversed: 1 is nearest the light
 layout(set = 0, binding = 7) uniform samplerCube sky_irradiance; // E of sky and ground, klx
 layout(set = 0, binding = 8, scalar) uniform View { VIEW_BLOCK } view;
-layout(set = 0, binding = 9, scalar) uniform Dome { DOME_BLOCK } dome;
 layout(set = 0, binding = 10) uniform sampler2D materials; // see materials.glsl
 
 layout(push_constant, scalar) uniform Push {
     vec3 ground; // radiance below the horizon, kcd/m^2
     float share; // of this frame in the means, 0..1
 } push;
-
-#include "face.glsl"
 
 /// The light of this frame's directions on a face: rgb with V; a: its luminance without V. The ground's is known without
 /// sampling where V is left out.
@@ -53,18 +49,17 @@ vec4 light_of_directions(vec3 world, vec3 n, vec3 face) {
         if (cosine <= 0.0) continue;
         vec3 light = dome.light[k].rgb * cosine;
         whole += luminance(light) * dome.light[k].a;
-        if (is_turned_away(face, n, dome.toward[k].xyz)) continue;
-        bool lit = is_lit_in_plane(maps, dome.clip_from_world[k], dome.planes[k], dome.window[k], dome.toward[k].a, world, face);
-        if (lit) visible += light;
+        if (is_lit_from(k, world, n, face)) visible += light;
     }
     return vec4(visible, whole);
 }
 
 void gather(vec2 uv, float d) {
-    uvec3 own = textureLod(words, uv, 0.0).xyz;
+    vec3 ray = view_ray(uv, view.ray_scale, view.ray_offset);
+    uvec3 own = textureLod(normal_material, uv, 0.0).xyz;
     vec3 n = normal_unpack(own.x);
-    vec3 world = view.eye + view.world_from_view * in_view(uv, d);
-    sky = light_of_directions(world, n, face_normal(uv, own.z));
+    vec3 world = view.eye + view.world_from_view * (ray * (view.near / d));
+    sky = light_of_directions(world, n, view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale));
     vec3 open = textureLod(sky_irradiance, n, 0.0).rgb;
     if (SHOW_OCCLUSION) {
         sky.rgb = vec3(luminance(sky.rgb));

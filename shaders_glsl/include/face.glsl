@@ -1,21 +1,41 @@
-// The face under a pixel, and shadow maps compared in its plane. Needs `depth` and `view` declared before.
+// The face under a pixel, and shadow maps compared in its plane. Reversed depth d is linear over the picture: two slopes
+// describe a triangle's plane, exactly, also where a triangle is a few pixels wide and differences to neighbours fail.
+#include "texel.glsl"
+#include "view.glsl"
 
-/// View-space position of a point uv of the picture at depth d.
-vec3 in_view(vec2 uv, float d) {
-    return view_ray(uv, view.ray_scale, view.ray_offset) * (view.near / d);
+/// The shading normal on the viewer's side, of any length. Winding and stored normals of real models disagree too often to
+/// trust either: the true face, from derivatives, decides the side; surfaces are two-sided.
+/// `slack` (0..1): a normal is turned only if its cosine with the face is less than minus this.
+vec3 facing_normal(vec3 shading_normal, vec3 from_eye, float slack) {
+    vec3 face = cross(dFdx(from_eye), dFdy(from_eye));
+    face *= dot(face, from_eye) > 0.0 ? -1.0 : 1.0;
+    float limit = slack > 0.0 ? -slack * length(face) * length(shading_normal) : 0.0;
+    return dot(shading_normal, face) < limit ? -shading_normal : shading_normal;
 }
 
-/// World normal of the face under a point uv of the picture, on the viewer's side: of the plane whose reversed depth changes with these slopes
-/// (see face_slope.glsl).
-vec3 face_normal(vec2 uv, uint slopes) {
-    vec2 ray = view_ray(uv, view.ray_scale, view.ray_offset).xy;
-    vec2 slope = unpackHalf2x16(slopes) / 256.0 * (0.5 * vec2(textureSize(depth, 0)) / view.ray_scale);
-    return view.world_from_view * normal_of_slopes(slope, ray);
+// Slopes are kept as halves: the scale keeps gentle ones out of their denormal range, the limit holds those of a triangle seen
+// from its edge, which a half cannot.
+const float SLOPE_SCALE = 256.0;
+const float MAX_SLOPE = 100.0;
+
+/// Relative change of depth from pixel to pixel, as two halves.
+uint face_slopes() {
+    vec2 slopes = vec2(dFdx(gl_FragCoord.z), dFdy(gl_FragCoord.z)) / gl_FragCoord.z;
+    return packHalf2x16(clamp(slopes, -MAX_SLOPE, MAX_SLOPE) * SLOPE_SCALE);
 }
+
+/// View-space normal of the face under a pixel, on the viewer's side. `slopes`: of `face_slopes`; `ray`: x and y of the pixel's
+/// ray with z = -1; `pixels_per_ray`: pixels to a unit of x and of y.
+vec3 face_normal(uint slopes, vec2 ray, vec2 pixels_per_ray) {
+    return normal_of_slopes(unpackHalf2x16(slopes) / SLOPE_SCALE * pixels_per_ray, ray);
+}
+
+// Cosine between face and shading normal above which they are taken for the same surface: 37 degrees.
+const float SAME_FACE = 0.8;
 
 /// Whether a face turns its back to a light. Not where the shading normal n leans far from it, as that of leaves: there n decides.
 bool is_turned_away(vec3 face, vec3 n, vec3 toward) {
-    return dot(face, n) > 0.8 && dot(face, toward) <= 0.0;
+    return dot(face, n) > SAME_FACE && dot(face, toward) <= 0.0;
 }
 
 // Share of the rise that rounding of a caster's corners to the sub-texel grid may make wrong.
@@ -23,7 +43,7 @@ const float RISE_ERROR = 0.02;
 
 /// Whether a point of a face is lit by a shadow map (reversed: 1 is nearest the light), compared at the centre of the texel that
 /// holds it with the depth that the face's plane has there: a plane cannot shadow itself, whatever its slope.
-/// `clip`: from world; `planes`: its inverse transpose, which takes planes along; `window`: the map's first texel and its edges.
+/// `clip`: from world; `planes`: its inverse transpose, which transforms planes; `window`: the map's first texel and its edges.
 bool is_lit_in_plane(sampler2D map, mat4 clip, mat4 planes, vec4 window, float bias, vec3 world, vec3 face) {
     vec4 c = clip * vec4(world, 1.0);
     vec3 p = c.xyz / c.w;
@@ -32,7 +52,5 @@ bool is_lit_in_plane(sampler2D map, mat4 clip, mat4 planes, vec4 window, float b
     vec2 to_centre = (floor(at) + 0.5 - at) * 2.0 / window.zw;
     float rise = -dot(plane.xy, to_centre) / plane.z;
     vec2 last = window.xy + window.zw - 1.0;
-    // A nearest lookup costs a software device less than a fetch, which it checks against the edges.
-    vec2 uv = (clamp(floor(at), window.xy, last) + 0.5) / vec2(textureSize(map, 0));
-    return textureLod(map, uv, 0.0).r <= p.z + rise + bias + RISE_ERROR * abs(rise);
+    return texel_at(map, clamp(floor(at), window.xy, last)).r <= p.z + rise + bias + RISE_ERROR * abs(rise);
 }

@@ -1,7 +1,4 @@
-/// sRGB values to linear ones (IEC 61966-2-1).
-vec3 linear_from_srgb(vec3 c) {
-    return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045)));
-}
+#include "colour.glsl"
 
 /// Mikhailov 2019, "Turbo, An Improved Rainbow Colormap for Visualization": its polynomial of sRGB values, decoded.
 vec3 turbo(float x) {

@@ -1,22 +1,23 @@
-// The table of materials: an image of rows of so many columns, two rows to each 1024 materials.
-const uint MATERIAL_COLUMNS = 1024u;
+// The table of materials: an image with a nearest sampler, two rows to as many materials as it has columns.
+#include "texel.glsl"
 
-/// The word of a surface: the number of its material, and the upper half of the bits of how thick its body is (metres).
+// Columns of the table. Every pipeline that reads it sets them.
+layout(constant_id = 30) const uint MATERIAL_COLUMNS = 1u;
+
+/// The word of a surface: the number of its material, and the upper half of the bits of its body's thickness (metres).
 uint material_word(uint number, float thickness) {
     return number | (floatBitsToUint(thickness) & 0xffff0000u);
 }
 
-/// How thick the body is behind the surface of a word, metres.
+/// Thickness of the body behind the surface of a word, metres.
 float material_thickness(uint word) {
     return uintBitsToFloat(word & 0xffff0000u);
 }
 
-/// One of the two rows of the material of a word of the G-buffer; the table's sampler is nearest: a software device checks
-/// fetches against the edges, and lookups cost it less.
+/// One of the two rows of the material of a word.
 vec4 material_row(sampler2D materials, uint word, uint row) {
     uint number = word & 0xffffu;
-    uvec2 texel = uvec2(number % MATERIAL_COLUMNS, 2u * (number / MATERIAL_COLUMNS) + row);
-    return textureLod(materials, (vec2(texel) + 0.5) / vec2(textureSize(materials, 0)), 0.0);
+    return texel_at(materials, vec2(number % MATERIAL_COLUMNS, 2u * (number / MATERIAL_COLUMNS) + row));
 }
 
 /// The second: rgb: rho_s; a: shininess p.

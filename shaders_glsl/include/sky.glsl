@@ -1,5 +1,5 @@
 // What all skies share: the guard around the model, as `daylight::sky` on the CPU.
-#include "constants.glsl"
+#include "colour.glsl"
 #include "cube.glsl"
 
 layout(push_constant, scalar) uniform Push {

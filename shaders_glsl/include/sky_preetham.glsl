@@ -1,6 +1,5 @@
 // Preetham et al. 1999, A.2. The CIE clear sky has the same form and is drawn by this shader too.
 #include "sky.glsl"
-#include "colour.glsl"
 
 struct Perez {
     float a, b, c, d, e;

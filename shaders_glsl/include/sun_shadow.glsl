@@ -1,4 +1,4 @@
-// The sun's shadow beyond one map: cascades for large scenes, and penumbrae as wide as the sun's disc makes them.
+// The sun's shadow: one map, cascades for large scenes, penumbrae as wide as the sun's disc makes them.
 // Needs `shadow_map`, `sun`, `view`, CASCADES and PCSS.
 
 layout(set = 0, binding = 11, scalar) uniform Cascades {
@@ -7,11 +7,41 @@ layout(set = 0, binding = 11, scalar) uniform Cascades {
     float tan_radius;   // of the sun's disc
 } cascades;
 
-// On discs whose points are spread evenly: looking for blockers, and comparing.
+// Set by the pipeline, which fits the maps to them.
+layout(constant_id = 18) const float NORMAL_OFFSET = 1.0; // of receivers at grazing light, texels
+layout(constant_id = 19) const float BLEND = 0.5;         // share of a cube from which on its map is blended into the next
+layout(constant_id = 20) const float MAX_RADIUS = 1.0;    // of penumbrae, texels: taps farther apart miss thin casters
+
+// A surface that faces the sun has no slope to be biased by: a tenth of the offset remains, for rounding. For the same reason
+// slopes of planes toward grazing light end at ten.
+const float MIN_SINE = 0.1;
+
+// Points on discs: of the search for blockers, and of the comparisons.
 const int BLOCKER_TAPS = 24;
 const int FILTER_TAPS = 48;
-// Largest radius of the search, texels: taps farther apart than these are miss thin things.
-const float WIDEST = 48.0;
+// Narrowest disc, texels: as soft as the tent.
+const float MIN_RADIUS = 0.75;
+
+/// V by a map, over a 3x3 tent: the mean of four bilinear comparisons half a texel apart. Nine lookups and comparisons give the
+/// same and cost a CPU a third of four filtered lookups. `at`: texels of map k.
+float tent(vec2 at, float depth, int k, int edge) {
+    // So that each of the nine is a texel of this map.
+    at = clamp(at, vec2(1.0), vec2(float(edge) - 1.001));
+    vec2 centre = floor(at);
+    vec2 f = at - centre;
+    // Lookups with an offset share their coordinates.
+    vec2 uv = (centre + vec2(float(k * edge), 0.0) + 0.5) / vec2(textureSize(shadow_map, 0));
+    // Behind all casters, and beside them, the map is empty: depth 0.
+    float receiver = max(depth, 0.0);
+    vec3 wx = vec3(1.0 - f.x, 1.0, f.x);
+    vec3 wy = vec3(1.0 - f.y, 1.0, f.y);
+    float lit = 0.0;
+#define LIT(x, y) lit += wx[x] * wy[y] * step(textureLodOffset(shadow_map, uv, 0.0, ivec2(x - 1, y - 1)).r, receiver)
+    LIT(0, 0); LIT(1, 0); LIT(2, 0);
+    LIT(0, 1); LIT(1, 1); LIT(2, 1);
+    LIT(0, 2); LIT(1, 2); LIT(2, 2);
+    return lit * 0.25;
+}
 
 /// A receiver in the map of cascade k.
 struct Receiver {
@@ -38,13 +68,6 @@ float lit_at(Receiver r, vec2 offset) {
     return mix(mix(lit.x, lit.y, f.x), mix(lit.z, lit.w, f.x), f.y);
 }
 
-/// The mean of four comparisons half a texel apart, as of a single map.
-float tent(Receiver r) {
-    r.slope = vec2(0.0);
-    return 0.25 * (lit_at(r, vec2(-0.5, -0.5)) + lit_at(r, vec2(0.5, -0.5)) +
-                   lit_at(r, vec2(-0.5, 0.5)) + lit_at(r, vec2(0.5, 0.5)));
-}
-
 /// Point i of n of the unit disc (Vogel 1979: the golden angle, equal areas).
 vec2 on_disc(int i, int n) {
     float angle = float(i) * 2.39996323;
@@ -55,7 +78,7 @@ vec2 on_disc(int i, int n) {
 /// is 2 tan(radius) d wide, and V is the share of the disc that is seen past it.
 float penumbra(Receiver r, float texel, float depth_metres) {
     float tan_texels = cascades.tan_radius * depth_metres / texel;
-    float search = clamp(tan_texels * (1.0 - r.depth), 1.0, WIDEST);
+    float search = clamp(tan_texels * (1.0 - r.depth), 1.0, MAX_RADIUS);
     float sum = 0.0, blockers = 0.0;
     for (int i = 0; i < BLOCKER_TAPS; ++i) {
         vec2 offset = on_disc(i, BLOCKER_TAPS) * search;
@@ -64,25 +87,27 @@ float penumbra(Receiver r, float texel, float depth_metres) {
     }
     if (blockers == 0.0) return 1.0;
     if (blockers == float(BLOCKER_TAPS)) return 0.0;
-    float radius = clamp(tan_texels * sum / blockers, 0.75, WIDEST);
+    float radius = clamp(tan_texels * sum / blockers, MIN_RADIUS, MAX_RADIUS);
     float lit = 0.0;
     for (int i = 0; i < FILTER_TAPS; ++i) lit += lit_at(r, on_disc(i, FILTER_TAPS) * radius);
     return lit / float(FILTER_TAPS);
 }
 
+/// V by the map of cascade k.
 float in_cascade(int k, vec3 world, vec3 n, float n_dot_l) {
     float texel = cascades.sizes[k].y;
-    float depth_metres = cascades.sizes[k].z;
-    float sine = max(sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0)), 0.1);
+    float sine = max(sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0)), MIN_SINE);
     mat4 map = cascades.from_world[k];
-    vec3 p = (map * vec4(world + n * (1.5 * texel * sine), 1.0)).xyz;
+    vec3 p = (map * vec4(world + n * (NORMAL_OFFSET * texel * sine), 1.0)).xyz;
     int edge = textureSize(shadow_map, 0).y;
+    vec2 at = (p.xy * 0.5 + 0.5) * float(edge);
+    if (!PCSS) return tent(at, p.z, k, edge);
+    float depth_metres = cascades.sizes[k].z;
     // Right and up of the map, in the world: its rows, without their scale.
     float scale = 0.5 * float(edge) * texel;
     vec2 across = vec2(dot(vec3(map[0][0], map[1][0], map[2][0]), n), dot(vec3(map[0][1], map[1][1], map[2][1]), n)) * scale;
-    vec2 slope = -across / max(n_dot_l, 0.1) * (texel / depth_metres);
-    Receiver r = Receiver((p.xy * 0.5 + 0.5) * float(edge), p.z, slope, k, edge);
-    return PCSS ? penumbra(r, texel, depth_metres) : tent(r);
+    vec2 slope = -across / max(n_dot_l, MIN_SINE) * (texel / depth_metres);
+    return penumbra(Receiver(at, p.z, slope, k, edge), texel, depth_metres);
 }
 
 /// V by the finest map that has the point, blended into the next toward the end of its cube.
@@ -93,7 +118,7 @@ float sun_visibility(vec3 world, vec3 n, float n_dot_l) {
     for (int i = 0; i < CASCADES - 1; ++i) if (reach >= cascades.sizes[i].x) k = i + 1;
     float V = in_cascade(k, world, n, n_dot_l);
     if (k + 1 < CASCADES) {
-        float blend = (reach / cascades.sizes[k].x - 0.85) / 0.15;
+        float blend = (reach / cascades.sizes[k].x - BLEND) / (1.0 - BLEND);
         if (blend > 0.0) V = mix(V, in_cascade(k + 1, world, n, n_dot_l), blend);
     }
     return V;

@@ -1,3 +1,5 @@
+#include "colour.glsl"
+
 // Tone curves of exposed linear BT.709 (1 is the display's white before the curve); results are linear.
 
 /// Ferschin's exponential mapping (the lecture's slide "Tone mapping"), per channel.

@@ -1,3 +1,5 @@
+#ifndef VIEW_GLSL
+#define VIEW_GLSL
 // The camera as the screen-space passes see it. Depth is reversed with an infinite far plane: d = near / distance.
 
 /// Uniform block shared by the passes that reconstruct positions.
@@ -14,8 +16,8 @@ vec3 view_ray(vec2 uv, vec2 ray_scale, vec2 ray_offset) {
     return vec3((uv * 2.0 - 1.0) * ray_scale + ray_offset, -1.0);
 }
 
-/// View-space normal, on the viewer's side, of a plane whose reversed depth changes by these shares of it with the ray's x and y: depth is linear
-/// over the picture, so that two slopes are all there is to know of a plane.
+/// View-space normal, on the viewer's side, of a plane whose reversed depth changes by these shares of it with the ray's x and y.
 vec3 normal_of_slopes(vec2 slopes, vec2 ray) {
     return normalize(vec3(-slopes, 1.0 - dot(slopes, ray)));
 }
+#endif

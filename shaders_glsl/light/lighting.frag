@@ -1,12 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "colour.glsl"
 #include "constants.glsl"
 #include "materials.glsl"
 #include "occlusion.glsl"
 #include "octahedral.glsl"
 #include "phong.glsl"
-#include "view.glsl"
+#include "face.glsl"
 
 // The lecture's slide "Illumination model for skylight":
 //   L_r = rho_d/pi ((n.l) V E_sun + A E_sky(n)) + rho_s ((r.l)^p V E_sun + L_sky(r))
@@ -27,23 +28,23 @@ layout(constant_id = 8) const bool SHOW_NORMAL = false;
 layout(constant_id = 9) const bool SHOW_DEPTH = false;
 // Pixels of the picture to one of the occlusion, each way.
 layout(constant_id = 10) const int OCCLUSION_DOWNSCALE = 2;
-// Surfaces with a rho_s mirror more at grazing angles.
+// rho_s grows toward grazing angles.
 layout(constant_id = 11) const bool FRESNEL = false;
-// The diffuse light of the sky is this pass' matter; otherwise it is the dome's (A = 0 here).
+// With the diffuse light of the sky; otherwise the dome adds it (A = 0 here).
 layout(constant_id = 12) const bool AMBIENT = true;
-// One comparison of the shadow map in the plane of the face, for frames whose mean softens its edges.
+// One comparison with the shadow map in the plane of the face, for frames whose mean softens the edges.
 layout(constant_id = 13) const bool PLANE_SHADOW = false;
-// rho_d of each pixel is in an image; else the scene has no maps, and that of the material is that of the pixel.
+// rho_d of each pixel is in an image; otherwise the scene has no maps, and the table of materials has rho_d.
 layout(constant_id = 14) const bool ALBEDO_IMAGE = true;
 // Maps of the sun, side by side.
 layout(constant_id = 15) const int CASCADES = 1;
 // Penumbrae as wide as the sun's disc makes them.
 layout(constant_id = 16) const bool PCSS = false;
-// The lobe of mirrors as a reflectance: of sun and sky alike, in balance of energy.
+// Energy-conserving specular lobe, of sun and sky alike.
 layout(constant_id = 17) const bool NORMALIZED = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform usampler2D words;
+layout(set = 0, binding = 1) uniform usampler2D normal_material;
 layout(set = 0, binding = 2) uniform sampler2D albedo;      // with ALBEDO_IMAGE; else any
 layout(set = 0, binding = 3) uniform usampler2D occlusion;
 layout(set = 0, binding = 4) uniform sampler2D shadow_map; // reversed: 1 is nearest the sun
@@ -54,7 +55,7 @@ layout(set = 0, binding = 8, scalar) uniform Sun {
     mat4 shadow_from_world;
     vec3 direction;       // unit, toward the sun
     vec3 illuminance;     // E_sun at normal incidence, klx
-    float normal_offset;  // of receivers, metres; with PLANE_SHADOW the bias of depth
+    float depth_bias;     // of comparisons with PLANE_SHADOW
     float max_radiance;   // largest value the target holds, kcd/m^2
     float specular_scale; // factor on every rho_s
     mat4 planes;          // inverse transpose of shadow_from_world
@@ -63,39 +64,13 @@ layout(set = 0, binding = 8, scalar) uniform Sun {
 
 layout(set = 0, binding = 9) uniform sampler2D materials; // see materials.glsl
 
-#include "face.glsl"
 #include "sun_shadow.glsl"
 
-/// V of one point of the sun's disc: what is left to error is the map's texel, which the mean over many maps makes even.
+/// V of one point of the sun's disc. The error is up to a texel of the map; the mean over many maps averages it out.
 float plane_visibility(vec3 world, vec3 n, vec3 face) {
     if (is_turned_away(face, n, sun.direction)) return 0.0;
     vec4 window = vec4(vec2(0.0), vec2(textureSize(shadow_map, 0)));
-    return float(is_lit_in_plane(shadow_map, sun.shadow_from_world, sun.planes, window, sun.normal_offset, world, face));
-}
-
-/// V: the share of the sun that the shadow map lets through, over a 3x3 tent: the mean of four bilinear comparisons half
-/// a texel apart. Nine fetches and comparisons give the same and cost a CPU a third of four filtered lookups.
-float visibility(vec3 world, vec3 n, float n_dot_l) {
-    // A surface that faces the sun has no slope to be biased by: a tenth of the offset stays, for rounding.
-    float sine = max(sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0)), 0.1);
-    vec3 p = (sun.shadow_from_world * vec4(world + n * (sun.normal_offset * sine), 1.0)).xyz;
-    vec2 size = vec2(textureSize(shadow_map, 0));
-    // Inside the map's margin, so that each of the nine is a texel of it.
-    vec2 at = clamp((p.xy * 0.5 + 0.5) * size, vec2(1.0), size - 1.0);
-    vec2 centre = floor(at);
-    vec2 f = at - centre;
-    // A lookup with an offset costs a software device two thirds of a fetch: coordinates are made once.
-    vec2 uv = (centre + 0.5) / size;
-    // Behind all casters, and beside them, the map is empty: depth 0.
-    float depth = max(p.z, 0.0);
-    vec3 wx = vec3(1.0 - f.x, 1.0, f.x);
-    vec3 wy = vec3(1.0 - f.y, 1.0, f.y);
-    float lit = 0.0;
-#define LIT(x, y) lit += wx[x] * wy[y] * step(textureLodOffset(shadow_map, uv, 0.0, ivec2(x - 1, y - 1)).r, depth)
-    LIT(0, 0); LIT(1, 0); LIT(2, 0);
-    LIT(0, 1); LIT(1, 1); LIT(2, 1);
-    LIT(0, 2); LIT(1, 2); LIT(2, 2);
-    return lit * 0.25;
+    return float(is_lit_in_plane(shadow_map, sun.shadow_from_world, sun.planes, window, sun.depth_bias, world, face));
 }
 
 void main() {
@@ -107,7 +82,7 @@ void main() {
     // The depth test leaves only pixels with a surface: d > 0.
     float distance = view.near / d;
     vec3 world = view.eye + world_ray * distance;
-    uvec3 own = textureLod(words, uv, 0.0).xyz;
+    uvec3 own = textureLod(normal_material, uv, 0.0).xyz;
     vec3 n = normal_unpack(own.x);
     uint word = own.y;
     vec4 surface = pixel_albedo(ALBEDO_IMAGE, albedo, materials, word, uv);
@@ -115,9 +90,8 @@ void main() {
 
     float V = 0.0;
     if (n_dot_l > 0.0) {
-        if (PLANE_SHADOW) V = plane_visibility(world, n, face_normal(uv, own.z));
-        else if (CASCADES > 1 || PCSS) V = sun_visibility(world, n, n_dot_l);
-        else V = visibility(world, n, n_dot_l);
+        if (PLANE_SHADOW) V = plane_visibility(world, n, view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale));
+        else V = sun_visibility(world, n, n_dot_l);
     }
     float A = AMBIENT ? ambient_occlusion(occlusion, OCCLUSION_DOWNSCALE, pixel + sun.occlusion_from, distance) : 0.0;
     vec3 sun_irradiance = max(n_dot_l, 0.0) * V * sun.illuminance;

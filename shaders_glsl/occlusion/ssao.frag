@@ -2,9 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "constants.glsl"
-#include "occluder.glsl"
+#include "face.glsl"
+#include "occlusion.glsl"
 #include "octahedral.glsl"
-#include "view.glsl"
 
 // Therrien et al. 2023, "Screen Space Indirect Lighting with Visibility Bitmask": a slice through the view direction is cut
 // into sectors, and each sample blocks those between its front and its back. As in Jimenez et al. 2016, "Practical Realtime
@@ -13,30 +13,20 @@
 
 layout(location = 0) out uint occlusion; // A and the distance along the view axis, packed
 
-layout(constant_id = 0) const int STEPS = 12;    // on each side of the slice
-layout(constant_id = 1) const int DOWNSCALE = 2; // pixels of the G-buffer to one of the occluders, each way
+layout(constant_id = 0) const int STEPS = 1;     // on each side of the slice
+layout(constant_id = 1) const int DOWNSCALE = 1; // pixels of the G-buffer to one of the occluders, each way
+layout(constant_id = 2) const int SPACING = 1;   // occluders to a point at which A is computed, each way
 
 layout(set = 0, binding = 0) uniform usampler2D occluders;
-layout(set = 0, binding = 1) uniform usampler2D words;
+layout(set = 0, binding = 1) uniform usampler2D normal_material;
 layout(set = 0, binding = 2, scalar) uniform View { VIEW_BLOCK } view;
 
 layout(set = 0, binding = 5) uniform sampler2D depth;
-
-layout(set = 0, binding = 3) uniform sampler2D cover; // depth seen from the zenith, reversed: 1 is highest
-layout(set = 0, binding = 4, scalar) uniform Cover {
-    mat4 from_view; // view space to the map's clip space
-    float texel;    // metres
-    float slack;    // depth by which a point must be below the map to be under it
-    int rays;       // of a slice that look for cover; 0 where the map is too coarse
-} zenith;
 
 layout(push_constant, scalar) uniform Push {
     float radius; // metres
     float phase;  // decorrelates frames that are averaged, 0..1
 } push;
-
-// Of a ray that looks for cover.
-const int RAY_STEPS = 2;
 
 const float SECTORS = 32.0;
 // What rises less than this over the face that is lit (a sine) is that face, not an occluder: samples lie at pixel centres,
@@ -58,14 +48,14 @@ vec3 point(vec2 texel, float distance) {
     return vec3(texel * ray_step + ray_base, -1.0) * distance;
 }
 
-// Nearest lookups cost a software device less than fetches, which it checks against the edges.
+// As `texel_at`, with sizes that are found once.
 
 uint occluder_at(vec2 texel) {
     return textureLod(occluders, (texel + 0.5) * texel_size, 0.0).r;
 }
 
 vec3 normal_at(vec2 texel) {
-    return normal_unpack(textureLod(words, (texel * float(DOWNSCALE) + 0.5) * pixel_size, 0.0).r) * view.world_from_view;
+    return normal_unpack(textureLod(normal_material, (texel * float(DOWNSCALE) + 0.5) * pixel_size, 0.0).r) * view.world_from_view;
 }
 
 /// Past the picture's edge that of its last pixel.
@@ -88,7 +78,7 @@ vec3 face_at(vec2 pixel) {
     float d = depth_at(pixel);
     vec2 slope = vec2(depth_slope(pixel, vec2(1.0, 0.0), d), depth_slope(pixel, vec2(0.0, 1.0), d)) * float(DOWNSCALE) / ray_step;
     vec3 normal = normal_of_slopes(slope, -p.xy / p.z);
-    return dot(normal, n) > 0.8 ? normal : n;
+    return dot(normal, n) > SAME_FACE ? normal : n;
 }
 
 /// Half of a slice: the side of the view direction toward which its axis points.
@@ -108,15 +98,9 @@ float weight(float c, vec2 n) {
     return 0.5 * ((1.0 - c2) * n.y + (0.5 * PI - c * (1.9836721 - c2 * (0.2379583 + 0.1722095 * c2))) * n.x);
 }
 
-/// 1 / sqrt x to 0.2 %: a shift and a step of Newton's method, where software devices take a root and a division.
-float rsqrt(float x) {
-    float y = uintBitsToFloat(0x5f375a86u - (floatBitsToUint(x) >> 1));
-    return y * (1.5 - 0.5 * x * y * y);
-}
-
 /// Sectors between the view direction and a point q of the slice (along the axis, along the view direction, metres).
 float sectors_to(vec2 q, Side side) {
-    float sectors = weight(q.y * rsqrt(dot(q, q) + 1e-20), side.n) * side.per_weight;
+    float sectors = weight(q.y * inversesqrt(dot(q, q) + 1e-20), side.n) * side.per_weight;
     // Behind the tangent plane everything is blocked by it.
     return dot(q, side.n) > 0.0 ? sectors : side.sectors;
 }
@@ -184,61 +168,7 @@ uint blocked_sectors(Side side, float jitter, float dither) {
     return sectors;
 }
 
-/// Depth of what is highest at a point of the map's clip space; 0 where nothing is.
-float highest(vec3 at) {
-    return textureLod(cover, at.xy * 0.5 + 0.5, 0.0).r;
-}
-
-/// Whether a ray from a point under cover, which is at `top` there, passes up through it: from below it to above it, with cover
-/// where it would meet a level one as high as over the point before.
-bool passes_cover(vec3 from, float top, vec3 step, float jitter) {
-    vec3 last = from;
-    bool blocked = false;
-    for (int i = 0; i < RAY_STEPS; ++i) {
-        vec3 at = from + step * (float(i) + 0.5 + 0.5 * jitter);
-        vec3 met = mix(last, at, clamp((top - last.z) / max(at.z - last.z, 1e-9), 0.0, 1.0));
-        // Where nothing is the map is 0.
-        blocked = blocked || (last.z <= top && top < at.z && highest(met) > max(last.z, 0.0));
-        top = highest(at);
-        last = at;
-    }
-    return blocked;
-}
-
-/// Sectors of one side up to a direction of the slice (along the axis, along the view direction, unit); none on the other side.
-float sectors_up_to(vec2 direction, Side side) {
-    return direction.x > 0.0 ? weight(direction.y, side.n) * side.per_weight : 0.0;
-}
-
-/// The direction of a slice at a sine to its normal (along the axis, along the view direction, unit).
-vec2 slice_direction(vec2 slice_n, float sine) {
-    return slice_n * sqrt(max(1.0 - sine * sine, 0.0)) + vec2(slice_n.y, -slice_n.x) * sine;
-}
-
-/// The sectors of both sides that lie behind a cover which the picture need not show: rays fan out from points under one.
-uvec2 covered_sectors(Side plus, Side minus, float jitter, float dither) {
-    vec3 from = (zenith.from_view * vec4(p + n * (1.5 * zenith.texel), 1.0)).xyz;
-    // Where no pixel of a group is under cover no more than one of the rays is computed.
-    float top = highest(from);
-    int rays = top > from.z + zenith.slack ? zenith.rays : 0;
-    // Between the tangents even in the sine of the angle to the normal: even in their cosine's weight.
-    vec2 low = slice_direction(plus.n, -1.0);
-    uvec2 sectors = uvec2(0u);
-    for (int i = 0; i < rays; ++i) {
-        float width = 2.0 / float(rays);
-        float sine = width * float(i + 1) - 1.0;
-        vec2 high = slice_direction(plus.n, sine);
-        vec2 middle = slice_direction(plus.n, sine - width * dither);
-        vec3 step = (plus.axis * middle.x + v * middle.y) * (push.radius / float(RAY_STEPS));
-        if (passes_cover(from, top, mat3(zenith.from_view) * step, jitter)) {
-            sectors.x |= between(sectors_up_to(low, plus), sectors_up_to(high, plus), dither);
-            vec2 mirrored = vec2(-1.0, 1.0);
-            sectors.y |= between(sectors_up_to(low * mirrored, minus), sectors_up_to(high * mirrored, minus), dither);
-        }
-        low = high;
-    }
-    return sectors;
-}
+#include "height_map.glsl"
 
 /// 1 - A by the slice at a share `turn` of half a circle.
 float slice_occlusion(float turn, float jitter, float dither, float distance) {
@@ -257,14 +187,14 @@ float slice_occlusion(float turn, float jitter, float dither, float distance) {
     Side plus = Side(axis, slice_n, stride, SECTORS * plus_weight / both, SECTORS / both);
     Side minus = Side(-axis, vec2(-slice_n.x, slice_n.y), -stride, SECTORS * minus_weight / both, SECTORS / both);
     uvec2 sectors = uvec2(blocked_sectors(plus, jitter, dither), blocked_sectors(minus, jitter, dither));
-    sectors |= covered_sectors(plus, minus, jitter, dither);
+    sectors |= roofed_sectors(plus, minus, jitter, dither);
     return length_n * both * float(bitCount(sectors.x) + bitCount(sectors.y)) / SECTORS;
 }
 
 void main() {
     ivec2 own = ivec2(gl_FragCoord.xy);
-    vec2 texel = vec2(own * OCCLUSION_SPACING);
-    vec2 full_size = vec2(textureSize(words, 0));
+    vec2 texel = vec2(own * SPACING);
+    vec2 full_size = vec2(textureSize(normal_material, 0));
     ray_step = 2.0 * float(DOWNSCALE) / full_size * view.ray_scale;
     ray_base = view_ray(0.5 / full_size, view.ray_scale, view.ray_offset).xy;
     texel_size = 1.0 / vec2(textureSize(occluders, 0));
@@ -276,7 +206,8 @@ void main() {
     n = normal_at(texel);
     face = face_at(texel * float(DOWNSCALE));
     origin = texel + 0.5;
-    // A pattern of 4x4 directions and step offsets, after Jimenez et al., taken out again by the blur.
+    // A pattern of 4x4 directions and step offsets, after Jimenez et al., taken out again by the blur. From frame to frame the
+    // phase moves each by another number of turns, coprime ones, so that they do not repeat together.
     ivec2 cell = own & 3;
     float turn = fract(float(((cell.x + cell.y) & 3) * 4 + cell.x) / 16.0 + push.phase);
     float jitter = fract(float((cell.y - cell.x) & 3) * 0.25 + 0.125 + push.phase * 7.0);

@@ -1,27 +1,34 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "occluder.glsl"
+#include "occlusion.glsl"
+#include "texel.glsl"
 
 // Takes out the pattern of ssao.frag by a box as wide as it, four of its texels, that does not cross depth edges.
 
 layout(location = 0) out uint occlusion; // A and the distance along the view axis, packed
 
+layout(constant_id = 0) const int SPACING = 1; // occluders to a texel, each way
+
+// An edge is where distance changes by more than this share of it ..
+const float EDGE = 0.01;
+// .. and by more than this many times what the plane under the texel changes by: across the box it is two texels of slope.
+const float PLANE = 3.0;
+
 layout(set = 0, binding = 0) uniform usampler2D noisy_occlusion;
 layout(set = 0, binding = 1) uniform usampler2D occluders;
 
-/// Past the picture's edge that of its last texel.
 float distance_at(vec2 texel) {
-    return packed_distance(textureLod(occluders, (texel + 0.5) / vec2(textureSize(occluders, 0)), 0.0).r);
+    return packed_distance(texel_at(occluders, texel).r);
 }
 
 void main() {
-    vec2 texel = floor(gl_FragCoord.xy) * float(OCCLUSION_SPACING);
+    vec2 texel = floor(gl_FragCoord.xy) * float(SPACING);
     float centre = distance_at(texel);
     // The slope of a plane seen at a grazing angle is no edge: the tolerance follows the smaller neighbouring step.
     float slope = min(abs(distance_at(texel - vec2(1, 0)) - centre), abs(distance_at(texel + vec2(1, 0)) - centre))
                 + min(abs(distance_at(texel - vec2(0, 1)) - centre), abs(distance_at(texel + vec2(0, 1)) - centre));
-    float scale = 1.0 / (0.01 * centre + 3.0 * slope * float(OCCLUSION_SPACING) + 1e-6);
+    float scale = 1.0 / (EDGE * centre + PLANE * slope * float(SPACING) + 1e-6);
     vec2 size = vec2(textureSize(noisy_occlusion, 0));
     vec2 sum = vec2(0.0);
     for (int y = -2; y <= 2; ++y) {

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "constants.glsl"
+#include "colour.glsl"
 
 // The luminance that automatic exposure goes by: Reinhard et al. 2002, eq. 1, bounded around the median. The CPU's
 // twin is daylight/exposure.rs. One workgroup: a histogram, its median, then the bounded mean of log2 L.

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "constants.glsl"
+#include "colour.glsl"
 #include "tone_curve.glsl"
 #include "false_colour.glsl"
 

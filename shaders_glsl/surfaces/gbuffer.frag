@@ -1,31 +1,84 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "octahedral.glsl"
-#include "facing.glsl"
+// ALBEDO: there is a target for rho_d. DETAILED: surfaces with holes, normal maps or colours at their vertices.
+// Variant: ALBEDO
+// Variant: DETAILED
+// Variant: DETAILED ALBEDO
+#include "gbuffer.glsl"
+#include "face.glsl"
 #include "materials.glsl"
-#include "gbuffer_push.glsl"
-#include "face_slope.glsl"
+#include "octahedral.glsl"
 
 layout(location = 0) in vec3 from_eye;
 layout(location = 1) in vec3 shading_normal;
 layout(location = 2) in vec2 surface_uv;
-layout(location = 3) flat in float thickness; // behind the surface, metres
+layout(location = 3) flat in float thickness; // of the body behind the surface, metres
 
-// x: world normal, octahedral; y: lower half: column of the table of materials; upper: of the thickness' bits; z: the face's slopes
-layout(location = 0) out uvec4 words;
-layout(location = 1) out vec4 albedo;   // rgb: rho_d; a: factor on rho_s. Scenes without maps have it in the table only
+// x: world normal, octahedral; y: material and thickness, see materials.glsl; z: slopes of the face, see face.glsl
+layout(location = 0) out uvec4 normal_material;
+#ifdef ALBEDO
+layout(location = 1) out vec4 albedo; // rgb: rho_d; a: factor on rho_s
+#endif
 
 layout(constant_id = 0) const bool DIFFUSE_MAP = true;
 layout(constant_id = 1) const bool SPECULAR_MAP = true;
+layout(constant_id = 3) const bool CUT_OUT = true;
+// Front faces are on the side of all their normals, which loading the scene has checked.
+layout(constant_id = 4) const bool NORMALS_MATCH_WINDING = false;
+// Whether the G-buffer keeps the slopes of faces.
+layout(constant_id = 5) const bool FACES = false;
 
-layout(set = 0, binding = 0) uniform sampler2D diffuse_map;
-layout(set = 0, binding = 1) uniform sampler2D specular_map;
+layout(set = 0, binding = 1) uniform sampler2D diffuse_map;
+layout(set = 0, binding = 2) uniform sampler2D specular_map;
+
+// Cards of leaves and grass lean their normals out of the crown or up: a normal across the face stays as it is.
+const float CUT_OUT_SLACK = 0.5;
+
+#ifdef DETAILED
+layout(constant_id = 2) const bool NORMAL_MAP = true;
+
+layout(set = 0, binding = 3) uniform sampler2D normal_map;
+
+layout(location = 4) in vec4 surface_colour;  // linear RGBA
+layout(location = 5) in vec4 surface_tangent; // w: sign of the bitangent
+
+/// The normal of the map in the frame of the surface (Mikkelsen 2008: interpolated, not normalised).
+vec3 mapped_normal(vec3 n) {
+    vec3 slope = texture(normal_map, surface_uv, -camera.sharpen).xyz * 2.0 - 1.0;
+    slope.xy *= push.normal_scale;
+    vec3 bitangent = cross(shading_normal, surface_tangent.xyz) * surface_tangent.w;
+    return slope.x * surface_tangent.xyz + slope.y * bitangent + slope.z * n;
+}
+
+/// A mapped normal that reflects the view above the surface. A ray reflected into the surface meets it again and is reflected
+/// once more, upward; without that, waves far away would reflect the ground below the horizon.
+vec3 reflecting_up(vec3 mapped, vec3 n) {
+    vec3 toward = normalize(from_eye);
+    vec3 r = reflect(toward, normalize(mapped));
+    float below = dot(r, normalize(n));
+    return below < 0.0 ? r - 2.0 * below * normalize(n) - toward : mapped;
+}
+#endif
 
 void main() {
-    uint normal = normal_pack(facing_normal(shading_normal, from_eye, 0.0));
-    albedo = vec4(push.diffuse, 1.0);
-    if (DIFFUSE_MAP) albedo.rgb *= texture(diffuse_map, surface_uv, -push.sharpen).rgb;
-    if (SPECULAR_MAP) albedo.a = dot(texture(specular_map, surface_uv, -push.sharpen).rgb, vec3(1.0 / 3.0));
-    words = uvec4(normal, material_word(push.material, thickness), face_slopes(), 0u);
+    vec3 n;
+    if (NORMALS_MATCH_WINDING) n = gl_FrontFacing ? shading_normal : -shading_normal;
+    else n = facing_normal(shading_normal, from_eye, CUT_OUT ? CUT_OUT_SLACK : 0.0);
+    vec4 diffuse = vec4(push.diffuse, 1.0);
+#ifdef DETAILED
+    diffuse *= surface_colour;
+    if (NORMAL_MAP) {
+        vec3 mapped = mapped_normal(n);
+        n = push.is_specular != 0u ? reflecting_up(mapped, n) : mapped;
+    }
+#endif
+    if (DIFFUSE_MAP) diffuse *= texture(diffuse_map, surface_uv, -camera.sharpen);
+#ifdef ALBEDO
+    float gloss = 1.0;
+    if (SPECULAR_MAP) gloss = dot(texture(specular_map, surface_uv, -camera.sharpen).rgb, vec3(1.0 / 3.0));
+    albedo = vec4(diffuse.rgb, gloss);
+#endif
+    if (CUT_OUT && diffuse.a < push.cutoff) discard;
+    normal_material = uvec4(normal_pack(n), material_word(push.material, thickness), FACES ? face_slopes() : 0u, 0u);
 }

@@ -1,4 +1,4 @@
-//! The camera as the screen-space shaders see it.
+//! The camera with its picture: matrices, and the block that screen-space shaders read.
 
 use glam::{Mat3, Mat4, UVec2, Vec2, Vec3};
 
@@ -7,7 +7,7 @@ use crate::scene::Camera;
 
 gpu_struct! {
     /// `VIEW_BLOCK` of `include/view.glsl`.
-    pub struct ViewBlock: view of SSAO_FRAG, LIGHTING_FRAG, BACKGROUND_FRAG, DOME_GATHER_FRAG, DOME_MIRROR_FRAG {
+    pub struct ViewBlock: view of SSAO_FRAG, LIGHTING_FRAG, BACKGROUND_FRAG, DOME_GATHER_FRAG, DOME_SPECULAR_FRAG {
         world_from_view: Mat3,
         eye: Vec3,
         ray_scale: Vec2,
@@ -25,9 +25,9 @@ pub struct View {
     pub size: UVec2,
     /// Offset of the sample in the pixel, in pixels, −0.5..0.5; zero is the pixel's centre.
     pub jitter: Vec2,
-    /// Mip levels by which textures are sharper than one sample a pixel wants: many samples filter better than mip maps.
+    /// Mip bias, levels toward the finer ones: the mean of many samples filters better than mip maps.
     pub sharpen: f32,
-    /// The part of a larger picture that this one is; the whole without it.
+    /// The part of a larger picture that this one is; None: the whole.
     pub window: Option<Window>,
 }
 
@@ -41,7 +41,7 @@ pub struct Window {
 }
 
 impl View {
-    /// The view of the whole picture, whose part this is.
+    /// The view of the whole picture of which this is a part.
     pub fn whole(&self) -> Self {
         let picture = self.window.map(|window| window.picture.ceil().as_uvec2());
         Self {
@@ -51,7 +51,7 @@ impl View {
         }
     }
 
-    /// The same from so many metres behind: on all sides it sees equally far beside this one.
+    /// The view from so many metres behind: its frustum is wider by the same distance on all sides.
     pub fn from_behind(&self, metres: f32) -> Self {
         let mut view = *self;
         view.camera.eye -= view.camera.forward() * metres;
@@ -64,7 +64,7 @@ impl View {
         picture.x / picture.y
     }
 
-    /// Takes x and y of the whole picture's clip space to the part's: a factor and a shift.
+    /// From x and y of the whole picture's clip space to the part's: a factor and a shift.
     fn part(&self) -> (Vec2, Vec2) {
         let Some(window) = self.window else {
             return (Vec2::ONE, Vec2::ZERO);
@@ -100,7 +100,7 @@ impl View {
         block.eye + block.world_from_view * ray * distance
     }
 
-    /// What the shaders need to reconstruct positions and rays.
+    /// The block from which shaders reconstruct positions and rays.
     pub fn block(&self) -> ViewBlock {
         let tan_y = (0.5 * self.camera.fov_deg.to_radians()).tan();
         // Vulkan's rows run down, the camera's y runs up.

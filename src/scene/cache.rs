@@ -87,7 +87,7 @@ pub(super) fn read(entry: &Path, path: &Path) -> Option<Loaded> {
     }
     let scene = head.scene(&mut entry)?;
     let agrees = entry.checksum_agrees() && head.files.iter().all(ReadFile::is_unchanged);
-    (agrees && is_sound(&scene)).then(|| Loaded {
+    (agrees && is_valid(&scene)).then(|| Loaded {
         path: path.to_owned(),
         scene,
         options: head.options,
@@ -278,7 +278,7 @@ impl Picture {
 }
 
 /// Whether the invariants of a scene hold: indices in range, attributes of the same length.
-fn is_sound(scene: &Scene) -> bool {
+fn is_valid(scene: &Scene) -> bool {
     let vertices = scene.positions.len();
     let whole = |n: usize| n == vertices;
     let streams = whole(scene.normals.len()) && whole(scene.texcoords.len());

@@ -152,7 +152,7 @@ pub(super) fn load_from(
             }
         }
     };
-    builder.scene.fill_streams();
+    builder.scene.pad_attributes();
     *files = builder.files;
     progress(READING, "sorting");
     builder.scene.arrange();

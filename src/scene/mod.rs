@@ -106,7 +106,7 @@ impl Default for Scene {
 
 impl Scene {
     /// Pads colours and tangents to one for each vertex, unless they are empty.
-    fn fill_streams(&mut self) {
+    fn pad_attributes(&mut self) {
         let vertices = self.positions.len();
         if !self.colours.is_empty() {
             self.colours.resize(vertices, [u16::MAX; 4]);

@@ -56,14 +56,18 @@ impl Running {
     pub fn with(words: &[&str], variables: &[(&str, &Path)]) -> Self {
         let display = Display::new();
         let folder = tempfile::tempdir().expect("a scratch folder");
-        let child = program(folder.path())
+        let mut child = program(folder.path())
             .arg("view")
             .args(words)
             .env("DISPLAY", &display.name)
             .envs(variables.iter().copied())
             .spawn()
             .expect("the program starts");
-        let window = display.window();
+        // A program that ends at once may never show its window.
+        let window = until("a window", || {
+            let ended = || child.try_wait().expect("a state").map(|_| x11rb::NONE);
+            display.window().or_else(ended)
+        });
         display.focus(window);
         let running = Self {
             display,

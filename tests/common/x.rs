@@ -79,20 +79,13 @@ impl Display {
         }
     }
 
-    /// The first window that is shown, when it is.
-    pub fn window(&self) -> Window {
-        until("a window", || {
-            let tree = self.connection.query_tree(self.root).ok()?.reply().ok()?;
-            let shown = |w: &Window| {
-                let attributes = self
-                    .connection
-                    .get_window_attributes(*w)
-                    .ok()?
-                    .reply()
-                    .ok()?;
-                (attributes.map_state == MapState::VIEWABLE).then_some(*w)
-            };
-            tree.children.iter().find_map(shown)
+    /// The first window that is shown.
+    pub fn window(&self) -> Option<Window> {
+        let tree = self.connection.query_tree(self.root).ok()?.reply().ok()?;
+        tree.children.into_iter().find(|window| {
+            let attributes = self.connection.get_window_attributes(*window);
+            let attributes = attributes.ok().and_then(|cookie| cookie.reply().ok());
+            attributes.is_some_and(|a| a.map_state == MapState::VIEWABLE)
         })
     }
 
@@ -110,13 +103,13 @@ impl Display {
         String::from_utf8_lossy(&value).into_owned()
     }
 
-    /// Gives a window the keyboard.
+    /// Gives a window the keyboard, if it is still there: its program may have ended.
     pub fn focus(&self, window: Window) {
-        self.connection
-            .set_input_focus(InputFocus::PARENT, window, x11rb::CURRENT_TIME)
-            .expect("sent")
-            .check()
-            .expect("the focus");
+        let focus = InputFocus::PARENT;
+        let cookie = self
+            .connection
+            .set_input_focus(focus, window, x11rb::CURRENT_TIME);
+        let _ = cookie.expect("sent").check();
     }
 
     /// Width and height of a window, pixels.

@@ -20,8 +20,11 @@ fn bodies() -> [(&'static str, Scene); 2] {
 
 fn check(method: IrradianceMethod) {
     let mut device = Device::new();
-    // E is a 16-bit number: 2^-11 = 0.05 %; the rest of the chain is 32-bit. The issue allows 0.5 %.
-    let mut worst = Worst::new("L of a white body and of the sky around it against 1", 5e-3);
+    // E is a 16-bit number: 2^-11 = 0.05 %; the rest of the chain is 32-bit. Measured: 3.08e-4.
+    let mut worst = Worst::new(
+        "L of a white body and of the sky around it against 1",
+        3.4e-4,
+    );
     for (name, scene) in bodies() {
         for eye in [[2.0, 1.5, 2.5], [-2.5, -1.0, -1.5], [0.1, 3.0, 0.1]] {
             let (camera, day) = (camera(eye, [0.0; 3]), constant_sky(1000.0));

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::running::{Running, difference};
+use crate::running::{Running, difference, shared_machine};
 
 const STAGE: &str = "picture/tone_map.frag";
 
@@ -25,6 +25,7 @@ fn copy(from: &Path, to: &Path) {
 
 #[test]
 fn a_changed_shader_is_seen_and_a_broken_one_is_told() {
+    let _machine = shared_machine();
     let folder = tempfile::tempdir().expect("a scratch folder");
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders_glsl");
     copy(&sources, folder.path());

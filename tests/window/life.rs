@@ -233,7 +233,7 @@ fn a_window_at_rest_costs_nothing() {
 #[test]
 fn dragging_keeps_going() {
     let _machine = quiet_machine();
-    let running = Running::new(&["--size", "1280x720"]);
+    let running = Running::new(&["--size", "1280x720", "--samples", "2"]);
     running.picture();
     let (d, window) = (&running.display, running.window);
     let part = Some([600, 300, 64, 64]);

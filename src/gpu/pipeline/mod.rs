@@ -15,7 +15,7 @@ use ash::vk;
 use crate::gpu::device::context::Context;
 use crate::gpu::device::fault::Call;
 use crate::gpu::error::{During, Result};
-use crate::gpu::pipeline::shader::{Binding, Constants, Field, Modules, Shader};
+use crate::gpu::pipeline::shader::{Binding, Constants, Field, Modules, Shader, Stage};
 
 /// Depth test of a pipeline. Depth is reversed: 1 is nearest, 0 is infinitely far.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -149,7 +149,8 @@ impl Pipeline {
     /// When the driver cannot create it.
     ///
     /// # Panics
-    /// When the stages contradict each other or no stage declares a constant: defects of this program.
+    /// When the stages contradict each other, no stage declares a constant, or a fragment shader does not write exactly the colour
+    /// attachments: defects of this program.
     pub fn new(context: &Arc<Context>, desc: &PipelineDesc<'_>) -> Result<Self> {
         let start = Instant::now();
         let slots = merge_slots(desc.stages);
@@ -163,6 +164,14 @@ impl Pipeline {
                 declared,
                 "{}: no stage declares the constant {name}",
                 desc.name
+            );
+        }
+        for shader in desc.stages.iter().filter(|s| s.stage == Stage::Fragment) {
+            let (outputs, targets) = (shader.outputs, desc.colors.len());
+            assert_eq!(
+                outputs, targets,
+                "{}: outputs of {}",
+                desc.name, shader.name
             );
         }
         let mut pipeline = Self {

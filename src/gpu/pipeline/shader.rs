@@ -82,7 +82,7 @@ pub struct Binding {
 /// A compiled stage and its declarations, which build.rs reads from the SPIR-V.
 #[derive(Debug)]
 pub struct Shader {
-    /// Path below `shaders_glsl/`.
+    /// Path below `shaders_glsl/`, and the macros of a variant: `gbuffer.frag+ALBEDO`.
     pub name: &'static str,
     /// Stage.
     pub stage: Stage,
@@ -92,6 +92,8 @@ pub struct Shader {
     pub push: Option<&'static [Field]>,
     /// Specialization constants: name and id.
     pub constants: &'static [(&'static str, u32)],
+    /// Outputs that have a location: of a fragment shader the colour attachments that it writes.
+    pub outputs: usize,
     /// Invocations of a work group in x, y and z, of a compute shader.
     pub local_size: Option<[u32; 3]>,
     /// SPIR-V.

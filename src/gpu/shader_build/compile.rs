@@ -18,8 +18,8 @@ fn stage_kind(path: &Path) -> Option<ShaderKind> {
     }
 }
 
-/// Compiles the stage `name`, a path below the folder of all shaders; includes lie in that folder's `include`. With `debug` it
-/// keeps names and lines, unoptimised.
+/// Compiles the stage `name`, a path below the folder of all shaders, of a variant followed by its macros as `+A+B`; includes lie
+/// in that folder's `include`. With `debug` it keeps names and lines, unoptimised.
 ///
 /// # Errors
 /// The compiler's lines, `file:line: message`.
@@ -29,7 +29,8 @@ pub fn compile(
     name: &str,
     debug: bool,
 ) -> Result<Vec<u32>, String> {
-    let path = &shaders.join(name);
+    let mut parts = name.split('+');
+    let path = &shaders.join(parts.next().unwrap_or_default());
     let source = fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
     let kind = stage_kind(path).ok_or_else(|| format!("{}: no stage", path.display()))?;
     let folder = shaders.join("include");
@@ -42,6 +43,9 @@ pub fn compile(
         _ => SpirvVersion::V1_6,
     });
     options.set_warnings_as_errors();
+    for defined in parts {
+        options.add_macro_definition(defined, None);
+    }
     if debug {
         options.set_generate_debug_info();
         options.set_optimization_level(OptimizationLevel::Zero);

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{Decoration, ExecutionMode, Op, StorageClass, Word};
 
-/// The fields `bindings`, `push`, `constants` and `local_size` of a `Shader`, as Rust source; `words` must have been compiled with names.
+/// The fields `bindings`, `push`, `constants`, `outputs` and `local_size` of a `Shader`, as Rust source; `words` must have been compiled with names.
 ///
 /// # Errors
 /// Words that are no SPIR-V, or a descriptor without a binding.
@@ -49,8 +49,9 @@ pub fn declarations(name: &str, words: &[u32]) -> Result<String, String> {
         .collect();
     constants.sort_unstable();
     let local_size = module.execution_modes.iter().find_map(local_size);
+    let outputs = reflection.outputs();
     Ok(format!(
-        "bindings: &[{bindings}], push: {push}, constants: &{constants:?}, local_size: {local_size:?}"
+        "bindings: &[{bindings}], push: {push}, constants: &{constants:?}, outputs: {outputs}, local_size: {local_size:?}"
     ))
 }
 
@@ -146,6 +147,20 @@ impl<'m> Reflection<'m> {
             Operand::StorageClass(class) => Some(*class),
             _ => None,
         }
+    }
+
+    /// Number of outputs that have a location.
+    fn outputs(&self) -> usize {
+        let is_located = |v: &&&Instruction| {
+            let key = (v.result_id.unwrap_or_default(), Decoration::Location);
+            self.decorations.contains_key(&key)
+        };
+        let written = |v: &&&Instruction| Self::storage(v) == Some(StorageClass::Output);
+        self.variables
+            .iter()
+            .filter(written)
+            .filter(is_located)
+            .count()
     }
 
     /// Size in bytes of a type in `layout(scalar)`: no padding between components.

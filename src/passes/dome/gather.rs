@@ -20,25 +20,66 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
-use crate::passes::dome::block::{Direction, DomeBlock};
 use crate::passes::dome::fit::{Receivers, fit};
-use crate::passes::dome::specular::Mirror;
+use crate::passes::dome::specular::SpecularSky;
 use crate::passes::light::lighting::{LightingSettings, Show};
 use crate::passes::sun_shadow::fit::ShadowView;
 use crate::passes::sun_shadow::map::{Casters, Tile};
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::surfaces::geometry::Geometry;
+use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
 use crate::passes::{fullscreen, fullscreen_at, kilo};
 
-/// Most directions of a frame: what the shader's block holds.
+/// Most directions of a frame: the length of the shader's arrays.
 pub const MOST_DIRECTIONS: u32 = 16;
 
 gpu_struct! {
-    /// This frame among the others.
+    /// The directions of a frame, see `include/dome.glsl`.
+    pub struct DomeBlock: dome of DOME_GATHER_FRAG, DOME_SPECULAR_FRAG {
+        clip_from_world: [[[f32; 4]; 4]; 16],
+        planes: [[[f32; 4]; 4]; 16],
+        window: [[f32; 4]; 16],
+        toward: [[f32; 4]; 16],
+        light: [[f32; 4]; 16],
+    }
+}
+
+gpu_struct! {
+    /// Light of the ground, and the weight of this frame.
     pub struct Push: push of DOME_GATHER_FRAG {
         ground: Vec3,
         share: f32,
+    }
+}
+
+/// A direction with its map, a tile of the image of maps.
+struct Direction<'a> {
+    /// Unit vector toward the light.
+    pub toward: Vec3,
+    /// Share of the irradiance at normal incidence, klx.
+    pub light: Vec3,
+    /// Whether it is of the sky, and not of the ground.
+    pub is_sky: bool,
+    /// View of its map.
+    pub view: &'a ShadowView,
+    /// First texel of the map, and its edge.
+    pub window: [u32; 3],
+}
+
+impl DomeBlock {
+    /// Of at most [`MOST_DIRECTIONS`].
+    fn new<'a>(directions: impl Iterator<Item = Direction<'a>>) -> Self {
+        let mut block: Self = bytemuck::Zeroable::zeroed();
+        for (k, d) in directions.take(MOST_DIRECTIONS as usize).enumerate() {
+            let [x, y, edge] = d.window;
+            block.clip_from_world[k] = d.view.shadow_from_world.to_cols_array_2d();
+            block.planes[k] = d.view.planes().to_cols_array_2d();
+            block.window[k] = [x, y, edge, edge].map(|texels| texels as f32);
+            block.toward[k] = d.toward.extend(BIAS_TEXELS * d.view.texel_depth).to_array();
+            block.light[k] = d.light.extend(f32::from(u8::from(d.is_sky))).to_array();
+        }
+        block
     }
 }
 
@@ -63,7 +104,7 @@ impl Default for DomeSettings {
     }
 }
 
-/// What the gathering looks at.
+/// Inputs of the pass.
 #[derive(Clone, Copy)]
 pub struct Gathered<'a> {
     /// The surfaces in view.
@@ -93,13 +134,13 @@ pub struct Dome {
     /// Alternating means: sky and rest, see `dome_gather.frag`.
     means: [[Image; 2]; 2],
     radiance: Image,
-    /// Mirrors from which the sky is hidden, where there are any.
-    mirror: Option<Mirror>,
+    /// Specular reflection of the sky with its visibility, if asked for.
+    specular: Option<SpecularSky>,
     sky: Option<(Daylight, SkySampler)>,
     is_shown: bool,
 }
 
-/// Tells the scrambling of the ground's directions from that of the sky's.
+/// Scrambles the directions of the ground differently from those of the sky.
 const GROUND: u32 = 0x0640_0000;
 
 const FORMAT: Format = Format::R32G32B32A32_SFLOAT;
@@ -130,7 +171,7 @@ impl Dome {
         lighting: LightingSettings,
     ) -> Result<Self> {
         let show = lighting.show;
-        let mirror = Mirror::new(context, size, settings, lighting)?;
+        let specular = SpecularSky::new(context, size, settings, lighting)?;
         let image = |name| Image::new(context, &ImageDesc::flat(name, FORMAT, size));
         let tiles = columns(settings.directions);
         let rows = settings.directions.div_ceil(tiles);
@@ -154,8 +195,8 @@ impl Dome {
             ],
             radiance: image("radiance, converging")?,
             sky: None,
-            is_shown: shows_sky(show) || mirror.is_some(),
-            mirror,
+            is_shown: shows_sky(show) || specular.is_some(),
+            specular,
         })
     }
 
@@ -174,7 +215,7 @@ impl Dome {
         let views: Vec<ShadowView> = (0u32..)
             .zip(&lights)
             .map(|(k, light)| {
-                // Not in step with the directions, or every direction would have a shift of its own.
+                // From another sequence than the directions: otherwise each direction would always get the same shift.
                 let number = index.wrapping_mul(self.settings.directions) + k;
                 let shift = sampling::richtmyer(number).as_vec2();
                 let toward = light.direction.as_vec3();
@@ -197,16 +238,18 @@ impl Dome {
         };
         self.gather(recorder, gathered, view, &block, &push);
         self.resolve(recorder);
-        if let Some(mirror) = &mut self.mirror {
+        if let Some(specular) = &mut self.specular {
             let (maps, picture) = ((&self.maps, &block), &self.radiance);
-            mirror.record(recorder, gathered, view, maps, picture, index);
+            specular.record(recorder, gathered, view, maps, picture, index);
         }
         self.image()
     }
 
     /// The picture of the newest means, kcd/m².
     pub fn image(&self) -> &Image {
-        self.mirror.as_ref().map_or(&self.radiance, Mirror::image)
+        self.specular
+            .as_ref()
+            .map_or(&self.radiance, SpecularSky::image)
     }
 
     /// Directions of the frame: first of the sky, then, where the ground shines, a quarter of the ground. Each stands for its
@@ -296,7 +339,11 @@ impl Dome {
         recorder
             .pass("dome: gather", &self.gather)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample("words", &surfaces.words, Sampler::Nearest)
+            .sample(
+                "normal_material",
+                &surfaces.normal_material,
+                Sampler::Nearest,
+            )
             .sample("albedo", albedo, Sampler::Nearest)
             .sample("materials", gathered.materials, Sampler::Nearest)
             .sample("frame", gathered.frame, Sampler::Nearest)
@@ -341,6 +388,7 @@ fn gather_pipeline(
             ("SKY", shows_sky(show).into()),
             ("DIRECTIONS", settings.directions),
             ("ALBEDO_IMAGE", geometry.has_albedo().into()),
+            ("MATERIAL_COLUMNS", MATERIAL_COLUMNS),
         ],
     )
 }

@@ -1,6 +1,5 @@
-//! The sky's visibility by shadow maps from directions of the dome: what converging frames add up.
+//! The sky's visibility by shadow maps from directions of the sky, averaged over converging frames.
 
-pub mod block;
 pub mod fit;
 pub mod gather;
 pub mod specular;

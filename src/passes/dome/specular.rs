@@ -1,8 +1,8 @@
-//! Mirrors: which form their lobe has, and whether anything hides the sky from them.
+//! Specular reflection: the form of the lobe, and the sky's visibility in it.
 //!
-//! The lecture's illumination model mirrors the open sky, ρ_s L_sky(r); its rendering equation has a visibility there,
-//! ρ_s V(x, r) L_sky(r). The pass tells V by the maps that [`crate::passes::dome::gather`] draws: the share of the sky's light in the lobe
-//! around r that is not hidden, over all directions so far.
+//! The lecture's illumination model reflects the open sky, ρ_s L_sky(r); its rendering equation has a visibility there,
+//! ρ_s V(x, r) L_sky(r). The pass estimates V with the maps of [`crate::passes::dome::gather`]: the visible share of the sky's light
+//! in the lobe around r, over all directions so far.
 
 use std::sync::Arc;
 
@@ -15,23 +15,23 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
-use crate::passes::dome::block::DomeBlock;
-use crate::passes::dome::gather::{DomeSettings, Gathered};
+use crate::passes::dome::gather::{DomeBlock, DomeSettings, Gathered};
 use crate::passes::light::lighting::{LightingSettings, Show};
+use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
 use crate::passes::{fullscreen, fullscreen_at};
 
-/// The lobe of a mirror.
+/// The specular lobe.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum Phong {
     /// The lecture's: (r·l)^p of the sun, and the sky as in a perfect mirror.
     #[default]
     Lecture,
-    /// A reflectance that keeps the balance of energy, ρ_s (p + 2)/(2π) (r·l)^p cos θ: of sun and sky alike.
+    /// Energy-conserving, ρ_s (p + 2)/(2π) (r·l)^p cos θ, of sun and sky alike.
     Normalized,
 }
 
-/// What hides the sky from mirrors.
+/// The sky's visibility in specular reflections.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum Reflections {
     /// Nothing, as in the lecture's illumination model.
@@ -41,18 +41,18 @@ pub enum Reflections {
     Hidden,
 }
 
-/// How surfaces mirror.
+/// Specular terms.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Mirrors {
-    /// Their lobe.
+    /// The lobe.
     pub phong: Phong,
-    /// What hides the sky from them.
+    /// The sky's visibility in it.
     pub reflections: Reflections,
 }
 
 gpu_struct! {
-    /// This frame among the others.
-    pub struct Push: push of DOME_MIRROR_FRAG {
+    /// Noise and weight of this frame, scale of ρ_s.
+    pub struct Push: push of DOME_SPECULAR_FRAG {
         shift: Vec2,
         share: f32,
         specular_scale: f32,
@@ -62,17 +62,17 @@ gpu_struct! {
 const FORMATS: [Format; 2] = [Format::R32G32B32A32_SFLOAT, Format::R32_SFLOAT];
 
 /// The pass and its means.
-pub(in crate::passes) struct Mirror {
+pub(in crate::passes) struct SpecularSky {
     lighting: LightingSettings,
     gather: Pipeline,
     resolve: Pipeline,
-    /// Alternating means: the open mirror with the light that is not hidden, and all light of the lobe.
+    /// Alternating means: reflection of the open sky with the visible light of the lobe, and all light of the lobe.
     means: [[Image; 2]; 2],
     radiance: Image,
 }
 
-impl Mirror {
-    /// Nothing where no mirror with hidden sky is shown.
+impl SpecularSky {
+    /// None if what is shown has no specular reflection with visibility.
     pub fn new(
         context: &Arc<Context>,
         size: [u32; 2],
@@ -89,20 +89,23 @@ impl Mirror {
         }
         let image = |name, format| Image::new(context, &ImageDesc::flat(name, format, size));
         let pair = || -> Result<[Image; 2]> {
-            Ok([image("mirror", FORMATS[0])?, image("lobe", FORMATS[1])?])
+            Ok([
+                image("reflected sky", FORMATS[0])?,
+                image("lobe", FORMATS[1])?,
+            ])
         };
-        let name = "dome: resolve mirrors";
-        let resolve = &shaders::DOME_MIRROR_RESOLVE_FRAG;
+        let name = "dome: resolve specular";
+        let resolve = &shaders::DOME_SPECULAR_RESOLVE_FRAG;
         Ok(Some(Self {
             lighting,
             gather: gather_pipeline(context, dome, lighting)?,
             resolve: fullscreen(context, name, resolve, FORMATS[0], &[])?,
             means: [pair()?, pair()?],
-            radiance: image("radiance with mirrors", FORMATS[0])?,
+            radiance: image("radiance with specular", FORMATS[0])?,
         }))
     }
 
-    /// Adds the mirrors of frame number `index` to the means, and those to `picture`.
+    /// Adds frame number `index` to the means, and the means to `picture`.
     #[allow(clippy::too_many_arguments)]
     pub fn record(
         &mut self,
@@ -114,15 +117,19 @@ impl Mirror {
         index: u32,
     ) {
         self.means.swap(0, 1);
-        let [[mirror, lobe], [old_mirror, old_lobe]] = &self.means;
+        let [[reflected, lobe], [old_reflected, old_lobe]] = &self.means;
         let (surfaces, materials) = (gathered.surfaces, gathered.materials);
         let albedo = surfaces.albedo.as_ref().unwrap_or(materials);
         recorder
-            .pass("dome: mirrors", &self.gather)
+            .pass("dome: specular", &self.gather)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample("words", &surfaces.words, Sampler::Nearest)
+            .sample(
+                "normal_material",
+                &surfaces.normal_material,
+                Sampler::Nearest,
+            )
             .sample("albedo", albedo, Sampler::Nearest)
-            .sample("previous_mirror", old_mirror, Sampler::Nearest)
+            .sample("previous_reflected", old_reflected, Sampler::Nearest)
             .sample("previous_lobe", old_lobe, Sampler::Nearest)
             .sample("maps", maps, Sampler::Nearest)
             .sample("sky_radiance", gathered.sky_radiance, Sampler::Linear)
@@ -134,19 +141,19 @@ impl Mirror {
                 share: 1.0 / (index + 1) as f32,
                 specular_scale: self.lighting.specular_scale,
             })
-            .color(mirror, Load::Discard)
+            .color(reflected, Load::Discard)
             .color(lobe, Load::Discard)
             .draw();
         recorder
-            .pass("dome: resolve mirrors", &self.resolve)
+            .pass("dome: resolve specular", &self.resolve)
             .sample("picture", picture, Sampler::Nearest)
-            .sample("mirror", mirror, Sampler::Nearest)
+            .sample("reflected", reflected, Sampler::Nearest)
             .sample("lobe", lobe, Sampler::Nearest)
             .color(&self.radiance, Load::Discard)
             .draw();
     }
 
-    /// The picture with its mirrors, kcd/m².
+    /// The picture with specular reflections, kcd/m².
     pub fn image(&self) -> &Image {
         &self.radiance
     }
@@ -160,8 +167,8 @@ fn gather_pipeline(
     let normalized = lighting.mirrors.phong == Phong::Normalized;
     fullscreen_at(
         context,
-        "dome: mirrors",
-        &shaders::DOME_MIRROR_FRAG,
+        "dome: specular",
+        &shaders::DOME_SPECULAR_FRAG,
         &FORMATS,
         Depth::Off,
         &[
@@ -169,6 +176,7 @@ fn gather_pipeline(
             ("FRESNEL", lighting.fresnel.into()),
             ("NORMALIZED", normalized.into()),
             ("ALBEDO_IMAGE", lighting.has_albedo.into()),
+            ("MATERIAL_COLUMNS", MATERIAL_COLUMNS),
         ],
     )
 }

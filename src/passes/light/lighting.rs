@@ -18,10 +18,10 @@ use crate::gpu_struct;
 
 use crate::passes::dome::gather::BIAS_TEXELS;
 use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
-pub use crate::passes::light::precision::Precision;
 pub use crate::passes::sun_shadow::cascades::Shadows;
-use crate::passes::sun_shadow::cascades::SunViews;
+use crate::passes::sun_shadow::cascades::{BLEND, MAX_RADIUS, NORMAL_OFFSET_TEXELS, SunViews};
 use crate::passes::surfaces::gbuffer::Surfaces;
+use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
 use crate::passes::{fullscreen_at, kilo};
 
@@ -31,7 +31,7 @@ gpu_struct! {
         shadow_from_world: [[f32; 4]; 4],
         direction: Vec3,
         illuminance: Vec3,
-        normal_offset: f32,
+        depth_bias: f32,
         max_radiance: f32,
         specular_scale: f32,
         planes: [[f32; 4]; 4],
@@ -152,6 +152,32 @@ impl Show {
     }
 }
 
+/// Precision of radiance on the device.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// Half floats: for the screen. The sun's disc is clamped to 65 504 kcd/m².
+    Half,
+    /// 32-bit floats: for files and sums.
+    Float,
+}
+
+impl Precision {
+    pub(in crate::passes) fn format(self) -> Format {
+        match self {
+            Self::Half => Format::R16G16B16A16_SFLOAT,
+            Self::Float => Format::R32G32B32A32_SFLOAT,
+        }
+    }
+
+    /// Largest radiance that the format holds, kcd/m².
+    pub(in crate::passes) fn max_radiance(self) -> f32 {
+        match self {
+            Self::Half => 65_504.0,
+            Self::Float => f32::MAX,
+        }
+    }
+}
+
 /// How surfaces are lit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LightingSettings {
@@ -161,7 +187,7 @@ pub struct LightingSettings {
     pub precision: Precision,
     /// Factor on every ρ_s; 0 leaves the lookups out, which [`crate::frame::Frame`] does for scenes without any ρ_s.
     pub specular_scale: f32,
-    /// Darkens the sun's limb (u of I = I₀ (1 − u (1 − cos θ))); 0: a uniform disc.
+    /// Limb darkening of the sun's disc, u of I = I₀ (1 − u (1 − cos θ)); 0: a uniform disc.
     pub limb_darkening: f32,
     /// Pixels to a texel of A, each way: [`crate::passes::occlusion::ssao::SsaoSettings::pixels_per_texel`].
     pub occlusion_downscale: u32,
@@ -171,11 +197,11 @@ pub struct LightingSettings {
     pub fresnel: bool,
     /// How the sun's shadow is looked up.
     pub shadows: Shadows,
-    /// How surfaces mirror.
+    /// How surfaces reflect specularly.
     pub mirrors: Mirrors,
 }
 
-/// What light there is: images and numbers of the moment.
+/// The light of a moment: images and numbers.
 #[derive(Clone, Copy)]
 pub struct Light<'a> {
     /// The moment.
@@ -192,13 +218,9 @@ pub struct Light<'a> {
     pub sky_radiance: &'a Image,
 }
 
-/// Texels by which receivers are lifted off their surface, along the normal, at grazing light.
-const NORMAL_OFFSET_TEXELS: f32 = 1.5;
-
 /// The pass and its picture.
 pub struct Lighting {
     settings: LightingSettings,
-    is_converging: bool,
     pipeline: Pipeline,
     radiance: Image,
 }
@@ -249,6 +271,10 @@ impl Lighting {
         constants.push(("PLANE_SHADOW", is_converging.into()));
         constants.push(("CASCADES", settings.shadows.cascades.max(1)));
         constants.push(("PCSS", settings.shadows.penumbrae.into()));
+        constants.push(("NORMAL_OFFSET", NORMAL_OFFSET_TEXELS.to_bits()));
+        constants.push(("BLEND", BLEND.to_bits()));
+        constants.push(("MAX_RADIUS", MAX_RADIUS.to_bits()));
+        constants.push(("MATERIAL_COLUMNS", MATERIAL_COLUMNS));
         let pipeline = fullscreen_at(
             context,
             "lighting",
@@ -260,7 +286,6 @@ impl Lighting {
         let radiance = Image::new(context, &ImageDesc::flat("radiance", format, size))?;
         Ok(Self {
             settings,
-            is_converging,
             pipeline,
             radiance,
         })
@@ -307,12 +332,16 @@ impl Lighting {
         light: &Light<'r>,
         view: &View,
     ) -> Pass<'r> {
-        // A scene without maps has no such image, and a pipeline that reads none.
+        // A scene without textures has no albedo image; its pipeline reads none, but the binding must be written.
         let albedo = surfaces.albedo.as_ref().unwrap_or(materials);
         recorder
             .pass("lighting", &self.pipeline)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample("words", &surfaces.words, Sampler::Nearest)
+            .sample(
+                "normal_material",
+                &surfaces.normal_material,
+                Sampler::Nearest,
+            )
             .sample("albedo", albedo, Sampler::Nearest)
             .sample("occlusion", occlusion, Sampler::Nearest)
             .sample("shadow_map", light.shadow_map, Sampler::Nearest)
@@ -328,16 +357,11 @@ impl Lighting {
 
     fn sun_block(&self, light: &Light<'_>, view: &View) -> SunBlock {
         let shadow = light.sun_views.first();
-        let normal_offset = if self.is_converging {
-            BIAS_TEXELS * shadow.texel_depth
-        } else {
-            NORMAL_OFFSET_TEXELS * shadow.texel
-        };
         SunBlock {
             shadow_from_world: shadow.shadow_from_world.to_cols_array_2d(),
             direction: light.sun_direction,
             illuminance: kilo(light.daylight.sun_illuminance),
-            normal_offset,
+            depth_bias: BIAS_TEXELS * shadow.texel_depth,
             max_radiance: self.settings.precision.max_radiance(),
             specular_scale: self.settings.specular_scale,
             planes: shadow.planes().to_cols_array_2d(),

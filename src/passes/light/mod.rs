@@ -2,5 +2,4 @@
 
 pub mod background;
 pub mod lighting;
-pub mod precision;
 pub mod probe;

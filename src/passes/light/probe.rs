@@ -89,7 +89,7 @@ impl Probe {
         let images = [
             radiance,
             self.illuminance.image(),
-            &surfaces.words,
+            &surfaces.normal_material,
             &surfaces.depth,
         ];
         let mut slot = 0;

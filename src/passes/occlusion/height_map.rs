@@ -1,5 +1,4 @@
-//! What stands above: depth of the scene seen from the zenith, which ambient occlusion asks about roofs that the picture does
-//! not show.
+//! Height map: depth of the scene seen from the zenith. Ambient occlusion finds roofs in it that the picture does not show.
 
 use std::sync::Arc;
 
@@ -14,10 +13,10 @@ use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::view::View;
 
 gpu_struct! {
-    /// `Cover` of `ssao.frag`.
-    pub struct CoverBlock: zenith of SSAO_FRAG {
+    /// See `include/height_map.glsl`.
+    pub struct HeightBlock: height of SSAO_FRAG {
         from_view: [[f32; 4]; 4],
-        texel: f32,
+        lift: f32,
         slack: f32,
         rays: i32,
     }
@@ -25,28 +24,30 @@ gpu_struct! {
 
 /// Texels of the map's edge.
 const EDGE: u32 = 512;
-/// Rays of a slice that look for cover.
+/// Rays of a slice that look for roofs.
 const RAYS: i32 = 4;
-/// Fewest texels of a radius: of a coarser map nothing can be told.
+/// Fewest texels to a radius: a coarser map shows no roofs.
 const TEXELS_OF_RADIUS: f32 = 8.0;
-/// Texels' depth by which a point lies below the map before it is under it: slopes rise within a texel.
+/// Depth, in texels, by which a point must lie below the map to be under a roof: slopes rise within a texel.
 const SLACK_TEXELS: f32 = 2.0;
+/// Texels by which points are lifted off their surface.
+const LIFT_TEXELS: f32 = 1.5;
 
 /// The pass and its map, which is drawn once.
-pub struct Cover {
+pub struct HeightMap {
     casters: Casters,
     depth: Image,
     view: ShadowView,
     is_drawn: bool,
 }
 
-impl Cover {
+impl HeightMap {
     /// For a scene.
     ///
     /// # Errors
     /// When the device refuses.
     pub fn new(context: &Arc<Context>, geometry: &Geometry) -> Result<Self> {
-        let desc = ImageDesc::flat("cover", Format::D32_SFLOAT, [EDGE; 2]);
+        let desc = ImageDesc::flat("height map", Format::D32_SFLOAT, [EDGE; 2]);
         Ok(Self {
             casters: Casters::new(context, geometry, 0.0)?,
             depth: Image::new(context, &desc)?,
@@ -55,12 +56,12 @@ impl Cover {
         })
     }
 
-    /// Whether occlusion within `radius` metres can be told from it.
+    /// Whether it is fine enough for occlusion within `radius` metres.
     fn serves(&self, radius: f32) -> bool {
         radius > 0.0 && self.view.texel * TEXELS_OF_RADIUS <= radius
     }
 
-    /// Draws the map, once, when occlusion within `radius` metres first wants it. Whatever the view, it shows the whole scene.
+    /// Draws the map of the whole scene, once, when occlusion within `radius` metres first needs it.
     pub fn record(&mut self, recorder: &mut Recorder, geometry: &Geometry, radius: f32) -> &Self {
         if self.serves(radius) && !std::mem::replace(&mut self.is_drawn, true) {
             let tile = Tile {
@@ -69,7 +70,7 @@ impl Cover {
                 edge: EDGE,
             };
             self.casters
-                .record(recorder, "cover", geometry, &[tile], &self.depth);
+                .record(recorder, "height map", geometry, &[tile], &self.depth);
         }
         self
     }
@@ -79,12 +80,12 @@ impl Cover {
         &self.depth
     }
 
-    /// What the shader needs to know, for occlusion within `radius` metres.
-    pub fn block(&self, view: &View, radius: f32) -> CoverBlock {
+    /// The shader's block, for occlusion within `radius` metres.
+    pub fn block(&self, view: &View, radius: f32) -> HeightBlock {
         let from_view = self.view.shadow_from_world * view.camera.world_from_view();
-        CoverBlock {
+        HeightBlock {
             from_view: from_view.to_cols_array_2d(),
-            texel: self.view.texel,
+            lift: LIFT_TEXELS * self.view.texel,
             slack: SLACK_TEXELS * self.view.texel_depth,
             rays: if self.serves(radius) { RAYS } else { 0 },
         }

@@ -1,4 +1,4 @@
-//! Ambient occlusion: the sky's visibility as the moving picture knows it.
+//! Ambient occlusion: an estimate of the sky's visibility for pictures that move.
 
 pub mod height_map;
 pub mod ssao;

@@ -45,14 +45,14 @@ gpu_struct! {
     }
 }
 
-/// What is wanted of the map.
+/// Settings of the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IrradianceSettings {
     /// Edge of a face, texels.
     pub edge: u32,
     /// How E is found.
     pub method: IrradianceMethod,
-    /// Samples wanted in all, of the two methods that sample.
+    /// Samples in all, of the two methods that sample.
     pub samples: u32,
     /// Samples added by one pass.
     pub samples_per_pass: u32,
@@ -160,7 +160,7 @@ impl Irradiance {
         &self.irradiance
     }
 
-    /// As [`Irradiance::record`], without drafts: for a sky that stays.
+    /// As [`Irradiance::record`], without drafts: for a sky that does not move.
     pub fn refine(&mut self, recorder: &mut Recorder, sky: &SkyImages<'_>, daylight: &Daylight) {
         if sky.is_new {
             self.done = 0;
@@ -175,7 +175,7 @@ impl Irradiance {
         }
     }
 
-    /// Settings as they are.
+    /// The settings.
     pub fn settings(&self) -> &IrradianceSettings {
         &self.settings
     }
@@ -205,7 +205,7 @@ impl Irradiance {
         &self.sums[0]
     }
 
-    /// What is written, by the names of the shaders.
+    /// The outputs by their names in the shaders.
     fn cubes(&self) -> [(&'static str, &Image); 2] {
         [("sum", &self.sums[0]), ("sky_irradiance", &self.irradiance)]
     }

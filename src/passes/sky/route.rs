@@ -18,7 +18,7 @@ pub enum CubeRoute {
 }
 
 impl CubeRoute {
-    /// The lecture's way where the device can go it.
+    /// The lecture's way where the device has geometry shaders.
     pub fn of(context: &Context) -> Self {
         if context.summary().has(Optional::GeometryShader) {
             Self::Geometry

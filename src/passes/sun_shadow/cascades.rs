@@ -24,10 +24,13 @@ pub struct Shadows {
 }
 
 impl Shadows {
-    /// How far lookups reach from what they shade, texels: a tent after the offset along the normal, or `WIDEST` of
-    /// `include/sun_shadow.glsl` and what is compared around it.
+    /// How far lookups reach from what they shade, texels: penumbrae, and around them the tent after the offset along the normal.
     fn reach(&self) -> f32 {
-        if self.penumbrae { 52.0 } else { 6.0 }
+        if self.penumbrae {
+            MAX_RADIUS + 4.0
+        } else {
+            6.0
+        }
     }
 }
 
@@ -41,8 +44,12 @@ const VAST: f32 = 1000.0;
 const NEAREST: f32 = 20.0;
 /// Texel of a map over that of the next, up to which it is worth its drawing.
 const FINER: f32 = 0.75;
-/// Share of a cube from which on its map is blended into the next: that of `include/sun_shadow.glsl`.
-const BLEND: f32 = 0.85;
+/// Share of a cube from which on its map is blended into the next.
+pub(in crate::passes) const BLEND: f32 = 0.85;
+/// Largest radius of penumbrae, texels: taps farther apart miss thin casters.
+pub(in crate::passes) const MAX_RADIUS: f32 = 48.0;
+/// Texels by which receivers are lifted off their surface, along the normal, at grazing light.
+pub(in crate::passes) const NORMAL_OFFSET_TEXELS: f32 = 1.5;
 
 gpu_struct! {
     /// The maps, for `include/sun_shadow.glsl`.

@@ -1,32 +1,32 @@
-//! What a view cannot see: clusters outside of its pyramid, and those of solids that turn their backs. To a light, also what
-//! shades nothing that is in the picture.
+//! Culling: clusters outside of a view's frustum, back-facing clusters of solids, and for a light the casters that shade no
+//! receiver in the picture. What is left is drawn in runs of indices.
 
 use glam::{DVec2, Mat4, Vec3};
 
-use crate::gpu::{Faces, Winding};
+use crate::gpu::{Draws, Faces, Winding};
 use crate::scene::{Bounds, Cluster};
 
 use crate::passes::sun_shadow::fit::ShadowView;
 use crate::passes::sun_shadow::receiver_mask::Shade;
 use crate::passes::view::View;
 
-/// From where a view looks.
+/// Where a view looks from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Viewer {
-    /// From a point; `reach` metres around it lies what the near plane cuts.
+    /// A point; the near plane cuts what lies within `reach` metres of it.
     At { eye: Vec3, reach: f32 },
-    /// From infinitely far in a direction, unit.
+    /// Infinitely far away in a direction, unit.
     Toward(Vec3),
 }
 
-/// A view as culling sees it.
+/// The culling tests of a view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cull {
     /// Left, right, bottom, top, a row each: inside where the product with (p, 1) is not negative.
     sides: Mat4,
     viewer: Viewer,
     front: Winding,
-    /// Of a light: what it shades in the picture.
+    /// Of a light: its receivers in the picture.
     shade: Option<Shade>,
 }
 
@@ -43,7 +43,7 @@ impl Cull {
             eye,
             reach: view.camera.near * corner,
         };
-        // Far enough for the matrix, in whose rounding a point near a distant eye would be lost.
+        // Far enough from the eye: rounding in the matrix would swallow a point near an eye that is far from the origin.
         let away = 1.0 + 0.01 * eye.length();
         let ahead = eye + view.camera.forward() * away;
         Self::new(clip_from_world, viewer, ahead, 0.1 * away)
@@ -71,18 +71,18 @@ impl Cull {
         }
     }
 
-    /// Whether some of a cluster may be seen.
+    /// Whether a part of a cluster may be visible, or for a light may cast a visible shadow.
     pub fn sees(&self, cluster: &Cluster) -> bool {
         let shades = |shade: &Shade| shade.may_be_shaded_by(cluster);
         self.holds(cluster) && !self.is_behind(cluster) && self.shade.as_ref().is_none_or(shades)
     }
 
-    /// Whether some of it is within the view's sides.
+    /// Whether a part of it is within the sides of the frustum.
     pub fn holds(&self, cluster: &Cluster) -> bool {
         reaches(&self.sides, &cluster.bounds)
     }
 
-    /// The faces of a cluster that may be seen.
+    /// The faces of a cluster that may be visible.
     pub fn faces(&self, cluster: &Cluster) -> Faces {
         let outside = cluster.solid.is_some_and(|s| !self.is_within(&s.bodies));
         Faces {
@@ -91,8 +91,7 @@ impl Cull {
         }
     }
 
-    /// Whether all triangles of a solid turn their backs. A point sees the back of a plane through any point of the cluster if it
-    /// does so from the whole cone of directions to the cluster's sphere.
+    /// Whether all triangles of a solid are back-facing: to a point, for the whole cone of directions to the cluster's sphere.
     fn is_behind(&self, cluster: &Cluster) -> bool {
         let Some(solid) = &cluster.solid else {
             return false;
@@ -129,7 +128,7 @@ fn sides(clip_from_world: &Mat4) -> Mat4 {
     Mat4::from_cols(w + x, w - x, w + y, w - y).transpose()
 }
 
-/// Whether some of a box is on the inner side of all four, or so near that rounding decides.
+/// Whether a part of a box is on the inner side of all four, or so near that rounding decides.
 fn reaches(sides: &Mat4, bounds: &Bounds) -> bool {
     let (centre, half) = (bounds.centre(), 0.5 * bounds.extent());
     let sizes = sides.abs();
@@ -147,11 +146,82 @@ fn front(clip_from_world: Mat4, toward: Vec3, at: Vec3, size: f32) -> Winding {
         let clip = clip_from_world * (at.as_dvec3() + offset.as_dvec3()).extend(1.0);
         DVec2::new(clip.x, clip.y) / clip.w
     });
-    // Rows run down: what is counter-clockwise with y up is clockwise there, and by Vulkan's own word the other way.
+    // Rows run down, so the sign of the area is mirrored; Vulkan's definition of winding mirrors it back.
     if (b - a).perp_dot(c - a) > 0.0 {
         Winding::Clockwise
     } else {
         Winding::CounterClockwise
+    }
+}
+
+/// A run of indices that is drawn at once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::passes) struct Run {
+    first: u32,
+    count: u32,
+    faces: Faces,
+}
+
+impl Run {
+    /// Draws it.
+    pub fn draw(&self, draws: &mut Draws<'_, '_>) {
+        draws.faces(self.faces);
+        draws.indexed(self.first, self.count);
+    }
+
+    /// Whether both are cheaper as one draw, with what lies between them.
+    fn is_followed_by(&self, next: &Self) -> bool {
+        self.faces == next.faces && next.first - (self.first + self.count) <= BRIDGED
+    }
+}
+
+/// Culled indices that are drawn all the same to save a draw: one costs a CPU 10 to 30 µs, as much as 200 triangles.
+const BRIDGED: u32 = 3 * 200;
+
+/// Runs of the visible clusters: those that nearly follow each other are one.
+pub(in crate::passes) struct Runs<'c, I> {
+    clusters: I,
+    cull: &'c Cull,
+    open: Option<Run>,
+}
+
+impl<'c, I: Iterator<Item = &'c Cluster>> Runs<'c, I> {
+    /// Of the clusters of a part, in the order of their indices.
+    pub fn new(
+        clusters: impl IntoIterator<Item = &'c Cluster, IntoIter = I>,
+        cull: &'c Cull,
+    ) -> Self {
+        Self {
+            clusters: clusters.into_iter(),
+            cull,
+            open: None,
+        }
+    }
+}
+
+impl<'c, I: Iterator<Item = &'c Cluster>> Iterator for Runs<'c, I> {
+    type Item = Run;
+
+    fn next(&mut self) -> Option<Run> {
+        for cluster in self.clusters.by_ref().filter(|c| self.cull.sees(c)) {
+            let next = Run {
+                first: cluster.first,
+                count: cluster.count,
+                faces: self.cull.faces(cluster),
+            };
+            match &mut self.open {
+                Some(run) if run.is_followed_by(&next) => {
+                    run.count = next.first + next.count - run.first;
+                }
+                open => {
+                    let done = open.replace(next);
+                    if done.is_some() {
+                        return done;
+                    }
+                }
+            }
+        }
+        self.open.take()
     }
 }
 

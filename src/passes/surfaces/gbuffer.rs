@@ -1,63 +1,62 @@
 //! The G-buffer: normal, diffuse reflectance, material and depth of the nearest surface. Positions follow from depth.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::Vec3;
 
 use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, PipelineDesc, Recorder, Result,
-    Sampler, Shader, shaders,
+    Context, Depth, Draws, Format, Image, ImageDesc, Load, Pass, Pipeline, PipelineDesc, Recorder,
+    Result, Sampler, Shader, shaders,
 };
 use crate::gpu_struct;
 
 use crate::passes::surfaces::culling::Cull;
-use crate::passes::surfaces::details::Details;
-use crate::passes::surfaces::geometry::{Bound, Geometry};
+use crate::passes::surfaces::geometry::{Bound, Geometry, Kind};
 use crate::passes::view::View;
 
 gpu_struct! {
-    /// Camera and material of a draw.
-    pub struct Push: push of
-        GBUFFER_VERT, GBUFFER_FRAG, GBUFFER_LEAN_VERT, GBUFFER_LEAN_FRAG, GBUFFER_DETAILED_VERT, GBUFFER_DETAILED_FRAG
+    /// What all draws share.
+    pub struct CameraBlock: camera of
+        GBUFFER_VERT, GBUFFER_VERT_DETAILED, GBUFFER_FRAG, GBUFFER_FRAG_ALBEDO, GBUFFER_FRAG_DETAILED, GBUFFER_FRAG_DETAILED_ALBEDO
     {
         clip_from_world: [[f32; 4]; 4],
         eye: Vec3,
-        diffuse: Vec3,
-        material: u32,
-        cutoff: f32,
-        normal_scale: f32,
-        mirrors: u32,
         sharpen: f32,
     }
 }
 
+gpu_struct! {
+    /// Material of a draw.
+    pub struct Push: push of
+        GBUFFER_FRAG, GBUFFER_FRAG_ALBEDO, GBUFFER_FRAG_DETAILED, GBUFFER_FRAG_DETAILED_ALBEDO
+    {
+        diffuse: Vec3,
+        material: u32,
+        cutoff: f32,
+        normal_scale: f32,
+        is_specular: u32,
+    }
+}
+
 impl Push {
-    /// The camera and what a draw binds.
-    pub(in crate::passes) fn of(
-        clip_from_world: [[f32; 4]; 4],
-        eye: Vec3,
-        sharpen: f32,
-        bound: &Bound<'_>,
-    ) -> Self {
+    fn of(bound: &Bound<'_>) -> Self {
         Self {
-            clip_from_world,
-            eye,
             diffuse: bound.diffuse,
             material: bound.material,
             cutoff: bound.cutoff,
             normal_scale: bound.normal_scale,
-            mirrors: bound.mirrors.into(),
-            sharpen,
+            is_specular: bound.is_specular.into(),
         }
     }
 }
 
 /// The images.
 pub struct Surfaces {
-    /// Words of each pixel: the world normal on the viewer's side (octahedral, 16 bits a component); number of the material
-    /// (lower half), and how thick the body is behind the surface (upper half: that of a float's bits, metres). Of frames that
-    /// converge a third has the slopes of the face, see `include/face_slope.glsl`, and a fourth fills up the texel.
-    pub words: Image,
+    /// The world normal on the viewer's side (octahedral, 16 bits a component), and a word with the number of the material (lower
+    /// half) and the thickness of the body behind the surface (upper half of a float's bits, metres), see `include/materials.glsl`.
+    /// Frames that converge have a third word, the slopes of the face, see `include/face.glsl`, and a fourth that fills the texel.
+    pub normal_material: Image,
     /// ρ_d, and a factor on ρ_s; none of a scene without maps, whose table of materials has them.
     pub albedo: Option<Image>,
     /// Reversed depth: near / distance; 0 is background.
@@ -65,19 +64,33 @@ pub struct Surfaces {
 }
 
 impl Surfaces {
-    /// All of them.
-    pub fn images(&self) -> impl Iterator<Item = &Image> {
-        [&self.words, &self.depth].into_iter().chain(&self.albedo)
+    fn new(context: &Arc<Context>, size: [u32; 2], targets: &[Format]) -> Result<Self> {
+        let image = |name, format| Image::new(context, &ImageDesc::flat(name, format, size));
+        let albedo = targets.get(1).map(|format| image("albedo", *format));
+        Ok(Self {
+            normal_material: image("normal and material", targets[0])?,
+            albedo: albedo.transpose()?,
+            depth: image("depth", Format::D32_SFLOAT)?,
+        })
     }
 
-    /// The colour attachments of a pass that draws them.
-    pub(in crate::passes) fn colors<'r>(&'r self, pass: Pass<'r>, load: Load) -> Pass<'r> {
-        let images = std::iter::once(&self.words).chain(&self.albedo);
-        images.fold(pass, |pass, image| pass.color(image, load))
+    /// All of them.
+    pub fn images(&self) -> impl Iterator<Item = &Image> {
+        [&self.normal_material, &self.depth]
+            .into_iter()
+            .chain(&self.albedo)
+    }
+
+    /// Makes them the attachments of a pass.
+    fn attach<'r>(&'r self, pass: Pass<'r>, load: Load) -> Pass<'r> {
+        let images = std::iter::once(&self.normal_material).chain(&self.albedo);
+        images
+            .fold(pass, |pass, image| pass.color(image, load))
+            .depth(&self.depth, load)
     }
 }
 
-/// Twin of `normal_unpack`: the halves of the first of [`Surfaces::words`] as a unit vector.
+/// Twin of `normal_unpack`: the halves of the first word of [`Surfaces::normal_material`] as a unit vector.
 pub fn unpack_normal(halves: [u16; 2]) -> [f32; 3] {
     decode_normal(halves.map(|half| (f32::from(half.cast_signed()) / 32767.0).max(-1.0)))
 }
@@ -97,50 +110,92 @@ fn decode_normal([x, y]: [f32; 2]) -> [f32; 3] {
         .to_array()
 }
 
+/// Targets of the G-buffer, and whether they keep the slopes of faces.
+struct Targets {
+    formats: Vec<Format>,
+    faces: bool,
+}
+
 /// The pass and its images.
 pub struct Gbuffer {
-    /// For most surfaces.
-    lean: Pipeline,
-    /// By whether ρ_d and ρ_s have maps: a lookup that is not needed costs as much as one that is.
-    pipelines: [[Pipeline; 2]; 2],
-    details: Details,
+    /// For surfaces without maps whose normals match their winding: most of them.
+    untextured: Pipeline,
+    /// For the others without details, by kind.
+    textured: BTreeMap<Kind, Pipeline>,
+    /// For surfaces with holes, normal maps, or colours at their vertices, by kind.
+    detailed: BTreeMap<Kind, Pipeline>,
     surfaces: Surfaces,
 }
 
-/// Position, normal with thickness, texture coordinates.
-pub(in crate::passes) const VERTEX: [Format; 3] = [
+/// Position, normal with thickness, texture coordinates; of detailed surfaces colour and tangent.
+const VERTEX: [Format; 5] = [
     Format::R32G32B32_SFLOAT,
     Format::R32G32B32A32_SFLOAT,
     Format::R32G32_SFLOAT,
+    Format::R16G16B16A16_UNORM,
+    Format::R16G16B16A16_SNORM,
 ];
 
-/// A pipeline that draws surfaces to colour targets of these formats.
-pub(in crate::passes) fn surface_pipeline(
-    context: &Arc<Context>,
-    name: &str,
-    stages: [&'static Shader; 2],
-    vertex: &[Format],
-    formats: &[Format],
-    constants: &[(&str, u32)],
-) -> Result<Pipeline> {
-    Pipeline::new(
-        context,
-        &PipelineDesc {
-            name,
-            stages: &stages,
-            vertex,
-            colors: formats,
-            depth: Depth::Write {
-                format: Format::D32_SFLOAT,
-                slope_bias: 0.0,
+/// The stages for a kind of surfaces and the number of its vertex streams.
+fn stages(kind: Kind, has_albedo: bool) -> ([&'static Shader; 2], usize) {
+    match (kind.is_detailed(), has_albedo) {
+        (false, false) => ([&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG], 3),
+        (false, true) => ([&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG_ALBEDO], 3),
+        (true, false) => (
+            [
+                &shaders::GBUFFER_VERT_DETAILED,
+                &shaders::GBUFFER_FRAG_DETAILED,
+            ],
+            5,
+        ),
+        (true, true) => (
+            [
+                &shaders::GBUFFER_VERT_DETAILED,
+                &shaders::GBUFFER_FRAG_DETAILED_ALBEDO,
+            ],
+            5,
+        ),
+    }
+}
+
+impl Targets {
+    /// A pipeline for a kind of surfaces.
+    fn pipeline(
+        &self,
+        context: &Arc<Context>,
+        kind: Kind,
+        normals_match_winding: bool,
+    ) -> Result<Pipeline> {
+        let (stages, streams) = stages(kind, self.formats.len() > 1);
+        let mut constants = vec![
+            ("DIFFUSE_MAP", kind.diffuse_map.into()),
+            ("SPECULAR_MAP", kind.specular_map.into()),
+            ("CUT_OUT", kind.cut_out.into()),
+            ("NORMALS_MATCH_WINDING", normals_match_winding.into()),
+            ("FACES", self.faces.into()),
+        ];
+        if kind.is_detailed() {
+            constants.push(("NORMAL_MAP", kind.normal_map.into()));
+        }
+        Pipeline::new(
+            context,
+            &PipelineDesc {
+                name: "G-buffer",
+                stages: &stages,
+                vertex: &VERTEX[..streams],
+                colors: &self.formats,
+                depth: Depth::Write {
+                    format: Format::D32_SFLOAT,
+                    slope_bias: 0.0,
+                },
+                constants: &constants,
             },
-            constants,
-        },
-    )
+        )
+    }
 }
 
 impl Gbuffer {
-    /// Images of `size` pixels, and what drawing `geometry` takes; `faces`: with the slopes of the face under each pixel.
+    /// Images of `size` pixels, and the pipelines that `geometry` needs; `faces`: with the slopes of the face under each pixel.
     ///
     /// # Errors
     /// When the device refuses.
@@ -150,47 +205,27 @@ impl Gbuffer {
         size: [u32; 2],
         faces: bool,
     ) -> Result<Self> {
-        let words = if faces {
+        // One target of several words: a software device pays for each target more than for what is written.
+        let mut formats = vec![if faces {
             Format::R32G32B32A32_UINT
         } else {
             Format::R32G32_UINT
-        };
-        // One target of several words: a software device pays for each target more than for what is written.
-        let mut formats = vec![words];
+        }];
         if geometry.has_albedo() {
             formats.push(Format::R16G16B16A16_SFLOAT);
         }
-        let pipelines = [(false, false), (false, true), (true, false), (true, true)].map(
-            |(diffuse, specular)| {
-                let constants = [
-                    ("DIFFUSE_MAP", u32::from(diffuse)),
-                    ("SPECULAR_MAP", u32::from(specular)),
-                    ("FACES", u32::from(faces)),
-                ];
-                let stages = [&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG];
-                surface_pipeline(context, "G-buffer", stages, &VERTEX, &formats, &constants)
-            },
-        );
-        let [plain, specular, diffuse, both] = pipelines;
-        let pipelines = [[plain?, specular?], [diffuse?, both?]];
-        let image = |name, format| Image::new(context, &ImageDesc::flat(name, format, size));
-        let surfaces = Surfaces {
-            words: image("words", formats[0])?,
-            albedo: formats.get(1).map(|f| image("albedo", *f)).transpose()?,
-            depth: image("depth", Format::D32_SFLOAT)?,
+        let targets = Targets { formats, faces };
+        let pipelines = |is_detailed: bool| {
+            let kinds = geometry
+                .kinds()
+                .filter(move |k| k.is_detailed() == is_detailed);
+            kinds.map(|kind| Ok((kind, targets.pipeline(context, kind, false)?)))
         };
         Ok(Self {
-            lean: surface_pipeline(
-                context,
-                "G-buffer, lean",
-                [&shaders::GBUFFER_LEAN_VERT, &shaders::GBUFFER_LEAN_FRAG],
-                &VERTEX[..2],
-                &formats,
-                &[("FACES", u32::from(faces))],
-            )?,
-            pipelines,
-            details: Details::new(context, geometry, &formats, faces)?,
-            surfaces,
+            untextured: targets.pipeline(context, Kind::default(), true)?,
+            textured: pipelines(false).collect::<Result<_>>()?,
+            detailed: pipelines(true).collect::<Result<_>>()?,
+            surfaces: Surfaces::new(context, size, &targets.formats)?,
         })
     }
 
@@ -206,50 +241,60 @@ impl Gbuffer {
         geometry: &Geometry,
         view: &View,
     ) -> &Surfaces {
-        let clip_from_world = view.clip_from_world().to_cols_array_2d();
-        let clear = Load::Clear([0.0; 4]);
         let cull = Cull::camera(view);
-        let pass = recorder.pass("G-buffer", &self.lean);
+        let camera = CameraBlock {
+            clip_from_world: view.clip_from_world().to_cols_array_2d(),
+            eye: view.camera.eye,
+            sharpen: view.sharpen,
+        };
+        let pass = recorder.pass("G-buffer", &self.untextured);
         self.surfaces
-            .colors(pass, clear)
-            .depth(&self.surfaces.depth, clear)
+            .attach(pass.uniform("camera", &camera), Load::Clear([0.0; 4]))
             .draws(|draws| {
-                geometry.draw_lean(draws, &cull, |draws, bound| {
-                    let (eye, sharpen) = (view.camera.eye, view.sharpen);
-                    draws.push(&Push::of(clip_from_world, eye, sharpen, bound));
+                geometry.draw_untextured(draws, &cull, bind);
+                let mut current = None;
+                geometry.draw_textured(draws, &cull, |draws, bound| {
+                    switch(draws, &self.textured, &mut current, bound.kind);
+                    bind(draws, bound);
                 });
             });
-        if geometry.has_plain() {
-            self.record_plain(recorder, geometry, view, &cull);
+        if let Some((_, first)) = self.detailed.first_key_value() {
+            let pass = recorder.pass("G-buffer, details", first);
+            self.surfaces
+                .attach(pass.uniform("camera", &camera), Load::Keep)
+                .draws(|draws| {
+                    let mut current = None;
+                    geometry.draw_detailed(draws, &cull, |draws, bound| {
+                        switch(draws, &self.detailed, &mut current, bound.kind);
+                        let normal_map = bound.normal_map.unwrap_or(bound.white);
+                        draws.texture("normal_map", normal_map, Sampler::Repeat);
+                        bind(draws, bound);
+                    });
+                });
         }
-        self.details
-            .record(recorder, geometry, &self.surfaces, view, &cull);
         &self.surfaces
     }
+}
 
-    /// Draws what has maps, or normals that do not say which side is the front.
-    fn record_plain(&self, recorder: &mut Recorder, geometry: &Geometry, view: &View, cull: &Cull) {
-        let clip_from_world = view.clip_from_world().to_cols_array_2d();
-        let pass = recorder.pass("G-buffer", &self.pipelines[0][0]);
-        self.surfaces
-            .colors(pass, Load::Keep)
-            .depth(&self.surfaces.depth, Load::Keep)
-            .draws(|draws| {
-                let (eye, mut variant) = (view.camera.eye, [0, 0]);
-                geometry.draw_plain(draws, cull, |draws, bound| {
-                    let maps = [bound.diffuse_map, bound.specular_map];
-                    let wanted = maps.map(|m| usize::from(m.is_some()));
-                    if wanted != variant {
-                        variant = wanted;
-                        draws.pipeline(&self.pipelines[variant[0]][variant[1]]);
-                    }
-                    let [diffuse_map, specular_map] = maps.map(|m| m.unwrap_or(bound.white));
-                    draws.texture("diffuse_map", diffuse_map, Sampler::Repeat);
-                    draws.texture("specular_map", specular_map, Sampler::Repeat);
-                    draws.push(&Push::of(clip_from_world, eye, view.sharpen, bound));
-                });
-            });
+/// Takes the pipeline of a kind, if it is not the current one.
+fn switch<'r>(
+    draws: &mut Draws<'_, 'r>,
+    pipelines: &'r BTreeMap<Kind, Pipeline>,
+    current: &mut Option<Kind>,
+    kind: Kind,
+) {
+    if current.replace(kind) != Some(kind) {
+        draws.pipeline(&pipelines[&kind]);
     }
+}
+
+/// Binds the maps of ρ_d and ρ_s of a draw, and pushes its material.
+fn bind(draws: &mut Draws<'_, '_>, bound: &Bound<'_>) {
+    let maps = [bound.diffuse_map, bound.specular_map];
+    let [diffuse_map, specular_map] = maps.map(|map| map.unwrap_or(bound.white));
+    draws.texture("diffuse_map", diffuse_map, Sampler::Repeat);
+    draws.texture("specular_map", specular_map, Sampler::Repeat);
+    draws.push(&Push::of(bound));
 }
 
 #[cfg(test)]
@@ -271,6 +316,23 @@ mod tests {
             let decoded = Vec3::from_array(decode_normal(texel));
             let error = (decoded - Vec3::from_array(normal)).length();
             assert!(error < 1e-6, "{texel:?}: {decoded}");
+        }
+    }
+
+    #[test]
+    fn fragments_write_the_targets_that_there_are() {
+        for kind in [
+            Kind::default(),
+            Kind {
+                normal_map: true,
+                ..Kind::default()
+            },
+        ] {
+            for has_albedo in [false, true] {
+                let ([_, fragment], _) = stages(kind, has_albedo);
+                let targets = 1 + usize::from(has_albedo);
+                assert_eq!(fragment.outputs, targets, "{}", fragment.name);
+            }
         }
     }
 }

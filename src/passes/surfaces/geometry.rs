@@ -8,8 +8,7 @@ use glam::Vec3;
 use crate::gpu::{Buffer, BufferKind, Draws, Image, Recorder, Result, upload_buffer};
 use crate::scene::{self, Bounds, Cluster, Layout, Scene};
 
-use crate::passes::surfaces::culling::Cull;
-use crate::passes::surfaces::draw_runs::Runs;
+use crate::passes::surfaces::culling::{Cull, Runs};
 use crate::passes::surfaces::upload::{
     normals_and_thickness, surface, upload, upload_details, upload_materials, white,
 };
@@ -28,30 +27,25 @@ pub struct Part {
     pub casts: bool,
 }
 
-/// What the shaders of a part must do besides the plain minimum; each kind has a pipeline of its own.
+/// What the shaders of a part do; each kind has a pipeline.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Kind {
-    /// Read colours at its vertices.
+    /// Read vertex colours.
     pub colours: bool,
     /// Read a normal map.
     pub normal_map: bool,
-    /// Leave holes.
+    /// Discard by alpha.
     pub cut_out: bool,
-    /// Read a map of ρ_d.
+    /// Read a texture of ρ_d.
     pub diffuse_map: bool,
-    /// Read a map of the factor on ρ_s.
+    /// Read a texture of the factor on ρ_s.
     pub specular_map: bool,
 }
 
 impl Kind {
-    /// Whether it needs more than maps of ρ_d and ρ_s.
+    /// Whether it needs more than textures of ρ_d and ρ_s.
     pub fn is_detailed(&self) -> bool {
         self.colours || self.normal_map || self.cut_out
-    }
-
-    /// Whether nothing of it varies over a material.
-    fn is_bare(&self) -> bool {
-        *self == Self::default()
     }
 }
 
@@ -63,7 +57,7 @@ pub(in crate::passes) struct Surface {
     pub specular_map: Option<usize>,
     pub normal_map: Option<usize>,
     pub normal_scale: f32,
-    pub mirrors: bool,
+    pub is_specular: bool,
     pub cutoff: Option<f32>,
 }
 
@@ -85,7 +79,7 @@ pub struct Bound<'g> {
     /// Factor on its slopes.
     pub normal_scale: f32,
     /// Whether it has a ρ_s.
-    pub mirrors: bool,
+    pub is_specular: bool,
     /// Alpha of the map of ρ_d below which there is a hole; 0 without holes.
     pub cutoff: f32,
     /// Stands for a map that is not there.
@@ -110,7 +104,6 @@ pub struct Geometry {
     surfaces: Vec<Surface>,
     textures: Vec<Image>,
     white: Image,
-    has_plain: bool,
     is_specular: bool,
     materials: Image,
     bounds: Bounds,
@@ -136,10 +129,6 @@ impl Geometry {
             .collect();
         let parts = parts(scene, &layout, &surfaces);
         let clusters = layout.into_owned().clusters;
-        let has_plain = parts.iter().any(|p| {
-            let clusters = &clusters[p.clusters.clone()];
-            clusters.iter().any(|c| is_plain(p, c))
-        });
         let details = if parts.iter().any(|p| p.kind.is_detailed()) {
             Some(upload_details(recorder, scene)?)
         } else {
@@ -167,8 +156,7 @@ impl Geometry {
             details,
             casting: casting(&parts),
             parts,
-            has_plain,
-            is_specular: surfaces.iter().any(|s| s.mirrors),
+            is_specular: surfaces.iter().any(|s| s.is_specular),
             surfaces,
             textures: textures?,
             white: upload(recorder, &white())?,
@@ -188,13 +176,13 @@ impl Geometry {
         &self.casters
     }
 
-    /// Clusters of the whole picture of which this view is a part.
+    /// Clusters visible in the whole picture of which this view is a part.
     pub fn seen(&self, view: &View) -> impl Iterator<Item = &Cluster> {
         let cull = Cull::camera(&view.whole());
         self.clusters.iter().filter(move |c| cull.sees(c))
     }
 
-    /// Those that lie within the pyramid of a view, whichever way they face.
+    /// Clusters within the frustum of a view, back-facing ones too.
     pub fn around(&self, view: &View) -> impl Iterator<Item = &Cluster> {
         let cull = Cull::camera(&view.whole());
         self.clusters.iter().filter(move |c| cull.holds(c))
@@ -218,12 +206,7 @@ impl Geometry {
         self.kinds().any(varies)
     }
 
-    /// Whether [`Self::draw_plain`] has anything to draw.
-    pub fn has_plain(&self) -> bool {
-        self.has_plain
-    }
-
-    /// Draws everything that casts a shadow into what `cull` sees and has no holes, positions only.
+    /// Draws all opaque casters that `cull` keeps, positions only.
     pub fn draw_positions(&self, draws: &mut Draws<'_, '_>, cull: &Cull) {
         if self.clusters.is_empty() {
             return;
@@ -248,29 +231,32 @@ impl Geometry {
         self.is_specular
     }
 
-    /// Draws surfaces without maps whose front faces are on the side of their normals; `bind` is called with each new material.
-    pub fn draw_lean<'g, 'r>(
+    /// Draws surfaces without maps whose normals match their winding; `bind` is called with each new material.
+    pub fn draw_untextured<'g, 'r>(
         &'g self,
         draws: &mut Draws<'_, 'r>,
         cull: &Cull,
         bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
     ) {
-        draws.geometry(&[&self.positions, &self.normals], &self.indices);
-        self.draw_parts(draws, is_lean, cull, bind);
+        draws.geometry(&self.streams(), &self.indices);
+        self.draw_parts(draws, is_untextured, cull, bind);
     }
 
     /// Draws the other parts that are not detailed; `bind` is called with each new material.
-    pub fn draw_plain<'g, 'r>(
+    pub fn draw_textured<'g, 'r>(
         &'g self,
         draws: &mut Draws<'_, 'r>,
         cull: &Cull,
         bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
     ) {
-        draws.geometry(
-            &[&self.positions, &self.normals, &self.texcoords],
-            &self.indices,
-        );
-        self.draw_parts(draws, is_plain, cull, bind);
+        draws.geometry(&self.streams(), &self.indices);
+        let textured = |p: &Part, c: &Cluster| !p.kind.is_detailed() && !is_untextured(p, c);
+        self.draw_parts(draws, textured, cull, bind);
+    }
+
+    /// Vertex streams of all surfaces.
+    fn streams(&self) -> [&Buffer; 3] {
+        [&self.positions, &self.normals, &self.texcoords]
     }
 
     /// Draws the detailed parts; `bind` is called with each new material.
@@ -283,8 +269,8 @@ impl Geometry {
         let Some([colours, tangents]) = &self.details else {
             return;
         };
-        let plain = [&self.positions, &self.normals, &self.texcoords];
-        let streams = [plain[0], plain[1], plain[2], colours, tangents];
+        let [positions, normals, texcoords] = self.streams();
+        let streams = [positions, normals, texcoords, colours, tangents];
         draws.geometry(&streams, &self.indices);
         self.draw_parts(draws, |part, _| part.kind.is_detailed(), cull, bind);
     }
@@ -332,24 +318,19 @@ impl Geometry {
             specular_map: map(s.specular_map),
             normal_map: map(s.normal_map),
             normal_scale: s.normal_scale,
-            mirrors: s.mirrors,
+            is_specular: s.is_specular,
             cutoff: s.cutoff.unwrap_or(0.0),
             white: &self.white,
         }
     }
 }
 
-/// Whether the pipeline with the fewest vertex attributes can draw a cluster.
-fn is_lean(part: &Part, cluster: &Cluster) -> bool {
-    part.kind.is_bare() && cluster.normals_match_winding
+/// Whether a cluster needs neither maps nor the side of its normals found out.
+fn is_untextured(part: &Part, cluster: &Cluster) -> bool {
+    part.kind == Kind::default() && cluster.normals_match_winding
 }
 
-/// Whether it takes the one with texture coordinates, which finds out which side is the front.
-fn is_plain(part: &Part, cluster: &Cluster) -> bool {
-    !part.kind.is_detailed() && !is_lean(part, cluster)
-}
-
-/// A scene's indices and layout: loading has found them, a scene that was made has none yet.
+/// A scene's indices and layout: those of its file, or new ones for a scene that was made in memory.
 fn arranged(scene: &Scene) -> (Cow<'_, [u32]>, Cow<'_, Layout>) {
     match &scene.layout {
         Some(layout) => (Cow::Borrowed(&scene.indices), Cow::Borrowed(layout)),

@@ -1,8 +1,6 @@
 //! The G-buffer: what is seen in each pixel, and the scene's geometry that it is drawn from.
 
 pub mod culling;
-pub mod details;
-mod draw_runs;
 pub mod gbuffer;
 pub mod geometry;
-mod upload;
+pub(in crate::passes) mod upload;

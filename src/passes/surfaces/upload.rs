@@ -41,22 +41,23 @@ pub(in crate::passes) fn normals_and_thickness(scene: &Scene, layout: &Layout) -
 }
 
 /// Materials in a row of the table of materials.
-const MATERIAL_COLUMNS: usize = 1024;
+pub(in crate::passes) const MATERIAL_COLUMNS: u32 = 1024;
 
 /// The table of `include/materials.glsl`.
 pub(in crate::passes) fn upload_materials(
     recorder: &mut Recorder,
     materials: &[Material],
 ) -> Result<Image> {
-    let rows = 2 * materials.len().div_ceil(MATERIAL_COLUMNS).max(1);
-    let mut table = vec![[0.0f32; 4]; rows * MATERIAL_COLUMNS];
+    let columns = MATERIAL_COLUMNS as usize;
+    let rows = 2 * materials.len().div_ceil(columns).max(1);
+    let mut table = vec![[0.0f32; 4]; rows * columns];
     for (i, material) in materials.iter().enumerate() {
-        let at = i / MATERIAL_COLUMNS * 2 * MATERIAL_COLUMNS + i % MATERIAL_COLUMNS;
+        let at = i / columns * 2 * columns + i % columns;
         let ([r, g, b], [x, y, z]) = (material.diffuse, material.specular);
         table[at] = [r, g, b, 0.0];
-        table[at + MATERIAL_COLUMNS] = [x, y, z, material.shininess];
+        table[at + columns] = [x, y, z, material.shininess];
     }
-    let size = [MATERIAL_COLUMNS as u32, rows as u32];
+    let size = [MATERIAL_COLUMNS, rows as u32];
     let desc = ImageDesc::flat("materials", Format::R32G32B32A32_SFLOAT, size);
     upload_texture(recorder, &desc, &[bytemuck::cast_slice(&table)])
 }
@@ -68,7 +69,7 @@ pub(in crate::passes) fn surface(material: &Material) -> Surface {
         specular_map: material.specular_texture,
         normal_map: material.normal_texture,
         normal_scale: material.normal_scale,
-        mirrors: material.specular != [0.0; 3],
+        is_specular: material.specular != [0.0; 3],
         // The opacity of the material multiplies that of the map: the same test with one factor less.
         cutoff: material
             .alpha_cutoff

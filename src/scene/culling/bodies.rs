@@ -35,8 +35,7 @@ impl Body {
     }
 }
 
-/// Thickness of a solid as a share of its mean chord. The occlusion pass doubles it: to 1.6, a little over the diameter of a
-/// sphere, which is 1.5 mean chords.
+/// Share of the mean chord that is a solid's thickness, for ambient occlusion.
 const SOLID: f32 = 0.8;
 
 /// Mean chord over largest extent, below which a body is a sheet.

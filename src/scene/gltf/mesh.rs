@@ -10,8 +10,8 @@ use crate::scene::gltf::material::Surface;
 use crate::scene::mesh::arena::append_soup;
 use crate::scene::mesh::instance::Mesh;
 use crate::scene::mesh::soup;
-use crate::scene::mesh::soup::{Corner, Dropped, MaterialUse, NONE, Soup, Triangle, sound_face};
-use crate::scene::texture::normal_map::sound_tangent;
+use crate::scene::mesh::soup::{Corner, Dropped, MaterialUse, NONE, Soup, Triangle, usable_face};
+use crate::scene::texture::normal_map::usable_tangent;
 
 /// The triangles of a primitive; attributes have the same length and indices are in range.
 #[derive(Debug, Default)]
@@ -145,14 +145,14 @@ impl Faces {
     /// Adds what the renderer needs and the file lacks: normals (flat, or smooth below the crease angle) and tangents.
     pub fn into_mesh(mut self, surface: Surface, smooth_deg: Option<f32>) -> (Mesh, Dropped) {
         let needs_tangents = surface.material.has_normal_map && self.tangents.is_none();
-        if needs_tangents || !self.has_sound_normals() {
+        if needs_tangents || !self.has_usable_normals() {
             return self.rebuild(surface, smooth_deg);
         }
         let mut dropped = Dropped::default();
         let at = |i: u32| Vec3::from(self.positions[i as usize]);
         let mut kept = Vec::with_capacity(self.indices.len());
         for t in self.indices.chunks_exact(3) {
-            if sound_face([at(t[0]), at(t[1]), at(t[2])], &mut dropped).is_some() {
+            if usable_face([at(t[0]), at(t[1]), at(t[2])], &mut dropped).is_some() {
                 kept.extend_from_slice(t);
             }
         }
@@ -160,12 +160,12 @@ impl Faces {
         (self.finish(surface.material.index), dropped)
     }
 
-    fn has_sound_normals(&self) -> bool {
-        let sound = |n: &[f32; 3]| {
+    fn has_usable_normals(&self) -> bool {
+        let usable = |n: &[f32; 3]| {
             let length = Vec3::from(*n).length_squared();
             (0.25..4.0).contains(&length)
         };
-        self.normals.as_ref().is_some_and(|n| n.iter().all(sound))
+        self.normals.as_ref().is_some_and(|n| n.iter().all(usable))
     }
 
     fn finish(self, material: u32) -> Mesh {
@@ -178,7 +178,7 @@ impl Faces {
             .collect();
         let tangents = self.tangents.map(|tangents| {
             let both = tangents.into_iter().zip(&normals);
-            both.map(|(t, n)| sound_tangent(t, *n)).collect()
+            both.map(|(t, n)| usable_tangent(t, *n)).collect()
         });
         let mut texcoords = self.texcoords;
         texcoords.resize(count, [0.0; 2]);
@@ -218,7 +218,7 @@ impl Faces {
             triangles: self.indices.chunks_exact(3).map(triangle).collect(),
             polygons: soup::Polygons::default(),
         };
-        let (dropped, faces) = soup.sweep();
+        let (dropped, faces) = soup.drop_unusable();
         let material = MaterialUse {
             has_normal_map: surface.material.has_normal_map,
             ..MaterialUse::plain(0)

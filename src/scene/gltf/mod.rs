@@ -34,13 +34,13 @@ pub fn append_gltf(
 ) -> Result<Vec<NamedCamera>, SceneError> {
     builder.progress.at(0.0, "reading");
     let bytes = builder.files.read(path)?;
-    let unsound = |what: String| SceneError::Unsupported {
+    let invalid = |what: String| SceneError::Unsupported {
         path: path.to_owned(),
         what: format!("is not a usable glTF file ({what}); export it again"),
     };
-    let gltf = parse(&bytes).map_err(|what| unsound(one_line(&what)))?;
+    let gltf = parse(&bytes).map_err(|what| invalid(one_line(&what)))?;
     drop(bytes);
-    let buffers = Buffers::read(builder, path, &gltf).map_err(unsound)?;
+    let buffers = Buffers::read(builder, path, &gltf).map_err(invalid)?;
     builder.progress.at(0.2, "reading materials");
     let mut model = Model {
         path,
@@ -62,7 +62,7 @@ pub fn append_gltf(
         model.append_node(builder, &node, world_from_node)?;
     }
     let empty = builder.scene.triangles() == drawn_before;
-    model.report.tell(builder, path, empty)?;
+    model.report.finish(builder, path, empty)?;
     Ok(model.cameras)
 }
 

@@ -268,7 +268,7 @@ mod tests {
     }
 
     fn scene_of(mut soup: Soup, material: MaterialUse) -> Scene {
-        let (_, faces) = soup.sweep();
+        let (_, faces) = soup.drop_unusable();
         let mut scene = Scene::default();
         append_soup(&mut scene, &soup, &faces, &[material], None);
         scene

@@ -4,7 +4,7 @@ use glam::{Affine3A, Mat3, Vec2, Vec3};
 
 use crate::scene::Scene;
 use crate::scene::mesh::arena::Vertex;
-use crate::scene::mesh::soup::{Dropped, NONE, sound_face};
+use crate::scene::mesh::soup::{Dropped, NONE, usable_face};
 
 /// Triangles of one material with their vertices, in mesh space.
 #[derive(Debug)]
@@ -66,7 +66,7 @@ pub fn append_instance(scene: &mut Scene, mesh: &Mesh, world_from_mesh: &Affine3
     for t in mesh.indices.chunks_exact(3) {
         let corners = [t[0], t[1], t[2]];
         let positions = corners.map(|i| instance.position(i));
-        if !instance.keeps_area() && sound_face(positions, &mut dropped).is_none() {
+        if !instance.keeps_area() && usable_face(positions, &mut dropped).is_none() {
             continue;
         }
         let mut indices = corners.map(|i| instance.index(scene, &mut indices_of, i));

@@ -202,13 +202,13 @@ impl Soup {
     }
 
     /// Drops triangles without area or with unusable positions; returns their counts and the unit face normals of the rest.
-    pub fn sweep(&mut self) -> (Dropped, Vec<Vec3>) {
+    pub fn drop_unusable(&mut self) -> (Dropped, Vec<Vec3>) {
         let mut dropped = Dropped::default();
         let mut faces = Vec::with_capacity(self.triangles.len());
         let positions = &self.positions;
         self.triangles.retain(|triangle| {
             let corners = triangle.corners.map(|c| positions[c.position as usize]);
-            match sound_face(corners, &mut dropped) {
+            match usable_face(corners, &mut dropped) {
                 Some(face) => faces.push(face),
                 None => return false,
             }
@@ -219,7 +219,7 @@ impl Soup {
 }
 
 /// The unit normal of a usable triangle; counts it in `dropped` otherwise.
-pub fn sound_face(corners: [Vec3; 3], dropped: &mut Dropped) -> Option<Vec3> {
+pub fn usable_face(corners: [Vec3; 3], dropped: &mut Dropped) -> Option<Vec3> {
     let usable = |p: Vec3| p.is_finite() && p.abs().max_element() <= MAX_COORDINATE;
     if !corners.into_iter().all(usable) {
         dropped.not_finite += 1;
@@ -268,7 +268,7 @@ mod tests {
     fn mirrored_meshes_keep_winding_and_normals_together() {
         let mut soup = one([Vec3::ZERO, Vec3::X, Vec3::Y], Vec3::Z);
         soup.transform(&Affine3A::from_scale(Vec3::new(1.0, 1.0, -2.0)));
-        let (dropped, faces) = soup.sweep();
+        let (dropped, faces) = soup.drop_unusable();
         assert_eq!(dropped, Dropped::default());
         assert_eq!(faces, [Vec3::NEG_Z]);
         assert_eq!(soup.normal(soup.triangles[0].corners[0]), Some(Vec3::NEG_Z));
@@ -279,7 +279,7 @@ mod tests {
         let slope = Vec3::new(1.0, 1.0, 0.0).normalize();
         let mut soup = one([Vec3::X, Vec3::Y, Vec3::new(0.5, 0.5, 1.0)], slope);
         soup.transform(&Affine3A::from_scale(Vec3::new(4.0, 1.0, 1.0)));
-        let (_, faces) = soup.sweep();
+        let (_, faces) = soup.drop_unusable();
         let normal = soup.normal(soup.triangles[0].corners[0]).expect("a normal");
         assert!(
             normal.dot(faces[0]).abs() > 0.99999,
@@ -297,7 +297,7 @@ mod tests {
             ([Vec3::ONE; 3], (0, 1)),
             ([Vec3::ZERO, Vec3::X * 1e-6, Vec3::Y * 1e-6], (0, 0)),
         ] {
-            let (dropped, _) = one(points, Vec3::Z).sweep();
+            let (dropped, _) = one(points, Vec3::Z).drop_unusable();
             assert_eq!(
                 (dropped.not_finite, dropped.degenerate),
                 expected,

@@ -70,9 +70,9 @@ pub fn append_obj(
     };
     report.undrawn = drop_undrawn(&mut soup, &uses);
     soup.transform(&placement.world_from_mesh);
-    let (dropped, faces) = soup.sweep();
+    let (dropped, faces) = soup.drop_unusable();
     report.dropped = dropped;
-    report.tell(builder, path, soup.triangles.is_empty())?;
+    report.finish(builder, path, soup.triangles.is_empty())?;
     append_soup(
         &mut builder.scene,
         &soup,
@@ -97,7 +97,12 @@ pub struct ImportReport {
 
 impl ImportReport {
     /// Adds a warning for each count; if the model is `empty`, fails with them instead.
-    pub fn tell(&self, builder: &mut Builder, path: &Path, empty: bool) -> Result<(), SceneError> {
+    pub fn finish(
+        &self,
+        builder: &mut Builder,
+        path: &Path,
+        empty: bool,
+    ) -> Result<(), SceneError> {
         let left_out = self.lines();
         if empty {
             let why = if left_out.is_empty() {

@@ -20,13 +20,13 @@ impl TangentInput {
         // Fails only without faces.
         let _ = generate_tangents(self);
         for (tangent, normal) in self.tangents.iter_mut().zip(&self.normals) {
-            *tangent = sound_tangent(*tangent, Vec3::from(*normal));
+            *tangent = usable_tangent(*tangent, Vec3::from(*normal));
         }
     }
 }
 
 /// A unit tangent at right angles to `normal`, and the sign of the bitangent; an arbitrary one if the given one is unusable.
-pub fn sound_tangent([x, y, z, w]: [f32; 4], normal: Vec3) -> [f32; 4] {
+pub fn usable_tangent([x, y, z, w]: [f32; 4], normal: Vec3) -> [f32; 4] {
     let given = Vec3::new(x, y, z);
     let flat = given - normal * normal.dot(given);
     let unit = if flat.is_finite() && flat.length_squared() > 1e-8 {
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn unusable_tangents_are_replaced() {
         for bad in [[0.0; 4], [f32::NAN; 4], [0.0, 3.0, 0.0, -1.0]] {
-            let [x, y, z, _] = sound_tangent(bad, Vec3::Y);
+            let [x, y, z, _] = usable_tangent(bad, Vec3::Y);
             let t = Vec3::new(x, y, z);
             assert!((t.length() - 1.0).abs() < 1e-6 && t.dot(Vec3::Y).abs() < 1e-6);
         }

@@ -20,7 +20,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
     let sun = lux(light.sun_illuminance) * elevation.to_radians().sin().max(0.0);
     let sky = lux(light.sky_irradiance_up);
     ui.label(format!(
-        "horizontal, unobstructed: sun {} + sky {}",
+        "horizontal: sun {} + sky {}",
         illuminance(sun),
         illuminance(sky)
     ));

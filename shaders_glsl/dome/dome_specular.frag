@@ -1,40 +1,37 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "colour.glsl"
 #include "constants.glsl"
+#include "dome.glsl"
 #include "materials.glsl"
 #include "octahedral.glsl"
 #include "phong.glsl"
-#include "view.glsl"
-#include "dome.glsl"
 
-// Mirror images of the sky under its visibility, rho_s V(x, r) L_sky(r) of the lecture's rendering equation: what the mirror
-// would show if nothing hid the sky, and the share V of the light in the lobe around r that comes through, told by the
-// directions of the frames so far. Each direction counts by (r.w)^p: the more there are, the nearer to r are those that rule.
+// Specular reflection of the sky with its visibility, rho_s V(x, r) L_sky(r) of the lecture's rendering equation: the reflection
+// of the open sky, and V, the visible share of the light in the lobe around r, from the directions of all frames so far. Each
+// direction counts by (r.w)^p: the more directions there are, the nearer to r are those that decide.
 
-// rgb: rho_s times the light of the sky in the mirror if nothing hid it, kcd/m^2; a: light of the directions in the lobe that is
-// not hidden.
-layout(location = 0) out vec4 mirror;
-// Light of all directions in the lobe.
+// rgb: reflection of the open sky, kcd/m^2; a: visible light of the directions in the lobe.
+layout(location = 0) out vec4 reflected;
+// All light of the directions in the lobe.
 layout(location = 1) out float lobe;
 
 layout(constant_id = 0) const int DIRECTIONS = 4;
 layout(constant_id = 1) const bool FRESNEL = false;
-// The lobe as a reflectance: the sky is smeared by it. Otherwise the lecture's mirror.
+// Energy-conserving lobe, which blurs the sky. Otherwise the lecture's perfect mirror.
 layout(constant_id = 2) const bool NORMALIZED = false;
 // As of lighting.frag.
 layout(constant_id = 3) const bool ALBEDO_IMAGE = true;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
-layout(set = 0, binding = 1) uniform usampler2D words;
+layout(set = 0, binding = 1) uniform usampler2D normal_material;
 layout(set = 0, binding = 2) uniform sampler2D albedo;         // with ALBEDO_IMAGE; else any
-layout(set = 0, binding = 3) uniform sampler2D previous_mirror;
+layout(set = 0, binding = 3) uniform sampler2D previous_reflected;
 layout(set = 0, binding = 4) uniform sampler2D previous_lobe;
-layout(set = 0, binding = 5) uniform sampler2D maps;           // reversed: 1 is nearest the light
-layout(set = 0, binding = 6) uniform samplerCube sky_radiance; // L, kcd/m^2, without the disc
+layout(set = 0, binding = 5) uniform samplerCube sky_radiance; // L, kcd/m^2, without the disc
 layout(set = 0, binding = 7) uniform sampler2D materials;      // see materials.glsl
 layout(set = 0, binding = 8, scalar) uniform View { VIEW_BLOCK } view;
-layout(set = 0, binding = 9, scalar) uniform Dome { DOME_BLOCK } dome;
 
 layout(push_constant, scalar) uniform Push {
     vec2 shift;           // of the samples of the lobe, 0..1
@@ -42,26 +39,25 @@ layout(push_constant, scalar) uniform Push {
     float specular_scale; // factor on every rho_s
 } push;
 
-#include "face.glsl"
-
-// Lobes narrower than the directions lie apart would show which of them is nearest.
-const float SHARPEST = 256.0;
+// Largest exponent: of a lobe narrower than the spacing of the directions only the nearest one would count.
+const float MAX_EXPONENT = 256.0;
 
 void gather(vec2 uv, float d) {
-    uvec3 own = textureLod(words, uv, 0.0).xyz;
+    vec3 ray = view_ray(uv, view.ray_scale, view.ray_offset);
+    uvec3 own = textureLod(normal_material, uv, 0.0).xyz;
     vec4 m = material_specular(materials, own.y);
     vec3 rho_s = m.rgb * (pixel_albedo(ALBEDO_IMAGE, albedo, materials, own.y, uv).a * push.specular_scale);
     if (all(lessThanEqual(rho_s, vec3(0.0)))) return;
     vec3 n = normal_unpack(own.x);
-    vec3 toward = view.world_from_view * in_view(uv, d);
+    vec3 toward = view.world_from_view * (ray * (view.near / d));
     vec3 world = view.eye + toward;
     toward = normalize(toward);
     if (FRESNEL) rho_s = grazing(rho_s, m.a, -dot(toward, n));
     vec3 r = reflect(toward, n);
-    mirror.rgb = rho_s * (NORMALIZED ? sky_in_lobe(sky_radiance, r, n, m.a, push.shift)
+    reflected.rgb = rho_s * (NORMALIZED ? sky_in_lobe(sky_radiance, r, n, m.a, push.shift)
                                      : textureLod(sky_radiance, r, 0.0).rgb);
-    vec3 face = face_normal(uv, own.z);
-    float p = clamp(m.a, 1.0, SHARPEST);
+    vec3 face = view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale);
+    float p = clamp(m.a, 1.0, MAX_EXPONENT);
     for (int k = 0; k < DIRECTIONS; ++k) {
         vec3 w = dome.toward[k].xyz;
         float cosine = dot(n, w);
@@ -70,18 +66,17 @@ void gather(vec2 uv, float d) {
         float light = pow(along_r, p) * luminance(dome.light[k].rgb);
         if (NORMALIZED) light *= cosine;
         lobe += light;
-        if (is_turned_away(face, n, w)) continue;
-        if (is_lit_in_plane(maps, dome.clip_from_world[k], dome.planes[k], dome.window[k], dome.toward[k].a, world, face)) mirror.a += light;
+        if (is_lit_from(k, world, n, face)) reflected.a += light;
     }
 }
 
 void main() {
     vec2 uv = gl_FragCoord.xy / vec2(textureSize(depth, 0));
     float d = textureLod(depth, uv, 0.0).r;
-    mirror = vec4(0.0);
+    reflected = vec4(0.0);
     lobe = 0.0;
     if (d > 0.0) gather(uv, d);
     if (push.share >= 1.0) return;
-    mirror = mix(textureLod(previous_mirror, uv, 0.0), mirror, push.share);
+    reflected = mix(textureLod(previous_reflected, uv, 0.0), reflected, push.share);
     lobe = mix(textureLod(previous_lobe, uv, 0.0).r, lobe, push.share);
 }

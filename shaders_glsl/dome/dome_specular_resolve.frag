@@ -1,0 +1,18 @@
+#version 460
+
+// The picture with specular reflection of the sky, by its visible share V.
+
+layout(location = 0) out vec4 radiance; // kcd/m^2
+
+layout(set = 0, binding = 0) uniform sampler2D picture; // without it
+layout(set = 0, binding = 1) uniform sampler2D reflected;
+layout(set = 0, binding = 2) uniform sampler2D lobe;
+
+void main() {
+    vec2 uv = gl_FragCoord.xy / vec2(textureSize(picture, 0));
+    vec4 mean = textureLod(reflected, uv, 0.0);
+    float whole = textureLod(lobe, uv, 0.0).r;
+    // With no direction in the lobe yet the sky counts as open.
+    float V = whole > 0.0 ? mean.a / whole : 1.0;
+    radiance = vec4(textureLod(picture, uv, 0.0).rgb + V * mean.rgb, 1.0);
+}

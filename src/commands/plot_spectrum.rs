@@ -55,8 +55,11 @@ fn figure(svg: &mut String, light: &Light) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Points (nm, W m⁻² nm⁻¹), label and colour of each curve.
-fn curves(light: &Light) -> [(Vec<(f64, f64)>, String, RGBColor); 3] {
+/// Points (nm, W m⁻² nm⁻¹), label and colour.
+type Curve = (Vec<(f64, f64)>, String, RGBColor);
+
+/// The curves of the figure.
+fn curves(light: &Light) -> [Curve; 3] {
     let elevation = light.conditions.sun_elevation_deg;
     let (low, high) = light.conditions.model.turbidity_range();
     let turbidity = light.conditions.turbidity.clamp(low, high);

@@ -1,78 +1,81 @@
-//! The command line: text to [`Command`]. It touches no file and prints nothing.
+//! The command line: words to [`Command`]. It touches no file and prints nothing.
+
+mod args;
 
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::error::ErrorKind;
 use clap::{Arg, Parser, Subcommand};
 
-use crate::commands::{BakeWishes, BenchWishes, CompareWishes, SkyWishes};
-use crate::settings::{Optional, Options, one_line};
+pub use args::{BakeArgs, BenchArgs, CompareArgs, Layout, Map, Motion, SkyArgs, Sweep};
 
-/// What the user wants done.
+use crate::options::{OptionValues, Optional, choice, decides_light, one_line};
+
+/// A command with its arguments.
 #[derive(Debug, Clone, PartialEq, Subcommand)]
 pub enum Command {
     /// Render one picture to a file, without a window.
     Render {
-        /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, island) [default: colonnade].
+        /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, the default; island).
         scene: Option<PathBuf>,
-        /// Where to: .png is tone-mapped, .exr is scene-linear cd/m² (lux for irradiance).
-        #[arg(short, long, value_name = "FILE", default_value = "skylight.png", value_parser = picture_path)]
+        /// File to write: .png is tone-mapped, .exr is scene-linear cd/m² (lux for irradiance).
+        #[arg(short, long, value_name = "FILE", default_value = "skylight.png", value_parser = args::named(&["png", "exr"]))]
         output: PathBuf,
-        /// How.
+        /// Options of the picture.
         #[command(flatten)]
-        options: Box<Options>,
+        options: OptionValues,
     },
-    /// Open a window and walk through daylight; press ? in it for the keys.
+    /// Open a window on a scene; press ? in it for the keys.
     View {
-        /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, island) [default: colonnade].
+        /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, the default; island).
         scene: Option<PathBuf>,
-        /// Go on with the settings and the camera that this scene was left with.
+        /// Start with the options and the camera that this scene was last closed with.
         #[arg(long)]
         resume: bool,
-        /// How; --samples is the number of frames averaged at rest [default: 64].
+        /// Options of the picture; --samples is the number of frames averaged at rest, by default 64.
         #[command(flatten)]
-        options: Box<Options>,
+        options: OptionValues,
     },
     /// Time every pass of the frame.
     Bench {
-        /// What to measure.
+        /// Arguments of its own.
         #[command(flatten)]
-        wishes: BenchWishes,
-        /// How.
+        args: BenchArgs,
+        /// Options of the picture.
         #[command(flatten)]
-        options: Box<Options>,
+        options: OptionValues,
     },
-    /// Tell the numbers of a daylight: sun, illuminances, luminances.
+    /// Print the figures of a daylight: sun, illuminances, luminances.
     ///
     /// The options of a picture (its size, camera, tone ..) are accepted and have no effect, so that one list of options
     /// serves render, sky and bake.
     #[command(mut_args = hidden_if_of_pictures)]
     Sky {
-        /// What to tell.
+        /// Arguments of its own.
         #[command(flatten)]
-        wishes: SkyWishes,
-        /// Of which daylight.
+        args: SkyArgs,
+        /// Options of the daylight.
         #[command(flatten)]
-        options: Box<Options>,
+        options: OptionValues,
     },
     /// Write the sky or its irradiance as an environment map, with a JSON file of its units beside it.
     ///
     /// The options of a picture (its size, camera, tone ..) are accepted and have no effect.
     #[command(mut_args = of_maps)]
     Bake {
-        /// What to write.
+        /// Arguments of its own.
         #[command(flatten)]
-        wishes: BakeWishes,
-        /// Of which daylight.
+        args: BakeArgs,
+        /// Options of the daylight.
         #[command(flatten)]
-        options: Box<Options>,
+        options: OptionValues,
     },
     /// Compare two pictures of one view: radiometric errors, and FLIP, the difference that a viewer sees.
     Compare {
-        /// Which.
+        /// Arguments of its own.
         #[command(flatten)]
-        wishes: CompareWishes,
+        args: CompareArgs,
     },
     /// List the Vulkan devices and what each lacks.
     Info {
@@ -83,12 +86,12 @@ pub enum Command {
         #[arg(long, value_name = "NAME|INDEX", requires = "startup")]
         device: Option<String>,
         /// Do without something that the devices have, as on devices that lack it.
-        #[arg(long, value_enum, value_name = "FEATURE")]
+        #[arg(long, value_name = "FEATURE", value_parser = choice::<Optional>())]
         without: Option<Optional>,
     },
 }
 
-/// How the program ends before it starts.
+/// Why the program ends without running a command.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum CliExit {
     /// Asked-for text for stdout; exit code 0.
@@ -130,38 +133,44 @@ pub fn parse(words: impl IntoIterator<Item = OsString>) -> Result<Command, CliEx
 }
 
 fn exit(error: &clap::Error, words: &[OsString]) -> CliExit {
+    let usage = |what: String| {
+        let mut command = words.get(1).and_then(|word| word.to_str()).into_iter();
+        let hint = command.find(|word| is_command(word));
+        let hint = hint.map_or("skylight".to_owned(), |word| format!("skylight {word}"));
+        CliExit::Usage(format!("{what} (see {hint} --help)"))
+    };
     match error.kind() {
-        ErrorKind::DisplayHelp
-        | ErrorKind::DisplayVersion
-        | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            let text = error.render().to_string();
-            // Help that nobody asked for is an error of usage, but the whole of it is the best hint.
-            if error.exit_code() == 0 {
-                CliExit::Help(text)
-            } else {
-                CliExit::Usage(missing_command())
-            }
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => match file_taken_for_help(words) {
+            Some(file) => usage(format!("no option {file}; write ./{file} if it is a file")),
+            None => CliExit::Help(error.render().to_string()),
+        },
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => {
+            CliExit::Usage(missing_command())
         }
-        ErrorKind::MissingSubcommand => CliExit::Usage(missing_command()),
-        _ => {
-            let command = words
-                .get(1)
-                .and_then(|word| word.to_str())
-                .filter(|word| is_command(word));
-            let hint = command.map_or("skylight --help".to_owned(), |word| {
-                format!("skylight {word} --help")
-            });
-            CliExit::Usage(format!("{} (see {hint})", one_line(error)))
+        ErrorKind::InvalidUtf8 => {
+            let mut odd = words.iter().filter(|word| word.to_str().is_none());
+            let word = odd.next().map(|word| word.to_string_lossy());
+            usage(format!("'{}' is not UTF-8", word.unwrap_or_default()))
         }
+        _ => usage(one_line(error)),
     }
+}
+
+/// A word such as `-house.obj`, which starts with the letter of an option for help, when nothing else asks for it.
+fn file_taken_for_help(words: &[OsString]) -> Option<&str> {
+    let texts = || words.iter().skip(1).filter_map(|word| word.to_str());
+    let asks = |word: &str| ["-h", "--help", "-V", "--version", "help"].contains(&word);
+    let is_file =
+        |word: &&str| word.len() > 2 && (word.starts_with("-h") || word.starts_with("-V"));
+    texts().find(is_file).filter(|_| !texts().any(asks))
 }
 
 /// Hides an option that decides a picture from the help of a command that makes none.
 fn hidden_if_of_pictures(arg: Arg) -> Arg {
-    const OF_LIGHT: [&str; 4] = ["preset", "irradiance", "irradiance_samples", "quiet"];
-    let heading = arg.get_help_heading();
-    let used = heading.is_none_or(|heading| heading == "Sun and sky");
-    let hidden = !used && !OF_LIGHT.contains(&arg.get_id().as_str());
+    const OF_THE_COMMAND: [&str; 2] = ["preset", "quiet"];
+    let name = arg.get_long().unwrap_or_default();
+    let is_shared = arg.get_help_heading().is_some();
+    let hidden = is_shared && !decides_light(name) && !OF_THE_COMMAND.contains(&name);
     arg.hide(hidden)
 }
 
@@ -181,21 +190,12 @@ fn missing_command() -> String {
     "no command given; try: skylight render (see skylight --help)".to_owned()
 }
 
-fn picture_path(text: &str) -> Result<PathBuf, String> {
-    let path = Path::new(text);
-    let extension = path
-        .extension()
-        .map(|e| e.to_string_lossy().to_ascii_lowercase());
-    match extension.as_deref() {
-        Some("png" | "exr") => Ok(path.to_owned()),
-        _ => Err("the name must end in .png or .exr".to_owned()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::options::SunInput;
     use clap::CommandFactory;
+    use std::path::Path;
 
     fn words(line: &str) -> Vec<OsString> {
         std::iter::once("skylight")
@@ -204,14 +204,21 @@ mod tests {
             .collect()
     }
 
-    fn render(line: &str) -> (Option<PathBuf>, PathBuf, Options) {
+    fn render(line: &str) -> (Option<PathBuf>, PathBuf, crate::options::Options) {
         match parse(words(line)) {
             Ok(Command::Render {
                 scene,
                 output,
                 options,
-            }) => (scene, output, *options),
+            }) => (scene, output, options.alone().expect(line)),
             other => panic!("{line}: {other:?}"),
+        }
+    }
+
+    fn longitude(options: &crate::options::Options) -> f64 {
+        match options.sun {
+            SunInput::Place { longitude, .. } => longitude,
+            sun => panic!("{sun:?}"),
         }
     }
 
@@ -228,10 +235,10 @@ mod tests {
         ] {
             let (_, _, options) = render(line);
             assert_eq!(options.eye, Some([-17.5, 3.0, 13.0]));
-            assert_eq!(options.place.map(|p| p.longitude), Some(-70.0));
+            assert_eq!(longitude(&options), -70.0);
         }
         let (_, _, options) = render("render --place Zürich");
-        assert_eq!(options.place.map(|p| p.longitude), Some(8.54));
+        assert_eq!(longitude(&options), 8.54);
     }
 
     #[test]
@@ -240,7 +247,7 @@ mod tests {
             render("render a.toml -o b.EXR --size 4x3 --layers --when 2026-06-21T14:00+02:00");
         assert_eq!(scene, Some("a.toml".into()));
         assert_eq!(output, Path::new("b.EXR"));
-        assert!(options.layers && options.when.is_some());
+        assert!(options.layers);
         assert_eq!(render("render").1, Path::new("skylight.png"));
         assert_eq!(
             parse(words("info")),
@@ -252,7 +259,7 @@ mod tests {
         );
         assert!(matches!(
             parse(words("bench --frames 3 --json t.json")),
-            Ok(Command::Bench { wishes, .. }) if wishes.frames == Some(3)
+            Ok(Command::Bench { args, .. }) if args.frames == 3
         ));
     }
 
@@ -282,6 +289,8 @@ mod tests {
             ("render -o picture.jpg", ".png or .exr"),
             ("render -o png", ".png or .exr"),
             ("render --samples 0", "--samples"),
+            ("render -house.obj", "-house.obj; write ./-house.obj"),
+            ("render -Villa.obj -o a.png", "./-Villa.obj"),
             ("render a.obj b.obj", "b.obj"),
             ("render --size 1x1 --size 2x2", "--size"),
             ("bench --frames 0", "--frames"),

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use crate::daylight::sun_position::SunPositionError;
 use crate::gpu::GpuError;
+use crate::options::OptionsError;
 use crate::scene::{SceneError, shown};
-use crate::settings::SettingsError;
 
-/// Result of the faces.
+/// Result of a command.
 pub type Result<T> = std::result::Result<T, Error>;
 
 /// Any failure.
@@ -15,7 +15,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 pub enum Error {
     /// An option or a name that makes no sense.
     #[error(transparent)]
-    Settings(#[from] SettingsError),
+    Options(#[from] OptionsError),
     /// A scene that cannot be shown.
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -76,7 +76,7 @@ impl Error {
     /// 2 for wrong usage, 1 for everything else.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Settings(_) | Self::Sun(_) => 2,
+            Self::Options(_) | Self::Sun(_) => 2,
             _ => 1,
         }
     }

@@ -1,9 +1,6 @@
-//! The frame: owns the passes; [`Frame::record`] is the whole pipeline in reading order.
+//! The frame: owns the passes, and draws them in the order of the diagram on the first page of these docs.
 
-mod ask;
-mod converging;
-mod develop;
-mod parts;
+mod average;
 mod sample;
 mod settings;
 
@@ -11,163 +8,172 @@ use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::thread::{self, ScopedJoinHandle};
 
-use glam::Vec3;
-
 pub use self::sample::{Filter, Sampling, Visibility};
 pub use self::settings::FrameSettings;
 
 use crate::daylight::sky::Daylight;
 use crate::gpu::{Context, Image, Recorder, Result};
-use crate::passes::dome::fit::{self, Receivers};
-use crate::passes::dome::gather::Gathered;
 use crate::passes::light::background::Background;
-use crate::passes::light::lighting::{Light, Lighting, Show};
-use crate::passes::light::probe::Probe;
+use crate::passes::light::lighting::{Light, Show};
+use crate::passes::light::probe::{Probe, Reading};
 use crate::passes::occlusion::height_map::HeightMap;
 use crate::passes::occlusion::ssao::Ssao;
-use crate::passes::picture::accumulate::Accumulate;
 use crate::passes::picture::exposure::Exposure;
-use crate::passes::picture::tone_map::ToneMap;
+use crate::passes::picture::tone_map::{ToneMap, ToneSettings};
 use crate::passes::sky::cube::SkyCube;
 use crate::passes::sky::irradiance::Irradiance;
-use crate::passes::sun_shadow::cascades::SunViews;
-use crate::passes::sun_shadow::map::Shadow;
-use crate::passes::sun_shadow::receiver_mask;
 use crate::passes::surfaces::gbuffer::Gbuffer;
 use crate::passes::surfaces::geometry::Geometry;
-use crate::passes::view::View;
+use crate::passes::view::{View, Window};
 use crate::scene::{Camera, Scene};
 
-use self::converging::Converging;
-use self::parts::Parts;
+use self::average::{Average, Lit};
 use self::sample::Sample;
 
-/// What the newest frame was drawn with, for passes that look at it afterwards.
-#[derive(Clone, Copy)]
-struct Drawn {
-    view: View,
-    sun_direction: Vec3,
-    sun_views: SunViews,
-    /// Whether it is part of an average.
-    is_averaged: bool,
-}
-
-/// Mip levels by which textures are sharpened where samples converge: each sees an eighth of the pixel's width.
-const SHARPEN: f32 = 3.0;
-
-/// The passes, wired.
+/// A scene and the passes that draw it.
 pub struct Frame {
     context: Arc<Context>,
     settings: FrameSettings,
     geometry: Geometry,
     sky_cube: SkyCube,
     irradiance: Irradiance,
-    shadow: Shadow,
     gbuffer: Gbuffer,
-    cover: HeightMap,
+    height_map: HeightMap,
     ssao: Ssao,
-    lighting: Lighting,
+    /// Of single frames: previews, and those that the dome does not light.
+    preview: Lit,
     background: Background,
-    accumulate: Option<Accumulate>,
-    converging: Option<Converging>,
+    average: Average,
     exposure: Exposure,
     tone_map: ToneMap,
-    probe: Option<Probe>,
+    probe: Probe,
     drawn: Option<Drawn>,
-    parts: Parts,
+    tiling: Tiling,
+}
+
+/// The newest frame.
+#[derive(Clone, Copy)]
+struct Drawn {
+    /// Its number in an average; none of a preview.
+    index: Option<u32>,
+    view: View,
+}
+
+/// What a tile has from the picture that it is cut from.
+#[derive(Default)]
+struct Tiling {
+    /// The tile; without one the frame is the whole picture.
+    tile: Option<Window>,
+    /// Ambient occlusion of the whole picture, by sample: surfaces beyond the tile's edge occlude too.
+    occlusion: Vec<Image>,
+}
+
+impl Tiling {
+    /// Ambient occlusion for sample `index`, if the tiles share it; images repeat where there are more samples.
+    fn occlusion(&self, index: Option<u32>) -> Option<&Image> {
+        let count = self.occlusion.len().max(1);
+        self.occlusion.get(index.unwrap_or(0) as usize % count)
+    }
 }
 
 impl Frame {
     /// Uploads the scene and makes the passes; `recorder` must be recording.
     ///
     /// # Errors
-    /// When the device refuses or has no memory left.
+    /// When the device refuses or has no memory left: what was recorded must not be submitted then.
     pub fn new(recorder: &mut Recorder, scene: &Scene, settings: FrameSettings) -> Result<Self> {
         let context = recorder.context().clone();
-        let (device, asked, size) = (&context, settings, settings.size.to_array());
-        // Drivers take their time to make pipelines: passes are made at the same time, while the scene is uploaded.
+        let (device, asked) = (&context, settings);
+        // Drivers take their time to make pipelines: other threads do it while the scene is uploaded.
         thread::scope(|scope| {
             let sky_cube = scope.spawn(move || SkyCube::new(device, asked.sky_edge));
-            let ssao = scope.spawn(move || Ssao::new(device, size, asked.ssao));
-            let tone_map = scope.spawn(move || ToneMap::new(device, size, asked.tone));
+            let ssao = scope.spawn(move || asked.ssao(device));
+            let tone_map = scope.spawn(move || asked.tone_map(device));
             let exposure = scope.spawn(move || Exposure::new(device));
             let geometry = Geometry::new(recorder, scene)?;
             let settings = asked.for_scene(device, &geometry);
-            let lighting = scope.spawn(move || Lighting::new(device, size, settings.lighting));
-            let background = scope.spawn(move || Background::new(device, settings.lighting));
+            let lighting = scope.spawn(move || settings.lighting(device));
+            let background = scope.spawn(move || settings.background(device));
             Ok(Self {
-                cover: HeightMap::new(device, &geometry)?,
-                shadow: settings.shadow(device, &geometry)?,
-                gbuffer: Gbuffer::new(device, &geometry, size, asked.converges())?,
-                converging: Converging::new(device, &geometry, &settings)?,
-                geometry,
+                height_map: HeightMap::new(device, &geometry)?,
+                gbuffer: settings.gbuffer(device, &geometry)?,
+                average: Average::new(device, &geometry, &settings)?,
                 irradiance: Irradiance::new(recorder, settings.irradiance)?,
-                accumulate: accumulate(device, &settings)?,
-                sky_cube: made(sky_cube)?,
-                ssao: made(ssao)?,
-                lighting: made(lighting)?,
-                background: made(background)?,
-                exposure: made(exposure)?,
-                tone_map: made(tone_map)?,
-                probe: None,
+                preview: Lit {
+                    shadow: settings.shadow(device, &geometry)?,
+                    lighting: joined(lighting)?,
+                },
+                sky_cube: joined(sky_cube)?,
+                ssao: joined(ssao)?,
+                background: joined(background)?,
+                exposure: joined(exposure)?,
+                tone_map: joined(tone_map)?,
+                probe: Probe::new(device)?,
                 drawn: None,
-                parts: Parts::default(),
+                tiling: Tiling::default(),
+                geometry,
                 settings,
                 context: context.clone(),
             })
         })
     }
 
-    /// Takes over other settings: makes anew what they change, and keeps the rest (the scene, a sky that is drawn).
+    /// Takes over other settings: remakes the passes that depend on what differs, and keeps the others with what they have drawn.
     /// `recorder` must be recording, with no frame in flight.
     ///
     /// # Errors
-    /// When the device refuses or has no memory left; the frame is as it was, or partly new, and can be drawn.
+    /// When the device refuses or has no memory left. The frame is as it was then; what was recorded must not be submitted.
     pub fn apply(&mut self, recorder: &mut Recorder, settings: FrameSettings) -> Result<()> {
-        let (old, new) = (
-            self.settings,
-            settings.for_scene(&self.context, &self.geometry),
-        );
-        let context = self.context.clone();
-        let size = new.size.to_array();
-        let resized = new.size != old.size;
-        if new.sky_edge != old.sky_edge {
-            self.sky_cube = SkyCube::new(&context, new.sky_edge)?;
-        }
-        if new.irradiance != old.irradiance {
-            self.irradiance = Irradiance::new(recorder, new.irradiance)?;
-        }
-        if new.shadow_maps() != old.shadow_maps() {
-            self.shadow = new.shadow(&context, &self.geometry)?;
-        }
-        if resized || new.converges() != old.converges() {
-            self.gbuffer = Gbuffer::new(&context, &self.geometry, size, new.converges())?;
-        }
-        if resized || new.ssao != old.ssao {
-            self.ssao = Ssao::new(&context, size, new.ssao)?;
-        }
-        if resized || new.lighting != old.lighting {
-            self.lighting = Lighting::new(&context, size, new.lighting)?;
-            self.background = Background::new(&context, new.lighting)?;
-            self.probe = None;
-        }
-        if resized || new.averages() != old.averages() {
-            self.accumulate = accumulate(&context, &new)?;
-        }
-        if Converging::is_changed(&old, &new) {
-            self.converging = Converging::new(&context, &self.geometry, &new)?;
-        }
-        if resized || new.tone != old.tone {
-            self.tone_map = ToneMap::new(&context, size, new.tone)?;
-        }
-        self.drawn = None;
+        let settings = settings.for_scene(&self.context, &self.geometry);
+        let differs = settings.irradiance != self.settings.irradiance;
+        let irradiance = remade(differs, || Irradiance::new(recorder, settings.irradiance))?;
+        self.remake(settings, irradiance)
+    }
+
+    /// Shows something else from the next frame on.
+    ///
+    /// # Errors
+    /// When the device refuses or has no memory left; the frame is as it was then.
+    pub fn show(&mut self, show: Show) -> Result<()> {
+        let mut settings = self.settings;
+        (settings.lighting.show, settings.tone.show) = (show, show);
+        self.remake(settings, None)
+    }
+
+    /// Makes the passes that other settings need, then swaps all of them in: nothing changes when one fails.
+    fn remake(&mut self, new: FrameSettings, irradiance: Option<Irradiance>) -> Result<()> {
+        let (old, device, geometry) = (&self.settings, &self.context, &self.geometry);
+        let is_resized = new.size != old.size;
+        let is_lit = is_resized || new.lighting != old.lighting;
+        let is_new_gbuffer = is_resized || new.converges() != old.converges();
+        let is_new_shadow = new.shadow_map() != old.shadow_map();
+        let is_new_average = Average::is_changed(old, &new);
+        let sky_edge = new.sky_edge;
+        let sky_cube = remade(sky_edge != old.sky_edge, || SkyCube::new(device, sky_edge))?;
+        let gbuffer = remade(is_new_gbuffer, || new.gbuffer(device, geometry))?;
+        let ssao = remade(is_resized || new.ssao != old.ssao, || new.ssao(device))?;
+        let shadow = remade(is_new_shadow, || new.shadow(device, geometry))?;
+        let lighting = remade(is_lit, || new.lighting(device))?;
+        let background = remade(new.lighting != old.lighting, || new.background(device))?;
+        let average = remade(is_new_average, || Average::new(device, geometry, &new))?;
+        let tone_map = remade(is_resized || new.tone != old.tone, || new.tone_map(device))?;
+
+        // From here on nothing fails.
+        replace(&mut self.sky_cube, sky_cube);
+        replace(&mut self.irradiance, irradiance);
+        replace(&mut self.gbuffer, gbuffer);
+        replace(&mut self.ssao, ssao);
+        replace(&mut self.preview.shadow, shadow);
+        replace(&mut self.preview.lighting, lighting);
+        replace(&mut self.background, background);
+        replace(&mut self.average, average);
+        replace(&mut self.tone_map, tone_map);
         self.settings = new;
+        self.drawn = None;
         Ok(())
     }
 
-    /// Records frame number `index` of the picture (0 starts a new average).
-    ///
-    /// Sky, irradiance and shadow map are drawn only when their inputs changed.
+    /// Records frame number `index` of an average; 0 starts a new one.
     pub fn record(&mut self, rec: &mut Recorder, daylight: &Daylight, camera: &Camera, index: u32) {
         self.draw(rec, daylight, camera, Some(index));
     }
@@ -177,6 +183,7 @@ impl Frame {
         self.draw(rec, daylight, camera, None);
     }
 
+    /// The frame. Sky, irradiance and shadow map are drawn only when their inputs changed.
     fn draw(
         &mut self,
         rec: &mut Recorder,
@@ -184,145 +191,145 @@ impl Frame {
         camera: &Camera,
         index: Option<u32>,
     ) {
-        let converging = self.converging.as_mut().filter(|_| index.is_some());
-        let sun = daylight.sun_direction.as_vec3();
-        let mut sample = match index {
-            Some(index) if converging.is_some() || self.settings.averages() => {
-                Sample::new(sun, index, &self.settings.sampling)
-            }
-            _ => Sample::central(sun),
-        };
-        let count = self.settings.lighting.shadows.cascades;
-        if self.settings.lighting.shadows.penumbrae && converging.is_none() {
-            // The map's lookup sees the whole disc: its points would be another disc.
-            sample.sun_direction = sun;
-        }
-        let view = View {
-            camera: *camera,
-            size: self.settings.size,
-            jitter: sample.jitter,
-            sharpen: if converging.is_some() { SHARPEN } else { 0.0 },
-            window: self.parts.window,
-        };
+        let (geometry, settings) = (&self.geometry, &self.settings);
+        let sample = Sample::of(settings, daylight, index);
+        let view = sample.view(camera, settings.size, self.tiling.tile);
+        let (Lit { shadow, lighting }, resolve) = self.average.frame(&mut self.preview, index);
+        shadow.fit(geometry, &view, sample.sun_direction, sample.texel);
 
-        let (shadow, lighting, dome, fade) = match converging {
-            Some(c) => {
-                let fade = c.fade.as_mut().map(|fade| (fade, self.lighting.image()));
-                (&mut c.shadow, &mut c.lighting, Some(&mut c.dome), fade)
-            }
-            None => (&mut self.shadow, &mut self.lighting, None, None),
-        };
-        let (bounds, casters) = (self.geometry.bounds(), self.geometry.casters());
-        let resolution = shadow.resolution();
-        let sun_views = match dome {
-            Some(_) => {
-                let receivers = Receivers::new(bounds, &view);
-                let (sun, shift) = (sample.sun_direction, sample.texel);
-                SunViews::one(fit::fit(sun, bounds, &receivers, resolution, shift))
-            }
-            None => {
-                let sun = sample.sun_direction;
-                let mut views = SunViews::fit(sun, bounds, casters, &view, resolution, count);
-                let (eye, shadows) = (camera.eye, &self.settings.lighting.shadows);
-                let seen = self.geometry.seen(&view);
-                let drawn = shadow.drawn();
-                if !drawn.is_some_and(|drawn| views.stay(drawn, seen, eye, shadows)) {
-                    let room = receiver_mask::room(bounds, eye);
-                    let behind = view.from_behind(room);
-                    views.shade(self.geometry.around(&behind), eye, room, shadows);
-                }
-                views
-            }
-        };
-
-        // Nothing of these reads another's images: with no barrier in between they may run at the same time.
-        let shadow_target = shadow.is_stale(&sun_views).then(|| shadow.image());
-        rec.prepare(self.gbuffer.surfaces().images().chain(shadow_target));
+        // None of these reads another's images: without a barrier in between they may run at the same time.
+        rec.prepare(self.gbuffer.surfaces().images().chain(shadow.target()));
         let sky = self.sky_cube.record(rec, daylight);
         let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
-        let shadow_map = shadow.record(rec, &self.geometry, &sun_views);
-        let surfaces = self.gbuffer.record(rec, &self.geometry, &view);
-        let occlusion = match &dome {
-            Some(_) => self.ssao.image(),
-            None => match self.parts.occlusion(index) {
-                Some(of_whole) => of_whole,
-                None => {
-                    let cover = self
-                        .cover
-                        .record(rec, &self.geometry, self.settings.ssao.radius);
-                    self.ssao.record(rec, surfaces, &view, cover, sample.phase)
-                }
-            },
+        let (sun_views, shadow_map) = shadow.record(rec, geometry);
+        let surfaces = self.gbuffer.record(rec, geometry, &view);
+        let occlusion = match self.tiling.occlusion(index) {
+            Some(of_picture) => of_picture,
+            // It is bound, but not read.
+            None if resolve.is_dome() => self.ssao.image(),
+            None => {
+                let above = self.height_map.record(rec, geometry, settings.ssao.radius);
+                self.ssao.record(rec, surfaces, &view, above, sample.phase)
+            }
         };
-
         let light = Light {
             daylight,
             sun_direction: sample.sun_direction,
-            sun_views: &sun_views,
+            sun_views,
             shadow_map,
             sky_irradiance,
             sky_radiance: sky.radiance,
         };
-        let materials = self.geometry.materials();
+        let materials = geometry.materials();
         let frame = lighting.record(rec, surfaces, materials, occlusion, &light, &view);
         self.background
             .record(rec, &surfaces.depth, &light, &view, frame);
-        let radiance = match (dome, &mut self.accumulate, index) {
-            (Some(dome), _, Some(index)) => {
-                let gathered = Gathered {
-                    surfaces,
-                    materials,
-                    frame,
-                    sky_irradiance,
-                    sky_radiance: sky.radiance,
-                };
-                let picture = dome.record(rec, &self.geometry, &gathered, daylight, &view, index);
-                let is_previewed = self.drawn.is_some_and(|drawn| !drawn.is_averaged);
-                match fade {
-                    Some((fade, preview)) => {
-                        fade.record(rec, preview, picture, index, is_previewed)
-                    }
-                    None => picture,
-                }
-            }
-            (None, Some(accumulate), Some(index)) => accumulate.record(rec, frame, index),
-            _ => frame,
-        };
-        self.drawn = Some(Drawn {
-            view,
-            sun_direction: sample.sun_direction,
-            sun_views,
-            is_averaged: index.is_some(),
-        });
+        let radiance = resolve.record(rec, geometry, frame, surfaces, &light, &view);
+        let average = self.exposure.record(rec, radiance);
+        self.tone_map.record(rec, radiance, average);
+        self.drawn = Some(Drawn { index, view });
+    }
 
+    /// Sets the share of the way, in log luminance, that an automatic exposure moves toward that of each following picture: 1 (the
+    /// default) adapts at once, [`crate::daylight::exposure::adaptation`] smoothly.
+    pub fn set_adaptation(&mut self, share: f64) {
+        self.exposure.set_share(share as f32);
+    }
+
+    /// Exposes the newest picture again, which adapts the exposure further. `rec` must be recording.
+    pub fn expose(&self, rec: &mut Recorder) {
+        let radiance = self.radiance();
         let average = self.exposure.record(rec, radiance);
         self.tone_map.record(rec, radiance, average);
     }
 
-    /// Shows something else from the next frame on.
+    /// Tone maps the newest picture again, by other settings. `rec` must be recording, with no frame in flight.
     ///
     /// # Errors
-    /// When the device refuses.
-    pub fn show(&mut self, show: Show) -> Result<()> {
-        let context = self.context.clone();
-        let size = self.settings.size.to_array();
-        self.settings.lighting.show = show;
-        self.settings.tone.show = show;
-        self.lighting = Lighting::new(&context, size, self.settings.lighting)?;
-        self.background = Background::new(&context, self.settings.lighting)?;
-        self.tone_map = ToneMap::new(&context, size, self.settings.tone)?;
-        self.converging = Converging::new(&context, &self.geometry, &self.settings)?;
+    /// When the device refuses or has no memory left; the frame is as it was then.
+    pub fn retone(&mut self, rec: &mut Recorder, tone: ToneSettings) -> Result<()> {
+        let settings = FrameSettings {
+            tone,
+            ..self.settings
+        };
+        let tone_map = settings.tone_map(&self.context)?;
+        tone_map.record(rec, self.radiance(), self.exposure.image());
+        self.tone_map = tone_map;
+        self.settings = settings;
         Ok(())
     }
 
-    /// The picture in kcd/m² (or the quantity shown), averaged over the samples.
+    /// Draws this tile of a picture from now on.
+    pub fn set_tile(&mut self, tile: Window) {
+        self.tiling.tile = Some(tile);
+    }
+
+    /// Gives away the ambient occlusion of the newest frame. No frame may be in flight.
+    ///
+    /// # Errors
+    /// When the device has no memory left.
+    pub fn take_occlusion(&mut self) -> Result<Image> {
+        let next = self.settings.ssao(&self.context)?;
+        Ok(std::mem::replace(&mut self.ssao, next).into_image())
+    }
+
+    /// Lights tiles by the ambient occlusion of the whole picture from now on, an image for each sample.
+    pub fn share_occlusion(&mut self, of_samples: Vec<Image>) {
+        self.tiling.occlusion = of_samples;
+    }
+
+    /// Records the read-out of one pixel of the newest picture; [`Frame::picked`] has it when the work is done. Nothing is
+    /// recorded outside of the picture, and before the first. The illuminance of [`Visibility::Dome`] is known with
+    /// [`DomeSettings::illuminance`](crate::passes::dome::gather::DomeSettings::illuminance) only.
+    pub fn pick(&mut self, rec: &mut Recorder, pixel: [u32; 2]) {
+        let [width, height] = self.settings.size.to_array();
+        let is_inside = pixel[0] < width && pixel[1] < height;
+        let Some(drawn) = self.drawn.filter(|_| is_inside) else {
+            return;
+        };
+        let picture = (
+            newest(&self.average, &self.preview, self.drawn),
+            self.settings.lighting.show,
+        );
+        self.probe.pick(
+            rec,
+            pixel,
+            picture,
+            self.gbuffer.surfaces(),
+            drawn.view.camera.near,
+        );
+    }
+
+    /// The pixel of the last [`Frame::pick`], once.
+    pub fn picked(&mut self) -> Option<Reading> {
+        let geometry = &self.geometry;
+        self.probe.reading(|material| geometry.diffuse(material))
+    }
+
+    /// The newest picture in kcd/m² (or the quantity shown): of an average its mean so far.
     pub fn radiance(&self) -> &Image {
-        let is_averaged = self.drawn.is_some_and(|drawn| drawn.is_averaged);
-        match (&self.converging, &self.accumulate) {
-            (Some(converging), _) if is_averaged => converging.image(),
-            (None, Some(accumulate)) if is_averaged => accumulate.image(),
-            _ => self.lighting.image(),
-        }
+        newest(&self.average, &self.preview, self.drawn)
+    }
+
+    /// The picture in display values.
+    pub fn display(&self) -> &Image {
+        self.tone_map.image()
+    }
+
+    /// The log-average luminance of the newest picture: one texel, kcd/m².
+    pub fn average_luminance(&self) -> &Image {
+        self.exposure.image()
+    }
+
+    /// Adds samples to the sky's irradiance without drawing a picture; `recorder` must be recording.
+    pub fn record_light(&mut self, rec: &mut Recorder, daylight: &Daylight) {
+        let sky = self.sky_cube.record(rec, daylight);
+        self.irradiance.refine(rec, &sky, daylight);
+    }
+
+    /// Whether the sky's irradiance has all its samples.
+    pub fn is_refined(&self) -> bool {
+        self.irradiance.is_complete()
     }
 
     /// Samples of the sky's irradiance so far, and in all.
@@ -336,29 +343,13 @@ impl Frame {
         (self.irradiance.samples_done(), wanted)
     }
 
-    /// The picture in display values.
-    pub fn display(&self) -> &Image {
-        self.tone_map.image()
-    }
-
-    /// Refines the sky's irradiance without drawing a picture; `recorder` must be recording.
-    pub fn record_light(&mut self, rec: &mut Recorder, daylight: &Daylight) {
-        let sky = self.sky_cube.record(rec, daylight);
-        self.irradiance.refine(rec, &sky, daylight);
-    }
-
-    /// Whether the sky's irradiance has all its samples.
-    pub fn is_refined(&self) -> bool {
-        self.irradiance.is_complete()
-    }
-
     /// Forgets sky, irradiance and shadow map, so that the next frame draws everything: for measurements.
     pub fn invalidate(&mut self) {
         self.sky_cube.invalidate();
-        self.shadow.invalidate();
+        self.preview.shadow.invalidate();
     }
 
-    /// How it was set.
+    /// Its settings, as the scene has them.
     pub fn settings(&self) -> &FrameSettings {
         &self.settings
     }
@@ -372,23 +363,30 @@ impl Frame {
     pub fn irradiance(&self) -> &Irradiance {
         &self.irradiance
     }
+}
 
-    /// The log-average luminance of the last picture: one texel, kcd/m².
-    pub fn average_luminance(&self) -> &Image {
-        self.exposure.image()
+/// The newest picture.
+fn newest<'a>(average: &'a Average, preview: &'a Lit, drawn: Option<Drawn>) -> &'a Image {
+    let average = average
+        .image()
+        .filter(|_| drawn.is_some_and(|drawn| drawn.index.is_some()));
+    average.unwrap_or(preview.lighting.image())
+}
+
+/// A pass that is made again if something of its settings differs.
+fn remade<T>(differs: bool, make: impl FnOnce() -> Result<T>) -> Result<Option<T>> {
+    differs.then(make).transpose()
+}
+
+/// Swaps a pass for the one that was made again, if any.
+fn replace<T>(pass: &mut T, remade: Option<T>) {
+    if let Some(remade) = remade {
+        *pass = remade;
     }
 }
 
-/// What a thread made.
-fn made<T>(thread: ScopedJoinHandle<'_, Result<T>>) -> Result<T> {
-    // A fault of this program is one on this thread too.
-    thread.join().unwrap_or_else(|fault| resume_unwind(fault))
-}
-
-/// The mean over frames, where more than one is asked for.
-fn accumulate(context: &Arc<Context>, settings: &FrameSettings) -> Result<Option<Accumulate>> {
-    settings
-        .averages()
-        .then(|| Accumulate::new(context, settings.size.to_array()))
-        .transpose()
+/// The result of a thread.
+fn joined<T>(thread: ScopedJoinHandle<'_, Result<T>>) -> Result<T> {
+    // A panic there is one here too.
+    thread.join().unwrap_or_else(|panic| resume_unwind(panic))
 }

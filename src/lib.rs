@@ -3,13 +3,20 @@
 //! # The frame
 //!
 //! ```text
-//!  place + time ──► sun direction ──► sky cube ──► irradiance cube (geometry shader, gl_Layer, progressive)
-//!                         │              │               │
-//!  scene ──► G-buffer ──► SSAO ──┐       │               │
-//!       └──► shadow map ─────────┴──► lighting ◄─────────┘ ──► tone map ──► PNG | EXR
+//!  place + time ──► sun ──► sky cube ──► irradiance cube (geometry shader, gl_Layer, progressive)
+//!                    │         │               │
+//!  scene ─┬─► shadow map       │               │
+//!         └─► G-buffer ──► ambient occlusion   │
+//!                    │         │               │
+//!                    └──► lighting ◄───────────┘
+//!                              │
+//!                         background ──► average ──► exposure ──► tone map ──► window | PNG | EXR
+//!                                           ▲
+//!                    dome: the sky's true visibility, by shadow maps from its directions
 //! ```
 //!
-//! [`frame::Frame::record`] is that picture in reading order. Lighting evaluates the lecture's illumination model,
+//! [`frame::Frame::record`] draws that picture from top to bottom. While something moves, [`frame::Frame::preview`] leaves the
+//! average out. Lighting evaluates the lecture's illumination model,
 //!
 //! L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r))
 //!
@@ -21,10 +28,10 @@
 //! - [`daylight`]: the physics, CPU only, in `f64`; the reference that the shaders are tested against.
 //! - [`scene`]: models, materials, textures, cameras, scene files; no device.
 //! - [`gpu`]: Vulkan nouns; knows no pass by name.
-//! - [`passes`]: one file a pass; [`frame`] owns them.
+//! - [`passes`]: passes in folders by topic; [`frame`] owns them.
 //! - [`lecture`]: every formula of the slides with its function, shader and test.
 //! - [`compare`]: two pictures, how far apart: radiometric errors and FLIP.
-//! - [`cli`] and [`settings`]: text to settings. [`commands`]: drivers of the one frame. [`output`]: files, whole or not at all.
+//! - [`cli`] and [`options`]: text to options. [`commands`]: drivers of the one frame. [`output`]: files, whole or not at all.
 //!
 //! Imports run one way: commands → frame → passes → gpu, scene, daylight; the last three import nothing of ours.
 //!
@@ -50,7 +57,7 @@ pub mod error;
 pub mod frame;
 pub mod gpu;
 pub mod lecture;
+pub mod options;
 pub mod output;
 pub mod passes;
 pub mod scene;
-pub mod settings;

@@ -15,6 +15,14 @@ layout(location = 0) out vec4 sky;
 // rgb: all other light, kcd/m^2; a: the luminance of the sky's light if nothing hid it, by the irradiance cube.
 layout(location = 1) out vec4 rest;
 
+// Variant: ILLUMINANCE
+#ifdef ILLUMINANCE
+// Illuminance of the surface, klx: x: by the sky; y: by the sky if nothing hid it, by the same directions, and z: by the
+// irradiance cube; w: by the sun.
+layout(location = 2) out vec4 illuminance;
+layout(set = 0, binding = 11) uniform sampler2D previous_illuminance;
+#endif
+
 // What the sky's light is shown as: the radiance reflected, the irradiance, or the share A.
 layout(constant_id = 0) const bool SHOW_IRRADIANCE = false;
 layout(constant_id = 1) const bool SHOW_OCCLUSION = false;
@@ -27,7 +35,7 @@ layout(constant_id = 4) const bool ALBEDO_IMAGE = true;
 layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform usampler2D normal_material;
 layout(set = 0, binding = 2) uniform sampler2D albedo;         // with ALBEDO_IMAGE; else any
-layout(set = 0, binding = 3) uniform sampler2D frame;          // kcd/m^2, without the sky's light
+layout(set = 0, binding = 3) uniform sampler2D frame;          // kcd/m^2, without the sky's light; a: of the sun alone, klx
 layout(set = 0, binding = 4) uniform sampler2D previous_sky;
 layout(set = 0, binding = 5) uniform sampler2D previous_rest;
 layout(set = 0, binding = 7) uniform samplerCube sky_irradiance; // E of sky and ground, klx
@@ -61,6 +69,13 @@ void gather(vec2 uv, float d) {
     vec3 world = view.eye + view.world_from_view * (ray * (view.near / d));
     sky = light_of_directions(world, n, view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale));
     vec3 open = textureLod(sky_irradiance, n, 0.0).rgb;
+#ifdef ILLUMINANCE
+    illuminance.xyz = vec3(luminance(sky.rgb), sky.a, luminance(open));
+    if (!SKY) {
+        sky = vec4(0.0);
+        return;
+    }
+#endif
     if (SHOW_OCCLUSION) {
         sky.rgb = vec3(luminance(sky.rgb));
         rest.a = 1.0;
@@ -76,9 +91,18 @@ void main() {
     vec2 uv = gl_FragCoord.xy / vec2(textureSize(depth, 0));
     float d = textureLod(depth, uv, 0.0).r;
     sky = vec4(0.0);
-    rest = vec4(textureLod(frame, uv, 0.0).rgb, 0.0);
+    vec4 lit = textureLod(frame, uv, 0.0);
+    rest = vec4(lit.rgb, 0.0);
+#ifdef ILLUMINANCE
+    illuminance = vec4(0.0, 0.0, 0.0, lit.a);
+    if (d > 0.0) gather(uv, d);
+#else
     if (SKY && d > 0.0) gather(uv, d);
+#endif
     if (push.share >= 1.0) return;
     sky = mix(textureLod(previous_sky, uv, 0.0), sky, push.share);
     rest = mix(textureLod(previous_rest, uv, 0.0), rest, push.share);
+#ifdef ILLUMINANCE
+    illuminance = mix(textureLod(previous_illuminance, uv, 0.0), illuminance, push.share);
+#endif
 }

@@ -2,7 +2,7 @@
 
 // The picture with specular reflection of the sky, by its visible share V.
 
-layout(location = 0) out vec4 radiance; // kcd/m^2
+layout(location = 0) out vec4 radiance; // rgb: kcd/m^2; a: that of the picture
 
 layout(set = 0, binding = 0) uniform sampler2D picture; // without it
 layout(set = 0, binding = 1) uniform sampler2D reflected;
@@ -14,5 +14,5 @@ void main() {
     float whole = textureLod(lobe, uv, 0.0).r;
     // With no direction in the lobe yet the sky counts as open.
     float V = whole > 0.0 ? mean.a / whole : 1.0;
-    radiance = vec4(textureLod(picture, uv, 0.0).rgb + V * mean.rgb, 1.0);
+    radiance = textureLod(picture, uv, 0.0) + vec4(V * mean.rgb, 0.0);
 }

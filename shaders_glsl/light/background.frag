@@ -6,7 +6,7 @@
 // The lecture's slide "Environment mapping - filling the background": the sky cube along the pixel's ray. The depth test
 // leaves only pixels without a surface. The sun's disc is drawn here and nowhere else.
 
-layout(location = 0) out vec4 radiance; // kcd/m^2, or a constant
+layout(location = 0) out vec4 radiance; // rgb: kcd/m^2, or a constant; a: illuminance, 0 where no surface is
 
 layout(constant_id = 0) const bool SKY = true;
 // The sun's disc is in view.
@@ -37,12 +37,12 @@ vec3 disc(vec3 direction) {
 
 void main() {
     if (!SKY) {
-        radiance = vec4(vec3(EMPTY), 1.0);
+        radiance = vec4(vec3(EMPTY), 0.0);
         return;
     }
     vec3 ray = view_ray(gl_FragCoord.xy / push.size, view.ray_scale, view.ray_offset);
     vec3 direction = view.world_from_view * ray;
     vec3 sky = textureLod(sky_radiance, direction, 0.0).rgb;
     if (DISC) sky += disc(normalize(direction));
-    radiance = vec4(min(sky, push.max_radiance), 1.0);
+    radiance = vec4(min(sky, push.max_radiance), 0.0);
 }

@@ -12,7 +12,7 @@
 // The lecture's slide "Illumination model for skylight":
 //   L_r = rho_d/pi ((n.l) V E_sun + A E_sky(n)) + rho_s ((r.l)^p V E_sun + L_sky(r))
 
-layout(location = 0) out vec4 radiance; // kcd/m^2, or the quantity asked for
+layout(location = 0) out vec4 radiance; // rgb: kcd/m^2, or the quantity asked for; a: illuminance of the surface, klx
 
 // Which addends go into the sum.
 layout(constant_id = 0) const bool SUN = true;
@@ -97,12 +97,13 @@ void main() {
     vec3 sun_irradiance = max(n_dot_l, 0.0) * V * sun.illuminance;
     vec3 irradiance = AMBIENT ? A * textureLod(sky_irradiance, n, 0.0).rgb : vec3(0.0);
 
-    if (SHOW_VISIBILITY) { radiance = vec4(vec3(V), 1.0); return; }
-    if (SHOW_OCCLUSION) { radiance = vec4(vec3(A), 1.0); return; }
-    if (SHOW_IRRADIANCE) { radiance = vec4(sun_irradiance + irradiance, 1.0); return; }
-    if (SHOW_ALBEDO) { radiance = vec4(surface.rgb, 1.0); return; }
-    if (SHOW_NORMAL) { radiance = vec4(n, 1.0); return; }
-    if (SHOW_DEPTH) { radiance = vec4(vec3(distance), 1.0); return; }
+    float illuminance = luminance(sun_irradiance + irradiance);
+    if (SHOW_VISIBILITY) { radiance = vec4(vec3(V), illuminance); return; }
+    if (SHOW_OCCLUSION) { radiance = vec4(vec3(A), illuminance); return; }
+    if (SHOW_IRRADIANCE) { radiance = vec4(sun_irradiance + irradiance, illuminance); return; }
+    if (SHOW_ALBEDO) { radiance = vec4(surface.rgb, illuminance); return; }
+    if (SHOW_NORMAL) { radiance = vec4(n, illuminance); return; }
+    if (SHOW_DEPTH) { radiance = vec4(vec3(distance), illuminance); return; }
 
     vec3 sum = vec3(0.0);
     if (SUN) sum += surface.rgb / PI * sun_irradiance;
@@ -120,5 +121,5 @@ void main() {
         if (SKY_SPECULAR && NORMALIZED) sum += rho_s * sky_in_lobe(sky_radiance, r, n, m.a, vec2(0.0));
         else if (SKY_SPECULAR) sum += rho_s * textureLod(sky_radiance, r, 0.0).rgb;
     }
-    radiance = vec4(min(sum, sun.max_radiance), 1.0);
+    radiance = vec4(min(sum, sun.max_radiance), illuminance);
 }

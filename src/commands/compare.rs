@@ -1,64 +1,37 @@
 //! `skylight compare`: the difference of two pictures in numbers and as a picture.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use clap::Args;
-
+use crate::cli::CompareArgs;
 use crate::compare::{
     Picture, Referred, Statistics, check_comparable, eroded, exposure_of, flip, read,
 };
 use crate::error::{Error, Result};
 use crate::output::{Effort, Encoding, check_writable, print, write_png};
 
-/// Arguments of `compare`.
-#[derive(Debug, Clone, PartialEq, Args)]
-pub struct CompareWishes {
-    /// Reference picture: .exr (scene-linear), or .png and other 8-bit files (sRGB).
-    reference: PathBuf,
-    /// Picture to test.
-    test: PathBuf,
-    /// Compare only where this picture is not black, except within one pixel of its edges; for instance an .exr of the depth.
-    #[arg(long, value_name = "FILE")]
-    mask: Option<PathBuf>,
-    /// Exposure factor of scene-linear pictures for LDR-FLIP [default: brings the 75th percentile of the reference to 0.5].
-    #[arg(long, value_name = "FACTOR", value_parser = crate::settings::exposure_factor)]
-    exposure: Option<f64>,
-    /// Write the FLIP map, black (0) to white (1).
-    #[arg(long, value_name = "FILE.png", value_parser = png_path)]
-    diff: Option<PathBuf>,
-}
-
-fn png_path(text: &str) -> std::result::Result<PathBuf, String> {
-    let path = Path::new(text);
-    match path.extension() {
-        Some(e) if e.eq_ignore_ascii_case("png") => Ok(path.to_owned()),
-        _ => Err("the name must end in .png".to_owned()),
-    }
-}
-
-/// Compares two pictures and prints the figures.
+/// Compares and prints.
 ///
 /// # Errors
-/// A picture cannot be read, or the two differ in size or kind.
-pub fn run(wishes: &CompareWishes) -> Result<()> {
-    if let Some(path) = &wishes.diff {
+/// A picture that cannot be read, or two that do not belong together.
+pub fn run(args: &CompareArgs) -> Result<()> {
+    if let Some(path) = &args.diff {
         check_writable(path)?;
     }
-    let (reference, test) = (read(&wishes.reference)?, read(&wishes.test)?);
+    let (reference, test) = (read(&args.reference)?, read(&args.test)?);
     check_comparable(&reference, &test)?;
-    let mask = mask(wishes, &reference)?;
+    let mask = mask(args, &reference)?;
     let statistics = Statistics::new(&reference, &test, &mask)?;
     let mut text = report(&statistics);
-    let map = flip_map(wishes, [&reference, &test], &mask, &mut text);
-    if let Some(path) = &wishes.diff {
+    let map = flip_map(args, [&reference, &test], &mask, &mut text);
+    if let Some(path) = &args.diff {
         write_map(path, reference.size, &map)?;
     }
     print(&text)
 }
 
-fn mask(wishes: &CompareWishes, reference: &Picture) -> Result<Vec<bool>> {
-    let Some(path) = &wishes.mask else {
+fn mask(args: &CompareArgs, reference: &Picture) -> Result<Vec<bool>> {
+    let Some(path) = &args.mask else {
         return Ok(vec![true; reference.rgb.len()]);
     };
     let picture = read(path)?;
@@ -80,9 +53,9 @@ fn report(s: &Statistics) -> String {
     )
 }
 
-/// Appends the mean FLIP within the mask to `text`; returns the FLIP map.
+/// FLIP where the mask holds, in words; gives the map for the difference picture.
 fn flip_map(
-    wishes: &CompareWishes,
+    args: &CompareArgs,
     [reference, test]: [&Picture; 2],
     mask: &[bool],
     text: &mut String,
@@ -98,7 +71,7 @@ fn flip_map(
         let _ = writeln!(text, "FLIP                   {:.4}", mean(&map));
         return map;
     }
-    let exposure = wishes
+    let exposure = args
         .exposure
         .map_or_else(|| exposure_of(reference, mask), |e| e as f32);
     let shown = flip::ldr(&a.exposed(exposure), &b.exposed(exposure));

@@ -1,4 +1,4 @@
-//! What render, view and bench have in common: from options to a scene, a daylight and the settings of a frame.
+//! What render, view and bench share: from options to a scene, a daylight and the settings of a frame.
 
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
@@ -14,37 +14,27 @@ use crate::daylight::sky::Daylight;
 use crate::daylight::spectrum::LUMINOUS_EFFICACY;
 use crate::daylight::sun_position::SunPosition;
 use crate::daylight::sunlight::LIMB_DARKENING;
-use crate::daylight::tone_curve::REINHARD_WHITE;
 use crate::error::Result;
 use crate::frame::{FrameSettings, Sampling};
-use crate::gpu::{Context, ContextOptions, Optional};
+use crate::gpu::{Context, ContextOptions};
+use crate::options::{Fresnel, Mirrors, OptionValues, Options, Penumbra, Preset};
 use crate::passes::dome::gather::DomeSettings;
-use crate::passes::light::lighting::{LightingSettings, Precision, Shadows, Show};
+use crate::passes::light::lighting::{Precision, Show};
 use crate::passes::occlusion::ssao::SsaoSettings;
-use crate::passes::picture::tone_map::{Scale, ToneSettings};
+use crate::passes::picture::tone_map::Scale;
 use crate::passes::sky::irradiance::IrradianceSettings;
 use crate::passes::sky::route::CubeRoute;
 use crate::scene::{self, Camera, LoadOptions, Loaded, Scene};
-use crate::settings::{Exposure, Fresnel, Options, Penumbra, Preset, Settings};
 
-/// How a scene is to be loaded.
+/// Edge of a face of the sky cube with `--preset lecture`, texels.
+const LECTURE_SKY_EDGE: u32 = 512;
+
+/// How a scene is to be loaded: as the options say, by way of the cache.
 pub fn load_options(options: &Options) -> LoadOptions {
-    let default = LoadOptions::default();
-    let bytes = |mib: Option<u32>, default| mib.map_or(default, |mib| u64::from(mib) << 20);
+    let cache = cache_folder().filter(|_| !options.no_cache);
     LoadOptions {
-        smooth_deg: options.smooth.map(|s| s as f32),
-        max_texture_edge: options.max_texture_edge.unwrap_or(default.max_texture_edge),
-        max_texture_bytes: bytes(options.max_texture_mib, default.max_texture_bytes),
-        max_file_bytes: bytes(options.max_file_mib, default.max_file_bytes),
-        max_triangles: options
-            .max_triangles
-            .map_or(default.max_triangles, |n| n as usize),
-        allow_outside: options.allow_outside,
-        cache: if options.no_cache {
-            None
-        } else {
-            cache_folder()
-        },
+        cache,
+        ..options.load_options()
     }
 }
 
@@ -54,22 +44,18 @@ fn cache_folder() -> Option<PathBuf> {
 }
 
 /// How a device is to be opened.
-pub fn context_options(
-    device: Option<String>,
-    validate: bool,
-    without: Option<Optional>,
-) -> ContextOptions {
+pub fn context_options(options: &Options) -> ContextOptions {
     ContextOptions {
-        device,
-        validate,
-        without: without.into_iter().collect(),
+        device: options.device.clone(),
+        validate: options.validate,
+        without: options.without.into_iter().collect(),
         cache_folder: cache_folder(),
         fault: std::env::var("SKYLIGHT_FAULT").ok(),
         ..ContextOptions::default()
     }
 }
 
-/// Says on stderr what a device has to go a long way round for.
+/// Reports on stderr which fallbacks a device needs.
 pub fn notice(context: &Context) {
     let device = context.summary();
     if CubeRoute::of(context) == CubeRoute::Compute {
@@ -80,34 +66,34 @@ pub fn notice(context: &Context) {
     }
 }
 
-/// A scene under a daylight, and how it is to be drawn.
+/// A scene in a daylight, and how it is drawn.
 pub struct Job {
-    /// Everything decided.
-    pub settings: Settings,
-    /// What is drawn.
+    /// The options of the picture.
+    pub settings: Options,
+    /// The model.
     pub scene: Scene,
-    /// From where.
+    /// The camera.
     pub camera: Camera,
-    /// Where the sun stands.
+    /// Position of the sun.
     pub sun: SunPosition,
-    /// Under which light.
+    /// Sun and sky.
     pub daylight: Daylight,
     /// Name of the scene, for metadata.
     pub name: String,
-    /// Where the scene came from, `None` for the bundled one.
+    /// Path of the scene; `None` for the default bundled scene.
     pub path: Option<PathBuf>,
-    /// What its file says of the settings; its model is in `scene`.
+    /// The options of its file; its model is in `scene`.
     pub loaded: Loaded,
 }
 
 impl Job {
-    /// Loads the scene and decides everything. Warnings go to stderr unless the user wants quiet.
+    /// Loads the scene and resolves the options. Warnings go to stderr unless `--quiet` is set.
     ///
     /// # Errors
-    /// A scene that cannot be read, or options that make no sense.
-    pub fn new(path: Option<&Path>, options: Options) -> Result<Self> {
-        let loaded = scene::load_with_progress(path, &load_options(&options), &|_, _| ())?;
-        let job = Self::of(path, loaded, options)?;
+    /// A scene that cannot be read, or invalid options.
+    pub fn new(path: Option<&Path>, user: &OptionValues) -> Result<Self> {
+        let loaded = scene::load_with_progress(path, &load_options(&user.alone()?), &|_, _| ())?;
+        let job = Self::of(path, loaded, user)?;
         if !job.settings.quiet {
             for warning in job.warnings() {
                 eprintln!("warning: {warning}");
@@ -116,12 +102,12 @@ impl Job {
         Ok(job)
     }
 
-    /// Decides everything about a scene that is loaded.
+    /// Resolves the options over those of a loaded scene.
     ///
     /// # Errors
-    /// Options that make no sense.
-    pub fn of(path: Option<&Path>, mut loaded: Loaded, options: Options) -> Result<Self> {
-        let settings = Settings::resolve(options, &loaded)?;
+    /// Invalid options.
+    pub fn of(path: Option<&Path>, mut loaded: Loaded, user: &OptionValues) -> Result<Self> {
+        let settings = Options::resolve(user, &loaded)?;
         let sun = sun_position(&settings)?;
         let daylight = Daylight::new(&conditions(&settings, &sun));
         let scene = std::mem::take(&mut loaded.scene);
@@ -139,31 +125,31 @@ impl Job {
         })
     }
 
-    /// What is odd about the scene and its light, a line each.
+    /// Warnings about the scene and its light, a line each.
     pub fn warnings(&self) -> impl Iterator<Item = &String> {
         self.scene.warnings.iter().chain(&self.daylight.warnings)
     }
 
-    /// Follows the settings after a change of place, time, sky or air.
+    /// Updates sun and daylight after a change of the options.
     ///
     /// # Errors
-    /// A moment that the ephemeris does not cover: the light is as it was.
+    /// A moment that the ephemeris does not cover; the light is unchanged then.
     pub fn relight(&mut self) -> Result<()> {
         self.sun = sun_position(&self.settings)?;
         self.daylight = Daylight::new(&conditions(&self.settings, &self.sun));
         Ok(())
     }
 
-    /// [`Job::new`], and the device that the user wants, which is opened meanwhile.
+    /// As [`Job::new`], while another thread opens the device.
     ///
     /// # Errors
-    /// As [`Job::new`], and when there is no such device.
-    pub fn on_device(path: Option<&Path>, options: Options) -> Result<(Self, Arc<Context>)> {
-        let wanted = context_options(options.device.clone(), options.validate, options.without);
+    /// As [`Job::new`], or no such device.
+    pub fn on_device(path: Option<&Path>, user: &OptionValues) -> Result<(Self, Arc<Context>)> {
+        let wanted = context_options(&user.alone()?);
         let (job, context) = thread::scope(|scope| {
             let context = scope.spawn(|| Context::new(&wanted));
-            let job = Self::new(path, options);
-            // A fault of this program is one on this thread too.
+            let job = Self::new(path, user);
+            // A panic there is one here.
             (
                 job,
                 context.join().unwrap_or_else(|fault| resume_unwind(fault)),
@@ -179,50 +165,40 @@ impl Job {
     /// The settings of the frame.
     pub fn frame_settings(&self, show: Show, precision: Precision) -> FrameSettings {
         let s = &self.settings;
-        let ssao = SsaoSettings {
-            radius: s.ao_radius as f32,
-            downscale: s.ao_resolution.downscale(s.size.height),
-            ..SsaoSettings::default()
-        };
-        FrameSettings {
+        let mut set = FrameSettings {
             size: UVec2::new(s.size.width, s.size.height),
             samples: s.samples,
             sampling: self.sampling(),
-            sky_edge: self.sky_edge(),
             irradiance: self.irradiance_settings(),
             shadow_resolution: s.shadow_size,
-            ssao,
-            lighting: LightingSettings {
-                show,
-                precision,
-                specular_scale: s.specular as f32,
-                limb_darkening: if s.limb_darkening {
-                    LIMB_DARKENING as f32
-                } else {
-                    0.0
-                },
-                has_albedo: true,
-                occlusion_downscale: ssao.pixels_per_texel(),
-                fresnel: s.fresnel == Fresnel::Schlick,
-                shadows: Shadows {
-                    cascades: 0,
-                    penumbrae: s.penumbra == Penumbra::Sun,
-                },
-                mirrors: s.mirrors,
-            },
-            tone: ToneSettings {
-                show,
-                curve: s.tone_curve,
-                scale: self.scale(),
-                white: REINHARD_WHITE,
-                gamma: s.gamma,
-                depth_scale: f64::from(self.scene.bounds.diagonal()).max(1e-3),
-                false_colour: s
-                    .false_colour
-                    .filter(|quantity| show.holds(*quantity))
-                    .map(|quantity| s.false_colour_range.unwrap_or(quantity.daytime())),
-            },
+            ..FrameSettings::default()
+        };
+        if s.preset == Some(Preset::Lecture) {
+            set.sky_edge = LECTURE_SKY_EDGE;
         }
+        set.lighting.precision = precision;
+        set.lighting.specular_scale = s.specular as f32;
+        if s.limb_darkening {
+            set.lighting.limb_darkening = LIMB_DARKENING as f32;
+        }
+        set.lighting.fresnel = s.fresnel == Fresnel::Schlick;
+        set.lighting.shadows.penumbrae = s.penumbra == Penumbra::Sun;
+        set.lighting.mirrors = Mirrors {
+            phong: s.phong,
+            reflections: s.reflections,
+        };
+        set.tone.curve = s.tonemap;
+        set.tone.scale = self.scale();
+        set.tone.gamma = s.gamma;
+        set.tone.depth_scale = f64::from(self.scene.bounds.diagonal()).max(1e-3);
+        let colours = s.false_colour.filter(|quantity| show.holds(*quantity));
+        let range = colours.map(|quantity| s.false_colour_range.unwrap_or(quantity.daytime()));
+        set.tone.false_colour = range;
+        set.showing(show).with_occlusion(SsaoSettings {
+            radius: s.ao_radius as f32,
+            downscale: s.ao_resolution.downscale(s.size.height),
+            ..SsaoSettings::default()
+        })
     }
 
     fn sampling(&self) -> Sampling {
@@ -234,27 +210,20 @@ impl Job {
                 directions: s.dome_directions,
                 map_edge: s.dome_size,
                 seed: s.seed,
+                ..DomeSettings::default()
             },
-        }
-    }
-
-    fn sky_edge(&self) -> u32 {
-        if self.settings.preset == Some(Preset::Lecture) {
-            512
-        } else {
-            256
         }
     }
 
     fn irradiance_settings(&self) -> IrradianceSettings {
         let s = &self.settings;
         let default = IrradianceSettings::default();
-        // The course framework refines by five samples a frame.
+        // The course framework takes five samples a frame.
         let lecture = s.preset == Some(Preset::Lecture);
         let samples_per_pass = if lecture { 5 } else { default.samples_per_pass };
         let method = s.irradiance;
         let (error, most) = (s.irradiance_error / 100.0, s.irradiance_samples);
-        // The estimate takes milliseconds: only where it can spare samples.
+        // The estimate takes milliseconds, so it is made only where it can save samples.
         let samples = if method.is_sampled() && error > 0.0 {
             let estimate = ErrorEstimate::new(|direction| self.daylight.radiance(direction));
             estimate.samples(method, error, most)
@@ -270,36 +239,37 @@ impl Job {
     }
 
     fn scale(&self) -> Scale {
-        match (self.settings.scale, self.settings.exposure) {
+        match (self.settings.scale, self.settings.ev100) {
             // The lecture's scale applies to its own unit, luminance / 683.
             (Some(scale), _) => Scale::Fixed(scale / LUMINOUS_EFFICACY),
-            (None, Exposure::Ev100(ev100)) => Scale::Fixed(factor_from_ev100(ev100)),
-            (None, Exposure::Auto) => Scale::Average(KEY),
+            (None, Some(ev100)) => Scale::Fixed(factor_from_ev100(ev100)),
+            (None, None) => Scale::Average(KEY),
         }
     }
 
-    /// The command line that renders this view under this light, with these settings.
+    /// The command line that renders this view with these options.
     ///
     /// # Errors
-    /// As [`Settings::command_line`].
+    /// As [`Options::command_line`].
     pub fn command_line(&self) -> Result<String> {
-        let settings = self.settings.with_camera(&self.camera);
-        settings.command_line(self.path.as_deref(), &self.loaded)
+        let options = self.options_in_view();
+        options.command_line(self.path.as_deref(), &self.loaded)
     }
 
-    /// What makes the picture again, and the numbers of its light.
+    /// The options, with the camera that is in use.
+    pub fn options_in_view(&self) -> Options {
+        self.settings.with_camera(&self.camera)
+    }
+
+    /// Metadata of the picture's file: the options that render it again, and figures of its light.
     pub fn metadata(&self) -> Vec<(String, String)> {
         let rgb = |v: glam::DVec3| format!("{},{},{}", v.x, v.y, v.z);
-        let point = |v: glam::Vec3| format!("{},{},{}", v.x, v.y, v.z);
         let mut list: Vec<(String, String)> = vec![
             (
                 "Software".into(),
                 concat!("skylight ", env!("CARGO_PKG_VERSION")).into(),
             ),
             ("scene".into(), self.name.clone()),
-            ("eye".into(), point(self.camera.eye)),
-            ("target".into(), point(self.camera.target)),
-            ("fov".into(), self.camera.fov_deg.to_string()),
             (
                 "sun azimuth".into(),
                 format!("{} deg", self.sun.azimuth_deg),
@@ -317,18 +287,35 @@ impl Job {
                 format!("{} lux (RGB)", rgb(self.daylight.sky_irradiance_up)),
             ),
         ];
-        // Missing only where a scene sets what these settings lack.
+        // There is none where the scene sets an option that cannot be unset.
         list.extend(
             self.command_line()
                 .ok()
                 .map(|line| ("command".into(), line)),
         );
-        let parameters = self.settings.parameters();
-        list.extend(
-            parameters
-                .into_iter()
-                .map(|(key, value)| (key.to_owned(), value)),
-        );
+        list.extend(self.options_in_view().values().into_pairs());
         list
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::is_option;
+    use crate::options::tests::{each_set, exposed_scene};
+
+    #[test]
+    fn metadata_give_every_option_again() {
+        let all = each_set(&exposed_scene());
+        let mut seen = 0;
+        for (name, options) in all {
+            let job = Job::of(None, exposed_scene(), &options.values()).expect(&name);
+            let list = job.metadata().into_iter();
+            let pairs: Vec<_> = list.filter(|(name, _)| is_option(name)).collect();
+            let again = Options::resolve(&OptionValues::from(pairs), &job.loaded).expect(&name);
+            assert_eq!(again, job.options_in_view(), "{name}");
+            seen += 1;
+        }
+        assert!(seen > 100, "{seen}");
     }
 }

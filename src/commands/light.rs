@@ -1,45 +1,29 @@
-//! From options to a sun and a daylight: what every face begins with. `sky` and `bake` need nothing else.
+//! From options to a sun and a daylight: what every command begins with. `sky` and `bake` need nothing else.
 
 use crate::daylight::sky::{Conditions, Daylight};
 use crate::daylight::sun_position::{SunPosition, lecture};
 use crate::error::Result;
+use crate::options::{OptionValues, Options, SunInput, Switch};
 use crate::scene::{Loaded, Scene};
-use crate::settings::{Options, Settings, SunInput, Switch};
-
-/// The options that decide a daylight, and how its irradiance is integrated; the others decide a picture.
-const INPUTS: [&str; 12] = [
-    "place",
-    "when",
-    "solar",
-    "sun",
-    "sun-position",
-    "refraction",
-    "sky",
-    "turbidity",
-    "sky-illuminance",
-    "ground-albedo",
-    "irradiance",
-    "irradiance-samples",
-];
 
 /// A daylight without a scene.
 pub struct Light {
-    /// Everything decided; what concerns pictures has no effect here.
-    pub settings: Settings,
-    /// Where the sun stands.
+    /// The options; those of pictures have no effect here.
+    pub settings: Options,
+    /// Position of the sun.
     pub sun: SunPosition,
-    /// What the daylight was made of.
+    /// Inputs of the daylight.
     pub conditions: Conditions,
     /// The daylight.
     pub daylight: Daylight,
 }
 
 impl Light {
-    /// Decides everything.
+    /// Resolves the options.
     ///
     /// # Errors
-    /// Options that make no sense, or a moment the ephemeris does not cover.
-    pub fn new(options: Options) -> Result<Self> {
+    /// Invalid options, or a moment that the ephemeris does not cover.
+    pub fn new(options: &OptionValues) -> Result<Self> {
         let nothing = Loaded {
             scene: Scene::default(),
             options: Vec::new(),
@@ -47,7 +31,7 @@ impl Light {
             moments: Vec::new(),
             path: std::path::PathBuf::new(),
         };
-        let settings = Settings::resolve(options, &nothing)?;
+        let settings = Options::resolve(options, &nothing)?;
         let sun = sun_position(&settings)?;
         let conditions = conditions(&settings, &sun);
         Ok(Self {
@@ -57,16 +41,10 @@ impl Light {
             conditions,
         })
     }
-
-    /// What makes this daylight again, by option name.
-    pub fn inputs(&self) -> impl Iterator<Item = (&'static str, String)> {
-        let parameters = self.settings.parameters().into_iter();
-        parameters.filter(|(name, _)| INPUTS.contains(name))
-    }
 }
 
-/// Where the sun stands; its apparent elevation is what is shown.
-pub fn sun_position(settings: &Settings) -> Result<SunPosition> {
+/// Position of the sun by the options; pictures use its apparent elevation.
+pub fn sun_position(settings: &Options) -> Result<SunPosition> {
     let mut sun = match settings.sun {
         SunInput::Place {
             latitude,
@@ -78,7 +56,7 @@ pub fn sun_position(settings: &Settings) -> Result<SunPosition> {
             hours,
             latitude,
         } => lecture(day, hours, latitude),
-        // What the user names is what is seen: no refraction on top.
+        // The user names the apparent direction: no refraction on top.
         SunInput::Direction {
             azimuth_deg,
             elevation_deg,
@@ -94,8 +72,8 @@ pub fn sun_position(settings: &Settings) -> Result<SunPosition> {
     Ok(sun)
 }
 
-/// What determines the daylight under this sun.
-pub fn conditions(settings: &Settings, sun: &SunPosition) -> Conditions {
+/// Inputs of the daylight with this sun.
+pub fn conditions(settings: &Options, sun: &SunPosition) -> Conditions {
     Conditions {
         model: settings.sky,
         turbidity: settings.turbidity,

@@ -22,14 +22,6 @@ mod tiled;
 #[cfg(feature = "window")]
 pub mod view;
 
-pub use bake::{BakeWishes, Layout, Map};
-pub use bench::BenchWishes;
-pub use compare::CompareWishes;
-pub use motion::Motion;
-pub use sky::SkyWishes;
-
-use std::path::PathBuf;
-
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::Command;
@@ -45,19 +37,19 @@ pub fn run(command: Command) -> Result<()> {
             scene,
             output,
             options,
-        } => render::run(scene.as_deref(), &output, *options),
+        } => render::run(scene.as_deref(), &output, &options),
         #[cfg(feature = "window")]
         Command::View {
             scene,
             resume,
             options,
-        } => view::run(scene.as_deref(), resume, *options),
+        } => view::run(scene.as_deref(), resume, options),
         #[cfg(not(feature = "window"))]
         Command::View { .. } => Err(crate::error::Error::NoWindow),
-        Command::Bench { wishes, options } => bench::run(&wishes, *options),
-        Command::Sky { wishes, options } => sky::run(&wishes, *options),
-        Command::Bake { wishes, options } => bake::run(&wishes, *options),
-        Command::Compare { wishes } => compare::run(&wishes),
+        Command::Bench { args, options } => bench::run(&args, options),
+        Command::Sky { args, options } => sky::run(&args, options),
+        Command::Bake { args, options } => bake::run(&args, options),
+        Command::Compare { args } => compare::run(&args),
         Command::Info {
             startup: true,
             device,
@@ -67,16 +59,7 @@ pub fn run(command: Command) -> Result<()> {
     }
 }
 
-/// Parses the name of an `.svg` file.
-fn svg_path(text: &str) -> std::result::Result<PathBuf, String> {
-    let path = PathBuf::from(text);
-    match path.extension() {
-        Some(extension) if extension.eq_ignore_ascii_case("svg") => Ok(path),
-        _ => Err("the name must end in .svg".to_owned()),
-    }
-}
-
-/// A progress bar on a terminal; hidden in a pipe, when `quiet`, and for a single step.
+/// A bar on a terminal, nothing in a pipe or when there is but one step.
 fn progress(steps: u64, unit: &'static str, quiet: bool) -> ProgressBar {
     if quiet || steps < 2 {
         return ProgressBar::hidden();

@@ -2,27 +2,15 @@
 
 use std::borrow::Cow;
 
-use clap::ValueEnum;
 use glam::Quat;
 
 use super::job::Job;
 use super::light::conditions;
+use crate::cli::Motion;
 use crate::daylight::sky::Daylight;
 use crate::scene::Camera;
 
-/// What moves between timed frames.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum Motion {
-    /// Nothing: all frames are equal.
-    None,
-    /// The camera moves every frame: nothing that depends on the view is reused.
-    #[default]
-    Camera,
-    /// Camera and sun move every frame: sky, irradiance and shadow map are redrawn.
-    Sun,
-}
-
-/// Rotation of the camera about its target per frame, radians.
+/// Turn of the camera about its target between two frames, radians: a slow walk around.
 const CAMERA_STEP: f32 = 0.002;
 /// Frames after which the camera turns back, so that it stays near the requested view.
 const CAMERA_SWING: u32 = 64;

@@ -5,7 +5,7 @@ use std::thread;
 
 use glam::DVec3;
 
-use super::bake::Layout;
+use crate::cli::Layout;
 use crate::daylight::cube;
 
 /// Names of the faces, in Vulkan's order.

@@ -6,7 +6,7 @@ use plotters::prelude::*;
 
 use crate::daylight::IrradianceMethod;
 use crate::daylight::convergence::Convergence;
-use crate::settings::name;
+use crate::options::name;
 
 /// The figure as SVG.
 pub fn draw(rows: &[Convergence]) -> String {

@@ -12,13 +12,13 @@ use crate::daylight::false_colour::{Quantity, Range};
 use crate::error::Result;
 use crate::frame::Frame;
 use crate::gpu::{Recorder, Timing, read_back};
+use crate::options::{OptionValues, OptionsError, name};
 use crate::output::{
     Channels, Effort, Encoding, Layer, LayerKind, check_writable, draw_legend, print, write_exr,
     write_png,
 };
 use crate::passes::light::lighting::{Precision, Show};
 use crate::passes::picture::tone_map::ToneSettings;
-use crate::settings::{Exposure, Options, SettingsError};
 
 /// Number of samples from which drawing takes much longer than good compression.
 const AVERAGED: u32 = 4;
@@ -26,14 +26,14 @@ const AVERAGED: u32 = 4;
 /// Renders `scene` to `output`.
 ///
 /// # Errors
-/// The scene cannot be rendered or the file not written; an older file is left alone then.
-pub fn run(scene: Option<&Path>, output: &Path, options: Options) -> Result<()> {
+/// Whatever keeps the file from being written; an older file is left alone then.
+pub fn run(scene: Option<&Path>, output: &Path, options: &OptionValues) -> Result<()> {
     let exr = output
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("exr"));
-    if options.layers && !exr {
+    if options.alone()?.layers && !exr {
         let what = "--layers needs an .exr file; choose one with -o";
-        return Err(SettingsError(what.to_owned()).into());
+        return Err(OptionsError(what.to_owned()).into());
     }
     check_writable(output)?;
     let (job, context) = Job::on_device(scene, options)?;
@@ -162,7 +162,7 @@ impl<'j> Renderer<'j> {
             ..self.frame.settings().tone
         };
         self.recorder.begin()?;
-        self.frame.develop(&mut self.recorder, tone)?;
+        self.frame.retone(&mut self.recorder, tone)?;
         self.recorder.finish()?;
         Ok(Some((quantity, range)))
     }
@@ -174,7 +174,7 @@ impl<'j> Renderer<'j> {
         if !exposed || settings.show.file_unit() == 1.0 {
             return Ok(None);
         }
-        if let Exposure::Ev100(ev100) = self.job.settings.exposure {
+        if let Some(ev100) = settings.ev100 {
             return Ok(Some(ev100));
         }
         let average = read_back(&mut self.recorder, self.frame.average_luminance())?.floats()[0];
@@ -192,9 +192,9 @@ impl<'j> Renderer<'j> {
                 noise: None,
             };
             for show in extra_layers().take_while(|_| !drawn.is_interrupted) {
-                self.progress.name(show.name());
+                self.progress.name(name(show));
                 self.frame.show(show)?;
-                let (layer, drawn) = self.layer(show, show.name(), same)?;
+                let (layer, drawn) = self.layer(show, name(show), same)?;
                 if drawn.is_interrupted {
                     break;
                 }
@@ -241,7 +241,7 @@ fn wanted_layers(job: &Job) -> impl Iterator<Item = (Show, LayerKind)> {
     let shown = job.settings.show;
     let others = extra_layers().filter(|_| job.settings.layers);
     std::iter::once((shown, ("", channels(shown, ""))))
-        .chain(others.map(|show| (show, (show.name(), channels(show, show.name())))))
+        .chain(others.map(|show| (show, (name(show), channels(show, name(show))))))
 }
 
 /// Channels of a layer. The picture itself is always RGB, so that every program shows it.

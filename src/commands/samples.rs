@@ -1,4 +1,4 @@
-//! The samples of a picture: drawn until there are enough of them, or the user has seen enough.
+//! The samples of a picture: drawn until the limit on number or noise is met, or the user interrupts.
 
 use std::time::{Duration, Instant};
 
@@ -11,31 +11,31 @@ use crate::error::Result;
 use crate::frame::Frame;
 use crate::gpu::{Recorder, read_back};
 
-/// Fewest samples on which the noise is judged: before, chance may make the batches alike.
+/// Samples below which the noise estimate is not trusted: few batches may agree by chance.
 const FEWEST: u32 = 32;
 
-/// How many samples there may be, and when fewer are enough.
+/// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rule {
     /// Most samples.
     pub most: u32,
-    /// Relative standard error of the luminance that is small enough.
+    /// Relative standard error of the luminance at which to stop earlier.
     pub noise: Option<f64>,
 }
 
-/// What was drawn.
+/// The result of [`draw`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Drawn {
     /// Samples in the mean.
     pub samples: u32,
-    /// Their relative standard error over the picture, as of the newest look; none of very few.
+    /// Relative standard error of the picture at the last estimate; none after few samples.
     pub error: Option<f64>,
-    /// Whether the user ended it before the rule did.
+    /// Whether the user interrupted it.
     pub is_interrupted: bool,
 }
 
 impl Drawn {
-    /// For the line that tells what was written; nothing of a single frame.
+    /// For the line on stdout; empty for a single frame.
     pub(super) fn summary(&self, rule: &Rule) -> String {
         if rule.most == 1 {
             return String::new();
@@ -52,7 +52,7 @@ impl Drawn {
         samples + &self.error.map_or(String::new(), error)
     }
 
-    /// For the file.
+    /// For the metadata of the file.
     pub(super) fn metadata(&self, rule: &Rule) -> Vec<(String, String)> {
         let mut list = vec![("samples drawn".to_owned(), self.samples.to_string())];
         list.extend(
@@ -67,7 +67,7 @@ impl Drawn {
     }
 }
 
-/// Draws a picture after a rule.
+/// Draws samples until the rule is met.
 ///
 /// # Errors
 /// When the device refuses.
@@ -107,7 +107,7 @@ fn is_enough(samples: u32, rule: &Rule, error: Option<f64>) -> bool {
     samples >= FEWEST.min(rule.most) && rule.noise.is_some_and(is_small)
 }
 
-/// Samples that the rule will take, judging by the error so far: it falls at least as the root of their number grows.
+/// Samples that the rule will take: the error falls at least with the square root of their number.
 fn expected(samples: u32, rule: &Rule, error: Option<f64>) -> u32 {
     let (Some(wanted), Some(error)) = (rule.noise, error) else {
         return rule.most;
@@ -116,16 +116,16 @@ fn expected(samples: u32, rule: &Rule, error: Option<f64>) -> u32 {
     (needed.ceil() as u32).clamp(samples, rule.most)
 }
 
-/// Time that `left` samples will take, at the pace of those that are done.
+/// Time for `left` samples at the average pace so far.
 fn time_left(done: u32, left: u32, elapsed: Duration) -> Duration {
     elapsed.mul_f64(f64::from(left) / f64::from(done.max(1)))
 }
 
-/// A bar on a terminal, with samples, noise and the time left; nothing in a pipe or for a single frame.
+/// A progress bar with samples, noise and time left; hidden in a pipe and for a single frame.
 pub(super) struct Progress(ProgressBar);
 
 impl Progress {
-    /// For pictures by `rule`.
+    /// A bar for `rule`.
     pub(super) fn new(rule: &Rule, quiet: bool) -> Self {
         if quiet || rule.most < 2 {
             return Self(ProgressBar::hidden());
@@ -140,12 +140,12 @@ impl Progress {
         Self(bar)
     }
 
-    /// What is being drawn, where there is more than one picture.
+    /// Names the picture being drawn, where there are several.
     pub(super) fn name(&self, name: &str) {
         self.0.set_prefix(format!("{name} "));
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub(super) fn clear(&self) {
         self.0.finish_and_clear();
     }

@@ -1,83 +1,64 @@
 //! `skylight sky`: figures of a daylight, its spectra, and the convergence of irradiance methods. Needs no device.
 
-use std::path::PathBuf;
-
-use clap::Args;
 use serde_json::json;
 
 use super::light::Light;
 use super::sky_report::SkyReport;
-use super::{plot_spectrum, plot_study, svg_path};
+use super::{plot_spectrum, plot_study};
+use crate::cli::SkyArgs;
 use crate::daylight::IrradianceMethod;
 use crate::daylight::convergence::{Convergence, exponent, study};
 use crate::error::Result;
+use crate::options::{OptionValues, name};
 use crate::output::{check_writable, print, write_text};
-use crate::settings::{Direction, Options, Preset, name};
 
-/// Arguments of `sky`.
-#[derive(Debug, Clone, Default, PartialEq, Args)]
-pub struct SkyWishes {
-    /// Print JSON instead of a table.
-    #[arg(long)]
-    pub json: bool,
-    /// Also print the radiance in this direction, degrees; may be repeated.
-    #[arg(long = "direction", value_name = "AZ,EL", value_parser = crate::settings::direction, allow_hyphen_values = true)]
-    pub directions: Vec<Direction>,
-    /// Draw the sun's spectra (or the study) to an SVG file.
-    #[arg(long, value_name = "FILE.svg", value_parser = svg_path)]
-    pub plot: Option<PathBuf>,
-    /// Print instead the error of each irradiance method over its number of samples for this sky.
-    #[arg(long)]
-    pub irradiance_study: bool,
-}
-
-/// Selects the exact sum for the irradiance unless the user chose a method: speed does not matter here.
-pub fn exact_by_default(options: &mut Options) {
-    if options.preset != Some(Preset::Lecture) {
-        options.irradiance.get_or_insert(IrradianceMethod::Exact);
+/// Irradiance by the exact sum unless the user wants another way: nothing here has to be fast.
+pub fn exact_by_default(options: &mut OptionValues) {
+    if options.get("preset").is_none() {
+        options.set_default("irradiance", IrradianceMethod::Exact);
     }
 }
 
 /// Prints the figures and draws the plot if requested.
 ///
 /// # Errors
-/// Invalid options, or a file that cannot be written.
-pub fn run(wishes: &SkyWishes, mut options: Options) -> Result<()> {
-    if let Some(path) = &wishes.plot {
+/// Options that make no sense, or a file that cannot be written.
+pub fn run(args: &SkyArgs, mut options: OptionValues) -> Result<()> {
+    if let Some(path) = &args.plot {
         check_writable(path)?;
     }
     exact_by_default(&mut options);
-    let light = Light::new(options)?;
-    let (text, drawing) = if wishes.irradiance_study {
-        study_text(wishes, &light)
+    let light = Light::new(&options)?;
+    let (text, drawing) = if args.irradiance_study {
+        study_text(args, &light)
     } else {
-        report_text(wishes, &light)?
+        report_text(args, &light)?
     };
-    if let (Some(path), Some(drawing)) = (&wishes.plot, drawing) {
+    if let (Some(path), Some(drawing)) = (&args.plot, drawing) {
         write_text(path, &drawing)?;
     }
     print(&format!("{}\n", text.trim_end()))
 }
 
-fn report_text(wishes: &SkyWishes, light: &Light) -> Result<(String, Option<String>)> {
-    let report = SkyReport::new(light, &wishes.directions)?;
-    let text = if wishes.json {
+fn report_text(args: &SkyArgs, light: &Light) -> Result<(String, Option<String>)> {
+    let report = SkyReport::new(light, &args.directions)?;
+    let text = if args.json {
         format!("{:#}", json!(report))
     } else {
         report.to_string()
     };
-    let drawing = wishes.plot.as_ref().map(|_| plot_spectrum::draw(light));
+    let drawing = args.plot.as_ref().map(|_| plot_spectrum::draw(light));
     Ok((text, drawing))
 }
 
-fn study_text(wishes: &SkyWishes, light: &Light) -> (String, Option<String>) {
+fn study_text(args: &SkyArgs, light: &Light) -> (String, Option<String>) {
     let rows = study(|direction| light.daylight.radiance(direction));
-    let text = if wishes.json {
+    let text = if args.json {
         study_json(&rows)
     } else {
         study_table(&rows)
     };
-    let drawing = wishes.plot.as_ref().map(|_| plot_study::draw(&rows));
+    let drawing = args.plot.as_ref().map(|_| plot_study::draw(&rows));
     (text, drawing)
 }
 

@@ -13,7 +13,7 @@ use crate::daylight::irradiance::IrradianceEstimator;
 use crate::daylight::sun_position::{self, Polar, SunEvents, sun_events};
 use crate::daylight::sunlight::{Sunlight, air_mass};
 use crate::error::Result;
-use crate::settings::{Direction, SunInput};
+use crate::options::{Direction, SunInput};
 
 /// The axes with their names and directions.
 pub const AXES: [(&str, &str, DVec3); 6] = [
@@ -31,8 +31,8 @@ const HOTTEST: f64 = 9e5;
 /// The report of `skylight sky`. RGB is linear BT.709; cd/m² of luminances, lux of illuminances.
 #[derive(Debug, Serialize)]
 pub struct SkyReport {
-    /// The options that reproduce this daylight.
-    pub inputs: BTreeMap<&'static str, String>,
+    /// The options that give this daylight again.
+    pub inputs: BTreeMap<String, String>,
     pub sun: SunReport,
     pub sky: SkyPart,
     /// Radiance of everything below the horizon.
@@ -116,7 +116,7 @@ impl SkyReport {
         let sun = SunReport::new(light)?;
         let sky = SkyPart::new(light, directions);
         Ok(Self {
-            inputs: light.inputs().collect(),
+            inputs: light.settings.light().into_iter().collect(),
             ground: GroundPart {
                 luminance: luminance(daylight.ground_luminance),
                 rgb: daylight.ground_luminance.to_array(),
@@ -214,7 +214,7 @@ impl SkyPart {
         let e =
             IrradianceEstimator::new(settings.irradiance, radiance, settings.irradiance_samples);
         Self {
-            model: crate::settings::name(settings.sky),
+            model: settings.sky.to_string(),
             turbidity: turbidity(light),
             ground_albedo: settings.ground_albedo,
             zenith_luminance: luminance(zenith),

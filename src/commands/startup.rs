@@ -7,9 +7,9 @@ use super::job::Job;
 use crate::error::Result;
 use crate::frame::Frame;
 use crate::gpu::{CacheState, Context, Recorder, Step, Timing, shaders};
+use crate::options::{OptionValues, Optional};
 use crate::output::print;
 use crate::passes::light::lighting::Precision;
-use crate::settings::{Optional, Options};
 
 /// Number of pipelines listed, slowest first.
 const LISTED: usize = 8;
@@ -20,13 +20,15 @@ const LISTED: usize = 8;
 /// No usable device, or a device error.
 pub fn run(device: Option<String>, without: Option<Optional>) -> Result<()> {
     let mut clock = Clock::new();
-    let options = Options {
-        device,
-        without,
-        ..Options::default()
-    };
-    let (job, context) = Job::on_device(None, options)?;
-    clock.done("load the bundled scene and its light; open the device");
+    let mut options = OptionValues::default();
+    if let Some(device) = device {
+        options.set("device", device);
+    }
+    if let Some(without) = without {
+        options.set("without", without);
+    }
+    let (job, context) = Job::on_device(None, &options)?;
+    clock.done("read the bundled scene, decide about its light; open the device");
     let mut recorder = Recorder::new(&context, Timing::Off)?;
     let settings = job.frame_settings(job.settings.show, Precision::Half);
     clock.done("recorder, frame settings");

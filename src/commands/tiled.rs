@@ -1,8 +1,8 @@
-//! Pictures that are too large to be drawn at once: tile by tile, stitched row by row into the file.
+//! Pictures that are too large to be drawn whole: tiles, stitched row by row into the file.
 //!
-//! All tiles have the same light: the sun's shadow map and the sky are those of the whole picture, exposure and ambient
-//! occlusion come from an overview of it. Where the overview is as fine as the picture (up to 36 million pixels), the tiles are
-//! the picture that is drawn at once; above, ambient occlusion is coarser, and there are no seams either way.
+//! All tiles have the same light: shadow map and sky are those of the whole picture, exposure and ambient occlusion come from an
+//! overview of it. Up to 36 million pixels the overview has the picture's resolution, and the result is identical to the picture
+//! drawn whole; above, ambient occlusion is coarser. There are no seams either way.
 
 mod plan;
 
@@ -20,10 +20,10 @@ use crate::daylight::false_colour::Range;
 use crate::error::Result;
 use crate::frame::{Frame, FrameSettings, Visibility};
 use crate::gpu::{Context, Image, Pixels, Recorder, Timing, read_back};
+use crate::options::OptionsError;
 use crate::output::{Encoding, LayerKind, PngRows, write_exr_rows};
 use crate::passes::light::lighting::{Precision, Show};
 use crate::passes::picture::tone_map::Scale;
-use crate::settings::{Exposure, SettingsError};
 
 /// Draws tiles of the picture of a job.
 pub(super) struct Tiled<'j> {
@@ -36,7 +36,7 @@ pub(super) struct Tiled<'j> {
     progress: ProgressBar,
 }
 
-/// The picture's size, cut into tiles; none where it can be drawn at once.
+/// The tiles of the picture; none where it is drawn whole.
 fn plan(job: &Job, context: &Context) -> Option<Plan> {
     let size = job.settings.size;
     let limit = context.summary().max_image_edge;
@@ -48,7 +48,7 @@ fn plan(job: &Job, context: &Context) -> Option<Plan> {
 }
 
 impl<'j> Tiled<'j> {
-    /// What draws `layers` of the picture in tiles; none where it can be drawn at once.
+    /// Draws the overview; none where the picture is drawn whole.
     ///
     /// # Errors
     /// When the device refuses.
@@ -58,7 +58,7 @@ impl<'j> Tiled<'j> {
         };
         if job.settings.noise.is_some() {
             let what = "--noise is judged on whole pictures, not in tiles; say how many --samples, or choose a smaller --size";
-            return Err(SettingsError(what.to_owned()).into());
+            return Err(OptionsError(what.to_owned()).into());
         }
         let occludes = job.settings.visibility == Visibility::Ssao && job.settings.ao_radius > 0.0;
         let (size, coarser, window) = plan.overview(occludes);
@@ -70,7 +70,7 @@ impl<'j> Tiled<'j> {
         recorder.begin()?;
         let mut frame = Frame::new(&mut recorder, &job.scene, settings)?;
         recorder.finish()?;
-        frame.look_through(window);
+        frame.set_tile(window);
         let tiles = plan.bands.len() * plan.columns.len();
         let progress = progress(tiles as u64 + 1, "tiles", job.settings.quiet);
         let mut tiled = Self {
@@ -81,12 +81,17 @@ impl<'j> Tiled<'j> {
             average: None,
             progress,
         };
-        tiled.look_over(settings, occludes, coarser)?;
+        tiled.draw_overview(settings, occludes, coarser)?;
         Ok(Some(tiled))
     }
 
-    /// Draws the overview, takes from it what all tiles share, and gets ready for tiles.
-    fn look_over(&mut self, settings: FrameSettings, occludes: bool, coarser: u32) -> Result<()> {
+    /// Draws the overview, keeps what the tiles share of it, and sets the frame up for tiles.
+    fn draw_overview(
+        &mut self,
+        settings: FrameSettings,
+        occludes: bool,
+        coarser: u32,
+    ) -> Result<()> {
         while !self.frame.is_refined() {
             self.recorder.begin()?;
             self.frame
@@ -94,12 +99,12 @@ impl<'j> Tiled<'j> {
             self.recorder.finish()?;
         }
         let averages = matches!(settings.tone.scale, Scale::Average(_));
-        let looks = self.job.settings.false_colour.is_some();
+        let has_range = self.job.settings.false_colour.is_some();
         let mut occlusion = Vec::new();
-        if occludes || averages || looks {
+        if occludes || averages || has_range {
             for index in 0..self.job.settings.samples {
                 self.draw_sample(index)?;
-                if occludes && occlusion.len() < MOST_KEPT {
+                if occludes && occlusion.len() < MAX_OCCLUSION_IMAGES {
                     occlusion.push(self.frame.take_occlusion()?);
                 }
             }
@@ -119,7 +124,7 @@ impl<'j> Tiled<'j> {
         Ok(())
     }
 
-    /// The tone settings of tiles: what depends on the whole picture is decided by the overview.
+    /// The tone settings of tiles: the overview decides what depends on the whole picture.
     fn tone(
         &mut self,
         settings: &FrameSettings,
@@ -129,7 +134,7 @@ impl<'j> Tiled<'j> {
             let average = self.read(|frame| frame.average_luminance())?.floats()[0];
             let average = f64::from(average) * 1e3;
             self.average = Some(average);
-            // As the tone map does it with the average itself: an irradiance is not taken for paper then.
+            // As the tone map does with the average: an irradiance is exposed as such, not as white paper.
             let paper = if tone.show == Show::Irradiance {
                 std::f64::consts::PI
             } else {
@@ -161,7 +166,7 @@ impl<'j> Tiled<'j> {
         Ok(self.recorder.finish()?)
     }
 
-    /// Draws one row of tiles, and puts what `image` holds of them side by side, `bytes` a pixel.
+    /// Draws one row of tiles and stitches `image` of them, `each` values a pixel.
     fn band<T: Copy + Default>(
         &mut self,
         band: &Span,
@@ -172,7 +177,7 @@ impl<'j> Tiled<'j> {
         let width = self.plan.full.x as usize * each;
         let mut whole = vec![T::default(); width * band.count as usize];
         for column in self.plan.columns.clone() {
-            self.frame.look_through(self.plan.window(&column, band));
+            self.frame.set_tile(self.plan.window(&column, band));
             for index in 0..self.job.settings.samples {
                 self.draw_sample(index)?;
             }
@@ -190,7 +195,7 @@ impl<'j> Tiled<'j> {
         Ok(whole)
     }
 
-    /// Writes a PNG; tells size and exposure.
+    /// Writes a PNG; returns size and exposure in words.
     ///
     /// # Errors
     /// Whatever keeps the file from being written; an older one is left alone then.
@@ -198,7 +203,7 @@ impl<'j> Tiled<'j> {
         let settings = &self.job.settings;
         if settings.false_colour.is_some() {
             let what = "--false-colour draws its legend on whole pictures; choose a smaller --size, or a larger --tile";
-            return Err(SettingsError(what.to_owned()).into());
+            return Err(OptionsError(what.to_owned()).into());
         }
         let ev100 = self.ev100();
         let mut metadata = self.job.metadata();
@@ -213,19 +218,16 @@ impl<'j> Tiled<'j> {
         Ok(self.summary(&exposure))
     }
 
-    /// The exposure used, of quantities that are exposed.
+    /// The exposure, of quantities that have one.
     fn ev100(&self) -> Option<f64> {
         let settings = &self.job.settings;
         if settings.scale.is_some() || settings.show.file_unit() == 1.0 {
             return None;
         }
-        match settings.exposure {
-            Exposure::Ev100(ev100) => Some(ev100),
-            Exposure::Auto => self.average.map(automatic),
-        }
+        settings.ev100.or_else(|| self.average.map(automatic))
     }
 
-    /// Writes an EXR of these quantities, the first of which is the picture; tells size and layers.
+    /// Writes an EXR of these quantities, the picture first; returns size and layers in words.
     ///
     /// # Errors
     /// Whatever keeps the file from being written; an older one is left alone then.
@@ -267,5 +269,5 @@ impl<'j> Tiled<'j> {
     }
 }
 
-/// Most samples whose occlusion is kept: later ones see one of these again.
-const MOST_KEPT: usize = 16;
+/// Most samples whose occlusion is kept; later samples reuse them in turn.
+const MAX_OCCLUSION_IMAGES: usize = 16;

@@ -2,7 +2,6 @@
 //!
 //! Values outside of the [`Range`] have the colour of its nearer end; pixels without light or surface are black.
 
-use clap::ValueEnum;
 use glam::DVec3;
 
 use super::colour::srgb_eotf;
@@ -13,7 +12,7 @@ const OUTLIERS: f64 = 0.01;
 const STEP_DECADES: f64 = 0.5;
 
 /// The quantity that false colours show.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// Of the light toward the eye, cd/m².
     Luminance,

@@ -16,16 +16,6 @@
 //! cube (of 4, 8, 16, 32 and 64 along an edge), for `sh` the nodes of its projection, both for all normals together.
 //! A low sun in clear air is worse for both sampling methods: at turbidity 2 and 10° `quasi` has 0.7 % with 1024 directions.
 //!
-//! # How the device's methods of the same names differ
-//!
-//! - `quasi` here: the first N points of R2, the radiance evaluated in each direction, one tangent frame per normal. On the
-//!   device: Hammersley points in golden-ratio order, lookups in the mip level of each sample's solid angle
-//!   ([`super::sample_count`]), the frame turned about the normal by an angle per texel: about a third of the error.
-//! - `exact` here: a cube of [`EXACT_CUBE_SIZE`]² texels a face, the clipped cosine integrated over each texel in closed form.
-//!   On the device: a cube of 32² texels a face, the cosine at each texel's centre times the texel's solid angle.
-//! - `monte-carlo` uses the same generator, but the device looks the radiance up in the sky cube (bilinear) and seeds by texel.
-//! - `sh` is the same; the device clamps negative channels to 0.
-//!
 //! | method | samples | rms error of E(up) |
 //! |---|---|---|
 //! | monte-carlo | 16 | 10.8083 % |
@@ -55,12 +45,20 @@
 //!
 //! monte-carlo: error falls as samples^-0.50
 //! quasi: error falls as samples^-0.93
+//!
+//! # How the device's methods of the same names differ
+//!
+//! - `quasi` here: the first N points of R2, the radiance evaluated in each direction, one tangent frame per normal. On the
+//!   device: Hammersley points in golden-ratio order, lookups in the mip level of each sample's solid angle
+//!   ([`super::sample_count`]), the frame turned about the normal by an angle per texel: about a third of the error.
+//! - `exact` here: a cube of [`EXACT_CUBE_SIZE`]² texels a face, the clipped cosine integrated over each texel in closed form.
+//!   On the device: a cube of 32² texels a face, the cosine at each texel's centre times the texel's solid angle.
+//! - `monte-carlo` uses the same generator, but the device looks the radiance up in the sky cube (bilinear) and seeds by texel.
+//! - `sh` is the same; the device clamps negative channels to 0.
 
 use std::f64::consts::PI;
 
-use clap::ValueEnum;
 use glam::{DVec2, DVec3};
-use serde::Deserialize;
 
 use super::cube::{self, CubeMap};
 use super::quadrature::SphereQuadrature;
@@ -68,8 +66,7 @@ use super::sampling::{cosine_hemisphere, r2, rnd, rotate, tea};
 use super::tangent_frame;
 
 /// How the irradiance map is computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum IrradianceMethod {
     /// Random cosine-weighted directions, as in the lecture.
     MonteCarlo,

@@ -7,9 +7,7 @@
 
 use std::f64::consts::PI;
 
-use clap::ValueEnum;
 use glam::DVec3;
-use serde::Deserialize;
 
 use super::cie::{CieClear, Overcast, SkyCover, daylight_availability};
 use super::colour;
@@ -29,8 +27,7 @@ pub const NIGHT_LUMINANCE: f64 = 2.52e-4;
 pub const TWILIGHT_LUX: [f64; 3] = [2.65, 0.008, 6e-4];
 
 /// Model of the sky.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SkyModel {
     /// Clear sky of Preetham, Shirley & Smits 1999 (the lecture's).
     #[default]

@@ -13,9 +13,7 @@
 //! the corrected form; its φ counts from south toward west, so the azimuth is 180° + φ.
 
 use chrono::{DateTime, Datelike, Duration, FixedOffset, NaiveDate, Timelike};
-use clap::ValueEnum;
 use glam::DVec3;
-use serde::Deserialize;
 use solar_positioning::{Horizon, Location, SolarEvents, SolarPositions, delta_t};
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
@@ -30,8 +28,7 @@ pub const PRESSURE_HPA: f64 = 1013.25;
 pub const TEMPERATURE_C: f64 = 12.0;
 
 /// Formulas of the sun's position.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SunPositionMethod {
     /// NREL's Solar Position Algorithm (Reda & Andreas 2004): 0.0003°.
     #[default]

@@ -2,9 +2,7 @@
 //!
 //! Encoding for the screen comes afterwards: [`encode`].
 
-use clap::ValueEnum;
 use glam::{DMat3, DVec3};
-use serde::Deserialize;
 
 use super::colour::srgb_oetf;
 
@@ -15,8 +13,7 @@ pub const LUMINANCE_WEIGHTS: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
 pub const REINHARD_WHITE: f64 = 4.0;
 
 /// Tone curve.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ToneCurve {
     /// Clamp to 0..=1 (the lecture's, scale 1).
     Linear,

@@ -1,50 +1,50 @@
-//! Where frames that are averaged sample the pixel and the sun's disc, and by what the sky is hidden.
+//! Where the frames of an average sample the pixel and the sun's disc, and what occludes the sky.
 
-use clap::ValueEnum;
-use glam::{DVec2, Vec2, Vec3};
-use serde::Deserialize;
+use glam::{DVec2, UVec2, Vec2, Vec3};
 
 use crate::daylight::sampling;
+use crate::daylight::sky::Daylight;
 use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
 use crate::passes::dome::gather::DomeSettings;
+use crate::passes::view::{View, Window};
+use crate::scene::Camera;
 
-/// What hides the sky from a surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, ValueEnum, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+use super::FrameSettings;
+
+/// How the sky's visibility from a surface is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Visibility {
-    /// Screen-space ambient occlusion: at once, from what is on the screen.
+    /// Screen-space ambient occlusion: in one frame, an estimate by what is on the screen.
     #[default]
     Ssao,
-    /// Shadow maps from directions of the sky: converges to the truth over the samples.
+    /// Shadow maps from directions of the sky: their mean over the samples converges to the true visibility.
     Dome,
-    /// The same, beginning with the preview, which fades: for what stops moving (previews are drawn as with `Ssao`).
-    #[value(skip)]
+    /// As `Dome`, faded to from a preview, which is drawn as with `Ssao`: for a view that comes to rest.
     Progressive,
 }
 
-/// How the samples of a pixel are spread.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, ValueEnum, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+/// The pixel filter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Filter {
-    /// Evenly over the pixel.
+    /// One pixel wide, uniform.
     #[default]
     Box,
-    /// By a Blackman-Harris window 3 pixels wide: smooth, little ringing of fine patterns.
+    /// A Blackman-Harris window 3 pixels wide: smooth, little aliasing of fine patterns.
     BlackmanHarris,
 }
 
-/// How frames that are averaged differ.
+/// How the frames of an average differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Sampling {
-    /// What hides the sky.
+    /// How the sky's visibility is found.
     pub visibility: Visibility,
     /// Directions and maps of [`Visibility::Dome`].
     pub dome: DomeSettings,
-    /// Spread of the samples in a pixel.
+    /// The pixel filter.
     pub filter: Filter,
 }
 
-/// Tells the scrambling of the disc's points from that of the sky's.
+/// Seed of the points on the sun's disc, apart from those of the sky.
 const DISC: u32 = 0x0d15_c000;
 
 /// Where a frame samples the pixel and the sun's disc.
@@ -54,27 +54,69 @@ pub(super) struct Sample {
     pub jitter: Vec2,
     /// Toward a point of the sun's disc.
     pub sun_direction: Vec3,
-    /// Part of a texel by which the sun's map is moved, 0..1.
+    /// Shift of the shadow map's texels, 0..1.
     pub texel: Vec2,
-    /// Turn of the noise of ambient occlusion, 0..1.
+    /// Phase of the noise of ambient occlusion, 0..1.
     pub phase: f32,
+    /// Mip levels by which textures are sharper than one sample a pixel wants.
+    sharpen: f32,
 }
 
+/// Mip levels by which textures are sharpened where samples converge: each sees an eighth of the pixel's width.
+const SHARPEN: f32 = 3.0;
+
 impl Sample {
+    /// The sample of frame number `index` of an average; that of the pixel's and the sun's centre without a number, and where
+    /// nothing is averaged.
+    pub fn of(settings: &FrameSettings, daylight: &Daylight, index: Option<u32>) -> Self {
+        let sun = daylight.sun_direction.as_vec3();
+        let averages = settings.takes_mean() || settings.converges();
+        let Some(index) = index.filter(|_| averages) else {
+            return Self::central(sun);
+        };
+        let sample = Self::new(sun, index, &settings.sampling);
+        if settings.converges() {
+            return Self {
+                sharpen: SHARPEN,
+                ..sample
+            };
+        }
+        if settings.lighting.shadows.penumbrae {
+            // The lookup of the map integrates over the disc already.
+            return Self {
+                sun_direction: sun,
+                ..sample
+            };
+        }
+        sample
+    }
+
+    /// The view of this sample through a camera, of a picture of `size` pixels or of a tile of one.
+    pub fn view(&self, camera: &Camera, size: UVec2, tile: Option<Window>) -> View {
+        View {
+            camera: *camera,
+            size,
+            jitter: self.jitter,
+            sharpen: self.sharpen,
+            window: tile,
+        }
+    }
+
     /// Pixel centres and the sun's centre.
-    pub fn central(sun: Vec3) -> Self {
+    fn central(sun: Vec3) -> Self {
         Self {
             jitter: Vec2::ZERO,
             sun_direction: sun,
             texel: Vec2::splat(0.5),
             phase: 0.0,
+            sharpen: 0.0,
         }
     }
 
-    /// Sample number `index` of a sequence that any number of samples covers evenly.
-    pub fn new(sun: Vec3, index: u32, sampling_settings: &Sampling) -> Self {
-        // Three sequences that are not in step: two stretches of one would be the same points, moved, and the mean over pixel and
-        // disc would not go to that over all pairs of points.
+    /// Sample number `index` of a low-discrepancy sequence.
+    fn new(sun: Vec3, index: u32, sampling_settings: &Sampling) -> Self {
+        // Sequences that are independent of each other: otherwise the mean over pixel and disc would not converge to that over all
+        // pairs of points.
         let seed = sampling_settings.dome.seed;
         let disc = sampling::scrambled_sobol(index, seed ^ DISC);
         let index = seed.wrapping_mul(1 << 12).wrapping_add(index);
@@ -84,12 +126,13 @@ impl Sample {
             sun_direction: on_disc(sun, disc),
             texel: sampling::richtmyer(index).as_vec2(),
             phase: sampling::radical_inverse(index) as f32,
+            sharpen: 0.0,
         }
     }
 }
 
 /// Offset in the pixel, pixels, distributed as the filter's weight (Ernst, Stamminger & Greiner 2006, "Filter importance
-/// sampling"): the plain mean of the samples is the filtered pixel.
+/// sampling"): the mean of the samples is the filtered pixel.
 fn offset(filter: Filter, xi: DVec2) -> Vec2 {
     match filter {
         Filter::Box => (xi - 0.5).as_vec2(),

@@ -1,27 +1,32 @@
-//! How frames are drawn.
+//! Settings of a frame, and the passes that are made of them.
 
 use std::sync::Arc;
 
 use glam::UVec2;
 
 use super::{Sampling, Visibility};
+use crate::daylight::exposure::KEY;
+use crate::daylight::tone_curve::{REINHARD_WHITE, ToneCurve};
 use crate::gpu::{Context, Result};
-use crate::passes::light::lighting::LightingSettings;
-use crate::passes::occlusion::ssao::SsaoSettings;
-use crate::passes::picture::tone_map::ToneSettings;
+use crate::passes::dome::specular::Mirrors;
+use crate::passes::light::background::Background;
+use crate::passes::light::lighting::{Lighting, LightingSettings, Precision, Shadows, Show};
+use crate::passes::occlusion::ssao::{Ssao, SsaoSettings};
+use crate::passes::picture::tone_map::{Scale, ToneMap, ToneSettings};
 use crate::passes::sky::irradiance::IrradianceSettings;
 use crate::passes::sun_shadow::cascades;
 use crate::passes::sun_shadow::map::Shadow;
+use crate::passes::surfaces::gbuffer::Gbuffer;
 use crate::passes::surfaces::geometry::Geometry;
 
-/// Everything that is fixed while frames are drawn.
+/// What stays the same from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrameSettings {
     /// Width and height, pixels.
     pub size: UVec2,
     /// Frames that are averaged into a picture; 1 samples pixel centres and the sun's centre.
     pub samples: u32,
-    /// How they differ, and what hides the sky from them.
+    /// How they differ, and how the sky's visibility is found.
     pub sampling: Sampling,
     /// Edge of a face of the sky cube, texels.
     pub sky_edge: u32,
@@ -37,30 +42,105 @@ pub struct FrameSettings {
     pub tone: ToneSettings,
 }
 
+impl Default for FrameSettings {
+    /// One frame of 1280x720 pixels, with automatic exposure.
+    fn default() -> Self {
+        let (show, ssao) = (Show::Beauty, SsaoSettings::default());
+        Self {
+            size: UVec2::new(1280, 720),
+            samples: 1,
+            sampling: Sampling::default(),
+            sky_edge: 256,
+            irradiance: IrradianceSettings::default(),
+            shadow_resolution: 2048,
+            ssao,
+            lighting: LightingSettings {
+                show,
+                precision: Precision::Half,
+                specular_scale: 1.0,
+                limb_darkening: 0.0,
+                has_albedo: true,
+                occlusion_downscale: ssao.pixels_per_texel(),
+                fresnel: false,
+                shadows: Shadows::default(),
+                mirrors: Mirrors::default(),
+            },
+            tone: ToneSettings {
+                show,
+                curve: ToneCurve::default(),
+                scale: Scale::Average(KEY),
+                white: REINHARD_WHITE,
+                gamma: None,
+                depth_scale: 1.0,
+                false_colour: None,
+            },
+        }
+    }
+}
+
 impl FrameSettings {
-    /// Whether frames are averaged by [`crate::passes::picture::accumulate::Accumulate`].
-    pub(super) fn averages(&self) -> bool {
+    /// These settings, to show something else.
+    #[must_use]
+    pub fn showing(mut self, show: Show) -> Self {
+        (self.lighting.show, self.tone.show) = (show, show);
+        self
+    }
+
+    /// These settings with other ambient occlusion.
+    #[must_use]
+    pub fn with_occlusion(mut self, ssao: SsaoSettings) -> Self {
+        self.lighting.occlusion_downscale = ssao.pixels_per_texel();
+        self.ssao = ssao;
+        self
+    }
+
+    /// Whether the picture is the plain mean of its frames ([`crate::passes::picture::accumulate::Accumulate`]).
+    pub(super) fn takes_mean(&self) -> bool {
         self.samples > 1 && self.sampling.visibility == Visibility::Ssao
     }
 
-    /// Whether the mean of its frames has the sky's true visibility ([`crate::passes::dome::gather::Dome`]).
+    /// Whether the mean of the frames has the true visibility of the sky ([`crate::passes::dome::gather::Dome`]).
     pub(super) fn converges(&self) -> bool {
         self.sampling.visibility != Visibility::Ssao
     }
 
-    /// What the sun's maps are made for.
-    pub(super) fn shadow_maps(&self) -> (u32, u32) {
-        (self.shadow_resolution, self.lighting.shadows.cascades)
+    /// What the shadow map of single frames depends on.
+    pub(super) fn shadow_map(&self) -> (u32, Shadows) {
+        (self.shadow_resolution, self.lighting.shadows)
     }
 
-    /// The sun's maps.
+    /// The shadow map of single frames.
     pub(super) fn shadow(&self, context: &Arc<Context>, geometry: &Geometry) -> Result<Shadow> {
-        let (resolution, count) = self.shadow_maps();
-        Shadow::cascaded(context, geometry, resolution, count)
+        let (resolution, shadows) = self.shadow_map();
+        Shadow::cascades(context, geometry, resolution, shadows)
     }
 
-    /// A scene without any ρ_s needs none of its lookups, one without maps no image of ρ_d; a large one has several maps of
-    /// the sun.
+    /// The G-buffer.
+    pub(super) fn gbuffer(&self, context: &Arc<Context>, geometry: &Geometry) -> Result<Gbuffer> {
+        Gbuffer::new(context, geometry, self.size.to_array(), self.converges())
+    }
+
+    /// Ambient occlusion.
+    pub(super) fn ssao(&self, context: &Arc<Context>) -> Result<Ssao> {
+        Ssao::new(context, self.size.to_array(), self.ssao)
+    }
+
+    /// Lighting of single frames.
+    pub(super) fn lighting(&self, context: &Arc<Context>) -> Result<Lighting> {
+        Lighting::new(context, self.size.to_array(), self.lighting)
+    }
+
+    /// The background.
+    pub(super) fn background(&self, context: &Arc<Context>) -> Result<Background> {
+        Background::new(context, self.lighting)
+    }
+
+    /// Tone mapping.
+    pub(super) fn tone_map(&self, context: &Arc<Context>) -> Result<ToneMap> {
+        ToneMap::new(context, self.size.to_array(), self.tone)
+    }
+
+    /// The same for a scene: without ρ_s it needs no lookups of that, without textures no image of ρ_d; a large one has cascades.
     pub(super) fn for_scene(mut self, context: &Context, geometry: &Geometry) -> Self {
         let shadows = &mut self.lighting.shadows;
         if shadows.cascades == 0 {

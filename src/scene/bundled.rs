@@ -67,7 +67,9 @@ mod tests {
             loaded.scene.materials.iter().any(|m| m.specular[0] > 0.0),
             "one material is glossy"
         );
-        assert!(loaded.options.iter().any(|(key, _)| key == "eye"));
+        let camera = loaded.options.last().expect("a table");
+        assert_eq!(camera.name, "camera");
+        assert!(camera.options.iter().any(|(key, _)| key == "eye"));
         for (name, most) in [("colonnade", 3_000_000), ("island", 5_500_000)] {
             let files = FILES.iter().filter(|(file, _)| file.starts_with(name));
             let bytes: usize = files.map(|(_, bytes)| bytes.len()).sum();

@@ -38,7 +38,7 @@ struct Head {
     textures: Vec<Picture>,
     bounds: Bounds,
     warnings: Vec<String>,
-    options: Vec<(String, String)>,
+    options: Vec<NamedOptions>,
     cameras: Vec<NamedOptions>,
     moments: Vec<NamedOptions>,
     /// Lengths of the arrays: positions, normals, texture coordinates, colours, tangents, indices; clusters, parts and

@@ -10,7 +10,9 @@ use crate::scene::error::printable;
 use crate::scene::files::Files;
 use crate::scene::obj::{Placement, append_obj};
 use crate::scene::progress::{Progress, Reporter};
-use crate::scene::scene_file::{NamedCamera, NamedMoment, Said};
+use crate::scene::scene_file::{
+    NamedCamera, NamedMoment, NamedOptions, SceneFileOptions, camera_table,
+};
 use crate::scene::{Scene, SceneError, cache, gltf, scene_file};
 
 /// Options and limits of [`load`].
@@ -55,9 +57,9 @@ pub struct Loaded {
     pub path: PathBuf,
     /// The scene.
     pub scene: Scene,
-    /// Options of the scene file by their command-line names without dashes: `("turbidity", "3")`. They include the
-    /// unnamed `[camera]`. For a model: its first camera, if it has any.
-    pub options: Vec<(String, String)>,
+    /// Option tables of the scene file: options by their command-line names without dashes, `("turbidity", "3")`. The last is
+    /// the unnamed `[camera]`. For a model: its first camera, if it has any.
+    pub options: Vec<NamedOptions>,
     /// The named cameras, in the order of the file.
     pub cameras: Vec<NamedCamera>,
     /// The named moments, in the order of the file.
@@ -145,8 +147,8 @@ pub(super) fn load_from(
             };
             let cameras = append_model(&mut builder, path, &placement)?;
             let first = cameras.first().map(|c| c.options.clone());
-            Said {
-                options: first.unwrap_or_default(),
+            SceneFileOptions {
+                options: first.map(camera_table).into_iter().collect(),
                 cameras,
                 moments: Vec::new(),
             }

@@ -1,6 +1,7 @@
-//! Scene files (TOML): meshes with their places, and options by the names that the command line gives them.
+//! Scene files (TOML): meshes with their placements, and tables of options by the names of the command line.
 //!
-//! Options become pairs of text, so that one parser (the command line's) knows what they mean.
+//! Options become pairs of text. What they mean, and in which table each may stand, is known to their one definition, which
+//! reads them later.
 
 use std::path::{Path, PathBuf};
 
@@ -13,49 +14,12 @@ use crate::scene::error::SceneError;
 use crate::scene::obj::Placement;
 use crate::scene::{LoadOptions, append_model};
 
-/// The option tables and the options that each may hold.
-const TABLES: [(&str, &[&str]); 5] = [
-    ("place", &["place", "when", "solar", "sun-position"]),
-    ("sun", &["sun", "place", "when", "solar", "sun-position"]),
-    (
-        "sky",
-        &[
-            "sky",
-            "turbidity",
-            "ground-albedo",
-            "sky-illuminance",
-            "refraction",
-            "irradiance",
-            "irradiance-samples",
-            "irradiance-error",
-        ],
-    ),
-    (
-        "exposure",
-        &["ev100", "exposure", "tonemap", "gamma", "scale"],
-    ),
-    (
-        "light",
-        &[
-            "fresnel",
-            "specular",
-            "ao-radius",
-            "ao-resolution",
-            "shadow-size",
-            "penumbra",
-        ],
-    ),
-];
-const CAMERA_KEYS: &[&str] = &["name", "eye", "target", "fov"];
 const MESH_KEYS: &[&str] = &["file", "translate", "rotate", "scale", "up", "smooth"];
-const TOP_KEYS: &[&str] = &[
-    "mesh", "place", "sun", "sky", "camera", "exposure", "light", "moment",
-];
 
 /// Pairs of option name and value, as on the command line.
 type Pairs = Vec<(String, String)>;
 
-/// Options of a scene file that a name chooses.
+/// Options of a scene file under a name: that of a table, or one that the user chooses by.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NamedOptions {
     /// The name.
@@ -69,22 +33,22 @@ pub type NamedCamera = NamedOptions;
 /// Sun, sky and exposure that `--moment NAME` chooses.
 pub type NamedMoment = NamedOptions;
 
-/// What a scene file says besides its meshes.
+/// What a scene file sets besides its meshes: see [`Loaded`](crate::scene::Loaded).
 #[derive(Debug, Default)]
-pub(super) struct Said {
-    pub options: Pairs,
+pub(super) struct SceneFileOptions {
+    pub options: Vec<NamedOptions>,
     pub cameras: Vec<NamedCamera>,
     pub moments: Vec<NamedMoment>,
 }
 
-/// Adds the meshes of a scene file to the scene; returns what else it says.
+/// Adds the meshes of a scene file to the scene; returns its options.
 ///
-/// Without a nameless `[camera]` the first named one is the camera of the options.
+/// Without a nameless `[camera]` the first named one stands in for it.
 pub(super) fn append_scene(
     builder: &mut Builder,
     path: &Path,
     defaults: &LoadOptions,
-) -> Result<Said, SceneError> {
+) -> Result<SceneFileOptions, SceneError> {
     let text = builder.files.read_text(path)?;
     let wrong = |what: String| SceneError::SceneFile {
         path: path.to_owned(),
@@ -95,18 +59,15 @@ pub(super) fn append_scene(
     let mut options = options(&table).map_err(wrong)?;
     let (camera, cameras) = cameras(&table).map_err(wrong)?;
     let moments = moments(&table).map_err(wrong)?;
-    options.extend(
-        camera
-            .or_else(|| cameras.first().map(|c| c.options.clone()))
-            .unwrap_or_default(),
-    );
+    let camera = camera.or_else(|| cameras.first().map(|c| c.options.clone()));
+    options.extend(camera.map(camera_table));
     let folder = path.parent().unwrap_or(Path::new(""));
     let whole = builder.progress;
     for (i, mesh) in meshes.iter().enumerate() {
         builder.progress = whole.part(i, meshes.len());
         append_model(builder, &folder.join(&mesh.file), &mesh.placement)?;
     }
-    Ok(Said {
+    Ok(SceneFileOptions {
         options,
         cameras,
         moments,
@@ -123,8 +84,15 @@ fn parse(text: &str) -> Result<Table, String> {
         let what: Vec<&str> = error.message().split_whitespace().collect();
         format!("line {line} is no TOML: {}", what.join(" "))
     })?;
-    known_keys(&table, "the scene file", TOP_KEYS)?;
     Ok(table)
+}
+
+/// The table of the camera that is used when none is asked for.
+pub(super) fn camera_table(options: Pairs) -> NamedOptions {
+    NamedOptions {
+        name: "camera".to_owned(),
+        options,
+    }
 }
 
 fn known_keys(table: &Table, place: &str, known: &[&str]) -> Result<(), String> {
@@ -237,31 +205,24 @@ fn vector(table: &Table, key: &str) -> Result<Option<Vec3>, String> {
     }
 }
 
-fn options(table: &Table) -> Result<Pairs, String> {
-    let mut pairs = Pairs::new();
-    for (name, known) in TABLES {
-        let Some(value) = table.get(name) else {
-            continue;
-        };
-        let table = value
-            .as_table()
-            .ok_or_else(|| format!("{name} must be a table; write [{name}]"))?;
-        let new = table_pairs(table, &format!("[{name}]"), known)?;
-        if let Some((key, _)) = new
-            .iter()
-            .find(|(key, _)| pairs.iter().any(|(old, _)| old == key))
-        {
-            return Err(format!(
-                "\"{key}\" is given twice; keep the one in [{name}]"
-            ));
-        }
-        pairs.extend(new);
-    }
-    Ok(pairs)
+/// The tables of options, in the order of their names.
+fn options(table: &Table) -> Result<Vec<NamedOptions>, String> {
+    let others = table
+        .iter()
+        .filter(|(name, _)| !["mesh", "camera", "moment"].contains(&name.as_str()));
+    let option_table = |(name, value): (&String, &Value)| match value {
+        Value::Table(table) => Ok(NamedOptions {
+            name: name.clone(),
+            options: table_pairs(table)?,
+        }),
+        _ => Err(format!(
+            "unknown key \"{name}\" in the scene file; options stand in tables such as [sky]"
+        )),
+    };
+    others.map(option_table).collect()
 }
 
-fn table_pairs(table: &Table, place: &str, known: &[&str]) -> Result<Pairs, String> {
-    known_keys(table, place, known)?;
+fn table_pairs(table: &Table) -> Result<Pairs, String> {
     table
         .iter()
         .map(|(key, value)| Ok((key.clone(), text(key, value)?)))
@@ -296,25 +257,19 @@ fn bad_value(key: &str) -> String {
     format!("{key} must be a number, a text or a list of numbers")
 }
 
-/// The moments: any keys of the option tables but `[light]`, and a name.
+/// The moments: options with a name.
 fn moments(table: &Table) -> Result<Vec<NamedMoment>, String> {
     let list = match table.get("moment") {
         None => return Ok(Vec::new()),
         Some(Value::Array(list)) => list,
         Some(_) => return Err("moment must be a list of tables; write [[moment]]".to_owned()),
     };
-    let mut keys: Vec<&str> = TABLES[..4]
-        .iter()
-        .flat_map(|(_, keys)| *keys)
-        .copied()
-        .collect();
-    keys.push("name");
     let mut named: Vec<NamedMoment> = Vec::new();
     for entry in list {
         let table = entry
             .as_table()
             .ok_or("moment must be a list of tables; write [[moment]]")?;
-        let (name, options) = split_name(table_pairs(table, "[[moment]]", &keys)?);
+        let (name, options) = split_name(table_pairs(table)?);
         let name = name.ok_or("a [[moment]] needs name = \"..\"")?;
         if named.iter().any(|m| m.name == name) {
             return Err(format!("two moments are named \"{name}\"; rename one"));
@@ -342,7 +297,7 @@ fn cameras(table: &Table) -> Result<(Option<Pairs>, Vec<NamedCamera>), String> {
         let table = entry
             .as_table()
             .ok_or("camera must be a table; write [camera]")?;
-        let (name, options) = split_name(table_pairs(table, "[camera]", CAMERA_KEYS)?);
+        let (name, options) = split_name(table_pairs(table)?);
         match name {
             Some(name) if named.iter().any(|c| c.name == name) => {
                 return Err(format!("two cameras are named \"{name}\"; rename one"));

@@ -252,6 +252,59 @@ fn bundled_scenes_go_by_their_names_unless_a_file_does() {
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn without_a_display_the_window_says_so() {
+    let place = Place::new();
+    let mut command = program(place.path());
+    for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(name);
+    }
+    let ended = Ended::of(&["view"], command.arg("view").output().expect("it starts"));
+    assert!(!ended.stderr.contains(".rs:"), "{}", ended.stderr);
+    ended.failed(1, &["no display", "DISPLAY is set", "skylight render"]);
+}
+
+/// Names of files are bytes on Unix.
+#[test]
+#[cfg(unix)]
+fn an_output_path_need_not_be_utf_8() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt as _;
+    let place = Place::new();
+    for name in [&b"h\xf8j.png"[..], b"h\xf8j.exr"] {
+        let name = OsStr::from_bytes(name);
+        let mut command = program(place.path());
+        command.args(["render", "m.obj"]).args(SMALL);
+        let output = command.arg("-o").arg(name).output();
+        let ended = Ended::of(&["render -o"], output.expect("it starts")).silently();
+        assert!(ended.stdout.starts_with("h\u{fffd}j."), "{}", ended.stdout);
+        assert!(place.path().join(name).is_file());
+    }
+    let mut command = program(place.path());
+    command.args(["render", "--turbidity"]);
+    let output = command.arg(OsStr::from_bytes(b"3\xff")).output();
+    Ended::of(&["--turbidity"], output.expect("it starts")).failed(2, &["3\u{fffd}", "not UTF-8"]);
+}
+
+#[test]
+fn metadata_name_flags_and_the_preset() {
+    let place = Place::new();
+    let words = ["m.obj", "-o", "a.png", "--limb-darkening", "--smooth", "30"];
+    let words = [&words[..], &["--preset", "lecture", "--quiet"]].concat();
+    place.render(&words).silently();
+    let (texts, ..) = png(&place.path().join("a.png"));
+    for (key, value) in [
+        ("limb-darkening", "true"),
+        ("smooth", "30"),
+        ("preset", "lecture"),
+        ("quiet", "true"),
+        ("size", "64x36"),
+    ] {
+        assert_eq!(texts.get(key).map(String::as_str), Some(value), "{key}");
+    }
+}
+
+#[test]
 fn an_exr_is_32_bit_float_with_its_parameters() {
     let place = Place(tempfile::tempdir().expect("a scratch folder"));
     place.render(&["-o", "a.EXR", "--sun", "215,42"]).silently();
@@ -316,7 +369,7 @@ fn bad_words_end_with_2_and_touch_nothing() {
         "[[mesh]]\nfile = \"m.obj\"\n[[camera]]\nname = \"porch\"\neye = [9, 1, 1]\n",
     );
     let before = place.contents();
-    let cases: [(&[&str], &[&str]); 17] = [
+    let cases: [(&[&str], &[&str]); 18] = [
         (
             &["render", "-o", "old.png", "--size", "0x0"],
             &["0x0", "1 to 32768"],
@@ -338,6 +391,10 @@ fn bad_words_end_with_2_and_touch_nothing() {
             &["the time is missing"],
         ),
         (&["render", "-o", "old.png", "--polish", "3"], &["--polish"]),
+        (
+            &["render", "-house.obj", "-o", "old.png"],
+            &["-house.obj", "./-house.obj"],
+        ),
         (
             &[
                 "render",

@@ -6,13 +6,12 @@ use std::sync::Arc;
 use glam::{DVec3, UVec2, Vec3};
 use skylight::daylight::cube;
 use skylight::daylight::sky::{Conditions, Daylight, SkyModel};
-use skylight::daylight::tone_curve::{REINHARD_WHITE, ToneCurve};
-use skylight::frame::{Frame, FrameSettings, Sampling};
+use skylight::daylight::tone_curve::ToneCurve;
+use skylight::frame::{Frame, FrameSettings};
 use skylight::gpu::{Context, ContextOptions, Image, Recorder, Timing, read_back};
-use skylight::passes::light::lighting::{LightingSettings, Precision, Shadows, Show};
+use skylight::passes::light::lighting::{Precision, Show};
 use skylight::passes::occlusion::ssao::SsaoSettings;
-use skylight::passes::picture::tone_map::{Scale, ToneSettings};
-use skylight::passes::sky::irradiance::IrradianceSettings;
+use skylight::passes::picture::tone_map::Scale;
 use skylight::scene::{Bounds, Camera, Material, Part, Scene};
 
 /// Relative step of 16-bit floats. Vulkan lets a device store either neighbour of a number (lavapipe truncates), so this, and
@@ -199,46 +198,25 @@ impl Cube {
 
 /// Settings of a small exact picture: 32-bit floats, one sample, no ambient occlusion, the picture itself.
 pub fn settings(width: u32, height: u32) -> FrameSettings {
-    FrameSettings {
+    let mut set = FrameSettings {
         size: UVec2::new(width, height),
-        samples: 1,
-        sampling: Sampling::default(),
-        sky_edge: 256,
-        irradiance: IrradianceSettings::default(),
         shadow_resolution: 1024,
-        ssao: SsaoSettings {
-            radius: 0.0,
-            downscale: 1,
-            ..SsaoSettings::default()
-        },
-        lighting: LightingSettings {
-            show: Show::Beauty,
-            precision: Precision::Float,
-            specular_scale: 1.0,
-            limb_darkening: 0.0,
-            fresnel: false,
-            mirrors: skylight::passes::dome::specular::Mirrors::default(),
-            has_albedo: true,
-            occlusion_downscale: 2,
-            shadows: Shadows::default(),
-        },
-        tone: ToneSettings {
-            show: Show::Beauty,
-            curve: ToneCurve::Linear,
-            scale: Scale::Fixed(1e-4),
-            white: REINHARD_WHITE,
-            gamma: None,
-            depth_scale: 10.0,
-            false_colour: None,
-        },
-    }
+        ..FrameSettings::default()
+    };
+    set.lighting.precision = Precision::Float;
+    set.tone.curve = ToneCurve::Linear;
+    set.tone.scale = Scale::Fixed(1e-4);
+    set.tone.depth_scale = 10.0;
+    set.with_occlusion(SsaoSettings {
+        radius: 0.0,
+        downscale: 1,
+        ..SsaoSettings::default()
+    })
 }
 
 /// The same settings that show something else.
-pub fn showing(show: Show, mut settings: FrameSettings) -> FrameSettings {
-    settings.lighting.show = show;
-    settings.tone.show = show;
-    settings
+pub fn showing(show: Show, settings: FrameSettings) -> FrameSettings {
+    settings.showing(show)
 }
 
 /// A camera with a 45 degree view.

@@ -103,13 +103,8 @@ fn draw_everything(device: &mut Device) -> Vec<u8> {
         .ground(5.0, &glossy)
         .cube([0.0, 0.6, 0.0], 0.5, &matt(0.7))
         .build();
-    let mut set = settings(160, 90);
+    let mut set = settings(160, 90).with_occlusion(SsaoSettings::default());
     set.samples = 4;
-    set.ssao = SsaoSettings {
-        downscale: 2,
-        ..SsaoSettings::default()
-    };
-    set.lighting.occlusion_downscale = set.ssao.pixels_per_texel();
     let frame = device.frame(
         &scene,
         set,

@@ -13,6 +13,7 @@ use glam::DVec3;
 use skylight::daylight::irradiance::IrradianceMethod;
 use skylight::daylight::sky::{Conditions, Daylight};
 use skylight::frame::FrameSettings;
+use skylight::options::name as option_name;
 use skylight::passes::light::lighting::Show;
 use skylight::passes::occlusion::ssao::SsaoSettings;
 use skylight::passes::picture::accumulate::Accumulate;
@@ -59,13 +60,7 @@ fn glossy_scene() -> Scene {
 
 /// Ambient occlusion at half resolution, so that every term differs from pixel to pixel.
 fn occluded(width: u32, height: u32) -> FrameSettings {
-    let mut set = settings(width, height);
-    set.ssao = SsaoSettings {
-        downscale: 2,
-        ..SsaoSettings::default()
-    };
-    set.lighting.occlusion_downscale = set.ssao.pixels_per_texel();
-    set
+    settings(width, height).with_occlusion(SsaoSettings::default())
 }
 
 /// Sum of the addends against the picture; `unit` names one kcd/m² in the numbers given.
@@ -80,8 +75,8 @@ fn check_sum(beauty: &[DVec3], addends: &[Vec<DVec3>], what: &'static str) {
     worst.finish();
     for (addend, show) in addends.iter().zip(Show::ADDENDS) {
         let lit = addend.iter().filter(|v| v.max_element() > 0.0).count();
-        println!("{}: {lit} pixels", show.name());
-        assert!(lit > 20, "{} is empty", show.name());
+        println!("{}: {lit} pixels", option_name(show));
+        assert!(lit > 20, "{} is empty", option_name(show));
     }
 }
 
@@ -137,9 +132,9 @@ fn render(arguments: &[&str]) -> Exr {
 fn the_layers_of_a_file_sum_to_its_picture() {
     let file = render(&["--layers"]);
     assert_eq!(file.size, [160, 90]);
-    let addends = Show::ADDENDS.map(|show| layer(&file, show.name()));
+    let addends = Show::ADDENDS.map(|show| layer(&file, option_name(show)));
     check_sum(&layer(&file, ""), &addends, "sum of the layers of a file");
-    let names = Show::INPUTS.map(Show::name);
+    let names = Show::INPUTS.map(option_name);
     for name in names {
         let prefix = format!("{name}.");
         let channels = file.channels.keys().filter(|c| c.starts_with(&prefix));

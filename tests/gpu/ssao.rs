@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::common::{Worst, shared};
-use crate::gpu::{Device, Model, Picture, camera, clear_day, matt, on_ground, settings, showing};
+use crate::gpu::{Device, Model, Picture, camera, clear_day, matt, on_ground, settings};
 use crate::truth::{VIEWS, View};
 use skylight::frame::FrameSettings;
 use skylight::passes::light::lighting::Show;
@@ -15,14 +15,12 @@ use skylight::scene::{Camera, Scene};
 const TRUTH_RMSE: [(f32, [f64; 2]); 2] = [(1.0, [0.065, 0.085]), (5.0, [0.1, 0.115])];
 const TRUTH_BIAS: f64 = 0.03;
 
-fn with_occlusion(mut set: FrameSettings, radius: f32, downscale: u32) -> FrameSettings {
-    set.ssao = SsaoSettings {
+fn with_occlusion(set: FrameSettings, radius: f32, downscale: u32) -> FrameSettings {
+    set.showing(Show::Occlusion).with_occlusion(SsaoSettings {
         radius,
         downscale,
         ..SsaoSettings::default()
-    };
-    set.lighting.occlusion_downscale = set.ssao.pixels_per_texel();
-    showing(Show::Occlusion, set)
+    })
 }
 
 fn occlusion(

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use skylight::options::{OptionValues, Options};
 use skylight::scene::{LoadOptions, Loaded, Scene, load, load_with_progress};
 
 use crate::support::{assert_valid, files_below};
@@ -334,11 +335,11 @@ fn malformed_scene_files_fail_with_one_line() {
         error.contains("line 1 is no TOML") && error.len() < 400,
         "{error}"
     );
-    let typo = try_load(&[(
-        "s.toml",
-        b"[[mesh]]\nfile = \"m.obj\"\n[sky]\nturbidty = 3\n",
-    )])
-    .expect_err("typo");
+    let typo = b"[[mesh]]\nfile = \"m.obj\"\n[sky]\nturbidty = 3\n";
+    let triangle = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let loaded = try_load(&[("s.toml", typo), ("m.obj", triangle)]).expect("a scene");
+    let typo = Options::resolve(&OptionValues::default(), &loaded).expect_err("typo");
+    let typo = typo.to_string();
     assert!(
         typo.contains("turbidty") && typo.contains("known are sky, turbidity"),
         "{typo}"

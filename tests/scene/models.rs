@@ -6,13 +6,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::UVec2;
-use skylight::daylight::{Conditions, Daylight, ToneCurve};
+use skylight::daylight::{Conditions, Daylight};
 use skylight::frame::{Frame, FrameSettings};
 use skylight::gpu::{Context, ContextOptions, Recorder, Timing, read_back};
-use skylight::passes::light::lighting::{LightingSettings, Precision, Shadows, Show};
-use skylight::passes::occlusion::ssao::SsaoSettings;
-use skylight::passes::picture::tone_map::{Scale, ToneSettings};
-use skylight::passes::sky::irradiance::IrradianceSettings;
+use skylight::passes::light::lighting::{Precision, Show};
 use skylight::scene::{Camera, LoadOptions, Scene, load};
 
 use crate::support::files_below;
@@ -39,40 +36,15 @@ const KENNEY: &str = "kenney_suburb/OBJ format";
 const KENNEY_COUNT: usize = 49;
 
 fn settings() -> FrameSettings {
-    let show = Show::Beauty;
-    FrameSettings {
+    let mut set = FrameSettings {
         size: SIZE,
-        samples: 1,
-        sampling: skylight::frame::Sampling::default(),
-        sky_edge: 256,
-        irradiance: IrradianceSettings {
-            samples: 64,
-            samples_per_pass: 64,
-            ..IrradianceSettings::default()
-        },
         shadow_resolution: 1024,
-        ssao: SsaoSettings::default(),
-        lighting: LightingSettings {
-            show,
-            precision: Precision::Float,
-            specular_scale: 1.0,
-            limb_darkening: 0.0,
-            fresnel: false,
-            shadows: Shadows::default(),
-            mirrors: skylight::passes::dome::specular::Mirrors::default(),
-            has_albedo: true,
-            occlusion_downscale: SsaoSettings::default().pixels_per_texel(),
-        },
-        tone: ToneSettings {
-            show,
-            curve: ToneCurve::default(),
-            scale: Scale::Average(0.18),
-            white: 1.0,
-            gamma: None,
-            depth_scale: 1.0,
-            false_colour: None,
-        },
-    }
+        ..FrameSettings::default()
+    };
+    set.irradiance.samples = 64;
+    set.irradiance.samples_per_pass = 64;
+    set.lighting.precision = Precision::Float;
+    set
 }
 
 /// The picture, kcd/m², the albedo and the depth of a scene as its default camera sees it.

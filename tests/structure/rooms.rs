@@ -128,6 +128,34 @@ fn passes_write_no_barriers() {
 }
 
 #[test]
+fn the_command_line_parser_is_known_to_cli_and_options_alone() {
+    let all = sources("src");
+    let is_inside = |f: &&Source| {
+        let rest = f.path.trim_start_matches("src/");
+        ["cli.rs", "cli/", "options.rs", "options/"]
+            .iter()
+            .any(|place| rest.starts_with(place))
+    };
+    let (inside, outside): (Vec<&Source>, Vec<&Source>) = all.iter().partition(is_inside);
+    let names = |f: &&Source| {
+        let lines = code(f).filter(|(_, line)| {
+            line.split(|c: char| !c.is_alphanumeric() && c != '_')
+                .any(|word| ["clap", "ValueEnum"].contains(&word))
+        });
+        let places = lines.map(|(n, _)| format!("{}:{n}", f.path));
+        places.collect::<Vec<_>>()
+    };
+    let used: usize = inside.iter().map(|f| names(f).len()).sum();
+    assert!(used > 5, "the search finds no clap where there is much");
+    let faults: Vec<String> = outside.iter().flat_map(names).collect();
+    none(
+        "clap outside of src/cli and src/options",
+        outside.len(),
+        &faults,
+    );
+}
+
+#[test]
 fn unsafe_is_in_the_gpu_room_alone() {
     let all = sources("src");
     let (inside, outside): (Vec<_>, Vec<_>) =

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::hills::Ground;
 use super::statistics::Samples;
+use crate::cli::Motion;
 use crate::commands::job::Job;
-use crate::commands::motion::Motion;
 use crate::error::Result;
 use crate::frame::{Frame, FrameSettings};
 use crate::gpu::{Context, DeviceSummary, PassTime, PassWork, Recorder, Stopwatch, Timing};

@@ -4,13 +4,12 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::BenchWishes;
+use super::BenchArgs;
 use super::measure::{Measured, Whole, trustworthy};
 use super::statistics::Summary;
 use super::work::Work;
 use crate::commands::job::Job;
 use crate::gpu::{Context, Timing};
-use crate::settings::name;
 
 /// Share of the whole by which the parts may miss it before the program says so.
 pub const SUM_TOLERANCE: f64 = 0.15;
@@ -98,13 +97,13 @@ pub struct Frame {
 
 impl Head {
     /// Of a measurement that is about to begin.
-    pub fn new(job: &Job, context: &Context, wishes: &BenchWishes) -> Self {
+    pub fn new(job: &Job, context: &Context, args: &BenchArgs) -> Self {
         let device = context.summary();
         let timing = match trustworthy(device) {
             Timing::Timestamps => "timestamps",
             _ => "isolated",
         };
-        let settings = job.settings.parameters().into_iter();
+        let settings = job.settings.values().into_pairs();
         Self {
             device: Device {
                 name: device.name.clone(),
@@ -117,11 +116,11 @@ impl Head {
             scene: job.name.clone(),
             size: [job.settings.size.width, job.settings.size.height],
             triangles: job.scene.triangles(),
-            frames: wishes.frames(),
-            motion: name(wishes.motion),
-            frame_name: wishes.motion.frame_name().to_owned(),
+            frames: args.frames,
+            motion: args.motion.to_string(),
+            frame_name: args.motion.frame_name().to_owned(),
             timing: timing.to_owned(),
-            settings: settings.map(|(k, v)| (k.to_owned(), v)).collect(),
+            settings: settings.into_iter().collect(),
         }
     }
 }

@@ -3,7 +3,6 @@
 use std::fmt::{self, Display, Formatter};
 use std::sync::Arc;
 
-use clap::ValueEnum;
 use glam::UVec2;
 use serde::Serialize;
 
@@ -12,28 +11,11 @@ use super::measure::{Bench, Measured, Subject};
 use super::report::Head;
 use super::sheet::written;
 use super::statistics::Summary;
+use crate::cli::{Motion, Sweep};
 use crate::commands::job::Job;
-use crate::commands::motion::Motion;
 use crate::daylight::convergence::power;
 use crate::error::Result;
 use crate::gpu::Context;
-use crate::settings::name;
-
-/// What grows from step to step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Sweep {
-    /// Pixels of the picture, 640x360 to 3840x2160.
-    Resolution,
-    /// Triangles: those of the scene, cut into 4, 9, 16 .., or without one hills of 10 000 to 2 million; of a view of all and of
-    /// one that sees 5 %.
-    Triangles,
-    /// Irradiance samples of one pass, 64 to 4096.
-    Samples,
-    /// Texels of the shadow map, 256² to 4096².
-    Shadow,
-    /// Depth samples of a pixel's ambient occlusion.
-    Ssao,
-}
 
 /// Most triangles that a sweep makes of a scene.
 const MOST_TRIANGLES: usize = 2_000_000;
@@ -224,7 +206,7 @@ pub fn run(
     Ok(SweepReport {
         rows: rows.collect(),
         head,
-        sweep: name(sweep),
+        sweep: sweep.to_string(),
         unit: sweep.unit().to_owned(),
         sizes,
         labels,

@@ -1,26 +1,26 @@
-//! How a picture is cut into tiles. Numbers only.
+//! The cut of a picture into tiles: arithmetic only.
 
 use glam::{UVec2, Vec2};
 
 use crate::passes::view::Window;
 
-/// Pixels that a picture may have to be drawn at once: 8K and a little. Its images take about 50 bytes each.
-const MOST_AT_ONCE: u64 = 36_000_000;
-/// Pixels of the picture that samples without ambient occlusion take their exposure from.
-const ENOUGH_FOR_EXPOSURE: u64 = 2_000_000;
-/// Edge of tiles where none is asked for, pixels.
+/// Most pixels of a picture that is drawn whole, at about 50 bytes each: a little over 8K.
+const MAX_WHOLE_PIXELS: u64 = 36_000_000;
+/// Most pixels of an overview that serves the exposure only.
+const MAX_EXPOSURE_PIXELS: u64 = 2_000_000;
+/// Default edge of tiles, pixels.
 const EDGE: u32 = 2048;
-/// Pixels around a tile that are drawn and thrown away: passes look at their neighbours.
+/// Pixels around a tile that are drawn and discarded: passes read neighbouring pixels.
 const MARGIN: u32 = 4;
-/// Tiles start at multiples of this: blocks of a file are never cut.
+/// Tiles start at multiples of this, which cuts no block of a file.
 const STEP: u32 = 16;
 
 /// Pixels along one axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Span {
-    /// First pixel of the picture that comes from this tile.
+    /// First pixel of the picture that the tile fills.
     pub first: u32,
-    /// How many.
+    /// Number of pixels that it fills.
     pub count: u32,
     /// First pixel that is drawn.
     pub origin: u32,
@@ -41,11 +41,11 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// None where the picture can be drawn at once. `edge` is what the user asks for; `limit` is the largest edge of an image.
+    /// None where the picture is drawn whole. `edge` is the one asked for, `limit` the largest edge of an image, pixels.
     pub fn new(full: UVec2, edge: Option<u32>, limit: u32) -> Option<Self> {
         let pixels = u64::from(full.x) * u64::from(full.y);
         let longest = full.max_element();
-        let needs = longest > limit || (edge.is_none() && pixels > MOST_AT_ONCE);
+        let needs = longest > limit || (edge.is_none() && pixels > MAX_WHOLE_PIXELS);
         let asks = edge.is_some_and(|edge| longest > edge);
         if !needs && !asks {
             return None;
@@ -61,13 +61,13 @@ impl Plan {
         })
     }
 
-    /// The whole picture on an image that is as fine as it can be, by whole numbers: that image's size, the factor, and what
-    /// it sees of the picture. `occludes` when it is for ambient occlusion, not for the exposure only.
+    /// An overview, which is the whole picture divided by the smallest integer that makes it fit: its size, that integer, and its
+    /// window. `occludes`: it serves ambient occlusion, not the exposure only.
     pub fn overview(&self, occludes: bool) -> (UVec2, u32, Window) {
         let most = if occludes {
-            MOST_AT_ONCE
+            MAX_WHOLE_PIXELS
         } else {
-            ENOUGH_FOR_EXPOSURE
+            MAX_EXPOSURE_PIXELS
         };
         let fits = |size: UVec2| {
             size.max_element() <= self.limit && u64::from(size.x) * u64::from(size.y) <= most
@@ -90,8 +90,8 @@ impl Plan {
     }
 }
 
-/// Cuts `full` pixels into pieces of `edge`; all are drawn with the same number of pixels, the margin shifted inward at the
-/// picture's ends.
+/// Cuts `full` pixels into spans of `edge`. All draw the same number of pixels: at the ends of the picture the margin is shifted
+/// inward.
 fn spans(full: u32, edge: u32) -> Vec<Span> {
     let drawn = full.min(edge + 2 * MARGIN);
     (0..full)

@@ -7,8 +7,8 @@ use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::Fullscreen;
 
 use crate::error::{Error, Result};
+use crate::options::{OptionValues, Options, Size};
 use crate::scene::{Loaded, SceneError};
-use crate::settings::{Options, Size};
 
 use super::capture;
 use super::document::Document;
@@ -26,6 +26,9 @@ type Opened = Box<std::result::Result<Loaded, SceneError>>;
 
 /// The program behind the window.
 pub(super) struct App {
+    /// The options of the command line.
+    pub(super) user: OptionValues,
+    /// The same over the defaults, whatever the scene.
     pub(super) options: Options,
     pub(super) loader: Loader,
     /// Loaded before there was a window.
@@ -48,12 +51,14 @@ impl App {
     pub(super) fn new(
         proxy: EventLoopProxy<Message>,
         scene: Option<PathBuf>,
+        user: OptionValues,
         options: Options,
     ) -> Self {
         let mut loader = Loader::new(proxy);
         loader.start(scene, &options);
         Self {
             interface: Interface::new(options.quiet),
+            user,
             options,
             loader,
             waiting: None,
@@ -95,11 +100,9 @@ impl App {
             return;
         };
         self.interface.loading(None);
-        let (options, size) = (&self.options, window_size(stage));
+        let (user, size) = (&self.user, window_size(stage));
         let opened = match *result {
-            Ok(loaded) => {
-                stage.work(|rec| Document::open(rec, path.clone(), loaded, options, size))
-            }
+            Ok(loaded) => stage.work(|rec| Document::open(rec, path.clone(), loaded, user, size)),
             Err(error) => Err(error.into()),
         };
         match opened {
@@ -121,12 +124,7 @@ impl App {
     pub(super) fn open_file(&mut self, path: PathBuf) {
         self.interface.loading(Some((0.0, "opening")));
         // The command line's camera and such were meant for its own scene.
-        self.options = Options {
-            camera: None,
-            eye: None,
-            target: None,
-            ..std::mem::take(&mut self.options)
-        };
+        self.user.remove(&["camera", "eye", "target"]);
         self.loader.start(Some(path), &self.options);
         self.request_redraw();
     }
@@ -226,8 +224,11 @@ impl App {
             self.interface.probed(None, None, None);
             return Ok(());
         };
-        stage.work(|rec| document.ask(rec, pixel))?;
-        let reading = document.reading();
+        stage.work(|rec| {
+            document.pick(rec, pixel);
+            Ok(())
+        })?;
+        let reading = document.picked();
         self.interface.probed(Some(pixel), reading, Some(document));
         Ok(())
     }

@@ -6,7 +6,6 @@ use crate::daylight::exposure::automatic;
 use crate::error::Result;
 use crate::gpu::read_back;
 use crate::output::{Channels, Effort, Encoding, Layer, Metadata, write_exr, write_png};
-use crate::settings::Exposure;
 
 use super::document::Document;
 use super::stage::Stage;
@@ -43,7 +42,7 @@ fn metadata(stage: &mut Stage, document: &Document) -> Result<Metadata> {
     let mut metadata = document.job.metadata();
     let (averaged, _) = document.progress();
     metadata.push(("samples drawn".into(), averaged.max(1).to_string()));
-    if document.job.settings.exposure == Exposure::Auto {
+    if document.job.settings.ev100.is_none() {
         let average = read_back(stage.idle()?, document.frame().average_luminance())?.floats()[0];
         let ev100 = automatic(f64::from(average) * 1e3);
         metadata.push(("ev100 used".into(), format!("{ev100:.3}")));

@@ -1,4 +1,4 @@
-//! What the window shows: a scene under a daylight, the camera in the hand, and how far its picture is refined.
+//! The open scene: its options and daylight, the camera that the user moves, and the progress of its picture.
 
 use std::path::PathBuf;
 
@@ -7,11 +7,11 @@ use crate::daylight::sun_position::azimuth_elevation;
 use crate::error::Result;
 use crate::frame::{Frame, FrameSettings};
 use crate::gpu::{Image, Recorder};
+use crate::options::{OptionValues, Options, Size, SunInput, Visibility};
 use crate::passes::light::lighting::Precision;
 use crate::passes::light::probe::Reading;
 use crate::passes::picture::tone_map::Scale;
 use crate::scene::{Camera, Loaded};
-use crate::settings::{Options, Settings, Size, SunInput, Visibility};
 
 use super::adaptation::Adaptation;
 use super::controls::{Controls, FlyKeys};
@@ -19,23 +19,23 @@ use super::interface::{Notes, shift};
 use super::keys::Action;
 use super::viewpoints::{Viewpoint, Viewpoints};
 
-/// Frames averaged at rest, unless the user says otherwise.
+/// Default of `--samples` in the window: frames averaged at rest.
 pub(super) const REST_SAMPLES: u32 = 64;
 
-/// Directions of the sky in each of them, unless the user says otherwise.
+/// Default of `--dome-directions` in the window.
 const REST_DIRECTIONS: u32 = 4;
 
-/// A scene that is open.
+/// An open scene.
 pub(super) struct Document {
-    /// Scene, settings, light. Who changes the settings calls [`Document::follow`].
+    /// Scene, options, daylight. After a change of the options [`Document::follow`] must be called.
     pub(super) job: Job,
-    /// The camera in the hand.
+    /// The camera that the user moves.
     pub(super) controls: Controls,
-    /// Places to come back to.
+    /// Saved cameras.
     pub(super) viewpoints: Viewpoints,
     frame: Frame,
-    /// The settings that light and frame follow.
-    followed: Settings,
+    /// The options that daylight and frame are made with.
+    followed: Options,
     /// Camera of the newest frame.
     drawn: Option<Camera>,
     /// Frames in the average.
@@ -46,28 +46,20 @@ pub(super) struct Document {
 }
 
 impl Document {
-    /// Takes over a scene that is loaded; `recorder` must be recording, with no frame in flight.
+    /// Opens a loaded scene; `recorder` must be recording, with no frame in flight.
     ///
     /// # Errors
-    /// Options that make no sense, or a device without memory for the scene.
+    /// Invalid options, or too little device memory for the scene.
     pub(super) fn open(
         recorder: &mut Recorder,
         path: Option<PathBuf>,
         loaded: Loaded,
-        options: &Options,
+        user: &OptionValues,
         size: Size,
     ) -> Result<Self> {
-        let viewpoints = named_cameras(&loaded, options, size);
-        let options = Options {
-            size: Some(size),
-            ..options.clone()
-        };
-        let options = at_rest(options, &loaded);
-        let mut job = Job::of(path.as_deref(), loaded, options)?;
-        // What moves is drawn with ambient occlusion; at rest the picture goes over from that.
-        if job.settings.visibility == Visibility::Dome {
-            job.settings.visibility = Visibility::Progressive;
-        }
+        let user = at_rest(user, size);
+        let viewpoints = named_cameras(&loaded, &user);
+        let job = Job::of(path.as_deref(), loaded, &user)?;
         let frame = Frame::new(recorder, &job.scene, frame_settings(&job))?;
         Ok(Self {
             controls: Controls::new(&job.camera, &job.scene.bounds),
@@ -82,7 +74,7 @@ impl Document {
         })
     }
 
-    /// Does what a key asks of the scene and its light; what it did goes to `notes`.
+    /// Performs the action of a key on scene and daylight, and reports it in `notes`.
     pub(super) fn perform(&mut self, action: Action, notes: &mut Notes) {
         match action {
             Action::FrameAll => self.frame_all(),
@@ -107,46 +99,46 @@ impl Document {
             }
             Action::Show(show) => {
                 self.job.settings.show = show;
-                notes.say(show.name());
+                notes.say(crate::options::name(show));
             }
             _ => {}
         }
     }
 
-    /// Travels to where everything is in view.
+    /// Moves the camera to where everything is in view.
     pub(super) fn frame_all(&mut self) {
         let size = self.job.settings.size;
         let aspect = size.width as f32 / size.height.max(1) as f32;
         self.controls.frame_all(&self.job.scene.bounds, aspect);
     }
 
-    /// Takes up another camera at once.
+    /// Jumps to another camera.
     pub(super) fn set_camera(&mut self, camera: &Camera) {
         self.controls.go_to(camera);
         self.controls.arrive();
     }
 
-    /// Lets time pass with these keys of flight held.
+    /// Advances the camera by `seconds` with these keys held.
     pub(super) fn advance(&mut self, seconds: f64, keys: FlyKeys) {
         self.controls.advance(seconds, keys);
         self.adaptation.advance(seconds);
         self.job.camera = self.controls.camera();
     }
 
-    /// Whether light and frame lag behind the settings.
+    /// Whether the options have changed since daylight and frame were made.
     pub(super) fn is_behind(&self) -> bool {
         self.job.settings != self.followed
     }
 
-    /// Brings light and frame up with the settings. `recorder` must be recording, with no frame in flight.
+    /// Updates daylight and frame to the options. `recorder` must be recording, with no frame in flight.
     ///
     /// # Errors
-    /// Settings that cannot be followed: they are as they were, then.
+    /// Options that cannot be applied; the old ones are restored then.
     pub(super) fn follow(&mut self, recorder: &mut Recorder) -> Result<()> {
         let followed = self.try_follow(recorder);
         if followed.is_err() {
             self.job.settings = self.followed.clone();
-            // It held before, so it does again.
+            // It succeeded before with the same options.
             self.job.relight()?;
         }
         self.followed = self.job.settings.clone();
@@ -158,7 +150,7 @@ impl Document {
         if self.job.settings.show != self.followed.show {
             self.adaptation.cut();
         }
-        if light_of(&self.job.settings) != light_of(&self.followed) {
+        if self.job.settings.light() != self.followed.light() {
             self.job.relight()?;
         }
         let wanted = frame_settings(&self.job);
@@ -168,7 +160,7 @@ impl Document {
         Ok(())
     }
 
-    /// Makes everything that the device holds anew: after its shaders changed. `recorder` must be recording.
+    /// Makes the frame anew after its shaders changed. `recorder` must be recording.
     ///
     /// # Errors
     /// When the device refuses; the old frame stays.
@@ -179,12 +171,12 @@ impl Document {
         Ok(())
     }
 
-    /// Begins the average anew.
+    /// Restarts the average.
     pub(super) fn start_over(&mut self) {
         self.drawn = None;
     }
 
-    /// Whether the picture is as good as it gets, and the exposure has adapted to it.
+    /// Whether the picture has all its samples and the exposure has adapted to it.
     pub(super) fn is_at_rest(&self) -> bool {
         self.is_averaged() && self.adaptation.is_done()
     }
@@ -203,7 +195,7 @@ impl Document {
         (self.averaged, self.job.settings.samples)
     }
 
-    /// Records what is to be drawn of it now: a preview while it moves or its light refines, then the frames of an average,
+    /// Records the next frame: a preview while the camera moves or the irradiance is refined, then the samples of the average,
     /// then only the exposure until it has adapted, then nothing.
     pub(super) fn record(&mut self, recorder: &mut Recorder) {
         if self.is_at_rest() {
@@ -234,7 +226,7 @@ impl Document {
         self.frames += 1;
     }
 
-    /// Frames drawn since it was opened: another number, another picture.
+    /// Frames drawn since the scene was opened.
     pub(super) fn frames(&self) -> u64 {
         self.frames
     }
@@ -249,23 +241,20 @@ impl Document {
         &self.frame
     }
 
-    /// Records the question what a pixel shows.
-    ///
-    /// # Errors
-    /// When memory is out.
-    pub(super) fn ask(&mut self, recorder: &mut Recorder, pixel: [u32; 2]) -> Result<()> {
-        Ok(self.frame.ask(recorder, &self.job.daylight, pixel)?)
+    /// Records the read-out of a pixel of the newest picture.
+    pub(super) fn pick(&mut self, recorder: &mut Recorder, pixel: [u32; 2]) {
+        self.frame.pick(recorder, pixel);
     }
 
-    /// The answer, when the work is done.
-    pub(super) fn reading(&mut self) -> Option<Reading> {
-        self.frame.reading()
+    /// The pixel that was picked, when the work is done.
+    pub(super) fn picked(&mut self) -> Option<Reading> {
+        self.frame.picked()
     }
 
-    /// The command that renders this picture, for a shell.
+    /// The command line that renders this picture.
     ///
     /// # Errors
-    /// What no option can say.
+    /// As [`Job::command_line`].
     pub(super) fn command(&self) -> Result<String> {
         self.job.command_line()
     }
@@ -279,54 +268,40 @@ impl Document {
     }
 }
 
-/// The options of a picture at rest, where nothing is said of them: samples enough for the sky's true visibility, but with the
-/// lecture's preset, which has its own; and fewer directions a frame than for a file, since the window is to answer soon when
-/// something moves again.
-fn at_rest(options: Options, loaded: &Loaded) -> Options {
-    let unsaid = |key: &str| loaded.options.iter().all(|(name, _)| name != key);
-    let is_preset = options.preset.is_some() || !unsaid("preset");
-    let by_screen = (is_preset && unsaid("visibility")).then_some(Visibility::Ssao);
-    let samples = unsaid("samples").then_some(REST_SAMPLES);
-    let directions = unsaid("dome-directions").then_some(REST_DIRECTIONS);
-    Options {
-        samples: options.samples.or(samples),
-        visibility: options.visibility.or(by_screen),
-        dome_directions: options.dome_directions.or(directions),
-        ..options
+/// The user's options with the window's size and its defaults: enough samples at rest for the sky's true visibility (not with
+/// the lecture's preset), and fewer directions a frame than for a file, so that a frame is short when something moves again.
+fn at_rest(user: &OptionValues, size: Size) -> OptionValues {
+    let mut options = user.clone();
+    options.set("size", size);
+    if options.get("preset").is_some() {
+        options.set_default("visibility", Visibility::Ssao);
     }
+    options.set_default("samples", REST_SAMPLES);
+    options.set_default("dome-directions", REST_DIRECTIONS);
+    options
 }
 
-/// The settings of a frame for the screen. The number of irradiance samples does not follow the light, so that the sun can be
-/// dragged without making the map anew.
+/// The settings of a frame on the screen. The number of irradiance samples does not depend on the light, so that the sun can be
+/// dragged without making a new cube.
 fn frame_settings(job: &Job) -> FrameSettings {
     let mut settings = job.frame_settings(job.settings.show, Precision::Half);
     settings.irradiance.samples = job.settings.irradiance_samples;
+    settings.sampling.dome.illuminance = true;
+    // While something moves ambient occlusion is drawn; at rest the picture fades over from that.
+    if settings.sampling.visibility == Visibility::Dome {
+        settings.sampling.visibility = Visibility::Progressive;
+    }
     settings
 }
 
-/// What of the settings decides the light.
-fn light_of(settings: &Settings) -> impl PartialEq + use<> {
-    (
-        settings.sun,
-        (settings.sun_position, settings.refraction),
-        (settings.sky, settings.turbidity),
-        (settings.sky_illuminance, settings.ground_albedo),
-    )
-}
-
 /// The cameras that the scene file names, as viewpoints.
-fn named_cameras(loaded: &Loaded, options: &Options, size: Size) -> Viewpoints {
+fn named_cameras(loaded: &Loaded, user: &OptionValues) -> Viewpoints {
     let camera = |name: &str| -> Option<Camera> {
-        let options = Options {
-            size: Some(size),
-            camera: Some(name.to_owned()),
-            eye: None,
-            target: None,
-            fov: None,
-            ..options.clone()
-        };
-        let settings = Settings::resolve(options, loaded).ok()?;
-        Some(settings.camera(&loaded.scene.bounds))
+        let mut user = user.clone();
+        user.remove(&["eye", "target", "fov"]);
+        user.set("camera", name);
+        let options = Options::resolve(&user, loaded).ok()?;
+        Some(options.camera(&loaded.scene.bounds))
     };
     let list = loaded.cameras.iter().filter_map(|named| {
         Some(Viewpoint {

@@ -20,6 +20,7 @@ pub(super) use notes::Notes;
 use egui::{Align2, CollapsingHeader, Panel, ScrollArea, Ui};
 use glam::DVec3;
 
+use crate::options::Choice;
 use crate::output::print;
 use crate::passes::light::probe::Reading;
 
@@ -224,16 +225,15 @@ fn section(ui: &mut Ui, title: &str, open: bool, content: impl FnOnce(&mut Ui)) 
         });
 }
 
-/// A drop-down list of the values of an option, named as on the command line. Returns whether the value changed.
-fn choice<T: clap::ValueEnum + PartialEq>(ui: &mut Ui, label: &str, value: &mut T) -> bool {
-    let name = crate::settings::name;
+/// A labelled line with one of the values of an option, named as on the command line. Returns whether it changed.
+fn choice<T: Choice>(ui: &mut Ui, label: &str, value: &mut T) -> bool {
     let mut changed = false;
     egui::ComboBox::new(label, label)
-        .selected_text(name(value.clone()))
+        .selected_text(value.option_name())
         .show_ui(ui, |ui| {
-            for variant in T::value_variants() {
-                let text = name(variant.clone());
-                changed |= ui.selectable_value(value, variant.clone(), text).changed();
+            for (variant, name, help) in T::VALUES {
+                let line = ui.selectable_value(value, *variant, *name);
+                changed |= line.on_hover_text(*help).changed();
             }
         });
     changed

@@ -2,7 +2,7 @@
 
 use winit::keyboard::{Key, NamedKey};
 
-use crate::settings::Show;
+use crate::options::Show;
 
 /// Action of a key or a button.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -168,7 +168,10 @@ mod tests {
 
     #[test]
     fn the_help_names_the_digits_in_their_order() {
-        let names: Vec<&str> = DIGITS.iter().map(|s| s.name()).collect();
+        let names: Vec<&str> = DIGITS
+            .iter()
+            .map(|show| crate::options::name(*show))
+            .collect();
         let line = BINDINGS
             .iter()
             .find(|b| b.keys == "1 .. 9")

@@ -6,8 +6,8 @@ use std::thread;
 use winit::event_loop::EventLoopProxy;
 
 use crate::commands::job::load_options;
+use crate::options::Options;
 use crate::scene::{self, Loaded, SceneError};
-use crate::settings::Options;
 
 /// Message of a loading thread to the event loop.
 #[derive(Debug)]

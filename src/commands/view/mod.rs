@@ -26,7 +26,7 @@ use std::path::Path;
 use winit::event_loop::EventLoop;
 
 use crate::error::{Error, Result};
-use crate::settings::Options;
+use crate::options::OptionValues;
 
 use app::App;
 
@@ -34,23 +34,50 @@ use app::App;
 /// the last session with this scene.
 ///
 /// # Errors
-/// No display, no device that can present to it, or a lost device. Loading errors are shown in the window.
-pub fn run(scene: Option<&Path>, resumes: bool, options: Options) -> Result<()> {
-    let options = if resumes {
-        resume::recall(scene, options)?
+/// No display, no device that presents to it, or a device that is lost. A scene that cannot be loaded is told in the window.
+pub fn run(scene: Option<&Path>, resumes: bool, user: OptionValues) -> Result<()> {
+    let user = if resumes {
+        resume::recall(scene, user)?
     } else {
-        options
+        user
     };
+    let options = user.alone()?;
     let event_loop = EventLoop::with_user_event()
         .build()
-        .map_err(|e| Error::NoDisplay(e.to_string()))?;
+        .map_err(|e| Error::NoDisplay(reason(&e)))?;
     let mut app = App::new(
         event_loop.create_proxy(),
         scene.map(Path::to_owned),
+        user,
         options,
     );
     event_loop
         .run_app(&mut app)
-        .map_err(|e| Error::NoDisplay(e.to_string()))?;
+        .map_err(|e| Error::NoDisplay(reason(&e)))?;
     app.into_result()
+}
+
+/// The message of an error of winit, less the place in winit's source that it begins with: `os error at FILE:LINE: `.
+fn reason(error: &impl std::fmt::Display) -> String {
+    let text = error.to_string();
+    let after_line = |rest: &str| {
+        let rest = rest.trim_start_matches(|c: char| c.is_ascii_digit());
+        rest.trim_start_matches(": ").to_owned()
+    };
+    match text.split_once(".rs:") {
+        Some((_, rest)) => after_line(rest),
+        None => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::reason;
+
+    #[test]
+    fn no_place_in_a_source_is_told() {
+        let long = "os error at /home/me/.cargo/x/mod.rs:765: neither DISPLAY nor another: is set.";
+        assert_eq!(reason(&long), "neither DISPLAY nor another: is set.");
+        assert_eq!(reason(&"event loop gone"), "event loop gone");
+    }
 }

@@ -1,16 +1,16 @@
-//! The settings of each scene when its window was last closed, kept in the user's state folder.
+//! The options of each scene when its window was last closed, kept in the user's state folder.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
+use crate::options::{OptionValues, Options, OptionsError};
 use crate::output::write_whole;
 use crate::scene::{BUNDLED, bundled_name};
-use crate::settings::{Options, SettingsError};
 
 use super::document::Document;
 
-/// The file of a scene: its name for people, and the whole path as a number so that two of a name do not meet.
+/// The file of a scene: its name, and a hash of its absolute path, since scenes of one name may lie in different folders.
 fn file_of(scene: Option<&Path>) -> Option<PathBuf> {
     let folder = dirs::state_dir().or_else(dirs::data_local_dir)?;
     let bundled = scene.map_or(Some(BUNDLED[0]), bundled_name);
@@ -27,7 +27,7 @@ fn file_of(scene: Option<&Path>) -> Option<PathBuf> {
     Some(folder.join("skylight").join(name).with_extension("toml"))
 }
 
-/// Keeps the settings of a document, by option name.
+/// Saves the options of a document.
 ///
 /// # Errors
 /// When the state folder cannot be written to.
@@ -39,45 +39,64 @@ pub(super) fn keep(document: &Document) -> Result<()> {
         path: file.clone(),
         reason,
     };
-    let point = |p: glam::Vec3| format!("{},{},{}", p.x, p.y, p.z);
     let camera = document.controls.camera();
-    let mut options: BTreeMap<&str, String> =
-        document.job.settings.parameters().into_iter().collect();
-    options.insert("eye", point(camera.eye));
-    options.insert("target", point(camera.target));
-    options.insert("fov", camera.fov_deg.to_string());
-    let text = toml::to_string(&options).map_err(|e| failed(e.to_string()))?;
+    let options = document.job.settings.with_camera(&camera);
+    let text = to_text(&options).map_err(failed)?;
     if let Some(folder) = file.parent() {
         std::fs::create_dir_all(folder).map_err(|e| failed(e.to_string()))?;
     }
     write_whole(&file, text.as_bytes())
 }
 
-/// What was kept of a scene, below what the user asks for now. Nothing kept is nothing wrong.
+/// Options as a TOML file of names and texts.
+fn to_text(options: &Options) -> std::result::Result<String, String> {
+    let pairs: BTreeMap<String, String> = options.values().into_pairs().into_iter().collect();
+    toml::to_string(&pairs).map_err(|e| e.to_string())
+}
+
+/// The reverse of [`to_text`], or what is wrong.
+fn from_text(text: &str) -> std::result::Result<OptionValues, String> {
+    let kept: BTreeMap<String, String> =
+        toml::from_str(text).map_err(|e| e.message().to_owned())?;
+    let kept = OptionValues::from(kept.into_iter().collect::<Vec<_>>());
+    kept.check().map_err(|e| e.0)?;
+    Ok(kept)
+}
+
+/// The user's options over those that were saved for the scene, if any were.
 ///
 /// # Errors
 /// A file that is damaged: it names the file to delete.
-pub(super) fn recall(scene: Option<&Path>, options: Options) -> Result<Options> {
+pub(super) fn recall(scene: Option<&Path>, user: OptionValues) -> Result<OptionValues> {
     let Some(file) = file_of(scene).filter(|file| file.exists()) else {
-        return Ok(options);
+        return Ok(user);
     };
     let damaged = |reason: String| {
         let file = file.display();
-        Error::from(SettingsError(format!(
+        Error::from(OptionsError(format!(
             "{file} cannot be resumed from ({reason}); delete it"
         )))
     };
     let text = std::fs::read_to_string(&file).map_err(|e| damaged(e.to_string()))?;
-    let kept: BTreeMap<String, String> =
-        toml::from_str(&text).map_err(|e| damaged(e.message().to_owned()))?;
-    let pairs: Vec<(String, String)> = kept.into_iter().collect();
-    let kept = Options::from_pairs(&pairs).map_err(|e| damaged(e.0))?;
-    Ok(options.over(kept))
+    let kept = from_text(&text).map_err(damaged)?;
+    Ok(user.over(kept))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::options::tests::{each_set, exposed_scene};
+
+    #[test]
+    fn every_option_is_resumed() {
+        let scene = exposed_scene();
+        for (name, options) in each_set(&scene) {
+            let text = to_text(&options).expect(&name);
+            let kept = from_text(&text).expect(&name);
+            let resumed = Options::resolve(&kept, &scene).expect(&name);
+            assert_eq!(resumed, options, "{name}: {text}");
+        }
+    }
 
     #[test]
     fn scenes_of_one_name_have_files_of_their_own() {

@@ -14,16 +14,10 @@ use crate::gpu::{
     Context, Format, GpuError, Image, ImageDesc, Overlay, Presenter, Recorder, Timing, Timings,
     UiFrame,
 };
+use crate::options::Options;
 use crate::passes::picture::present::Present;
-use crate::settings::{Options, Size};
 
 use super::document::Document;
-
-/// Size of a window that was not asked for one, pixels.
-const DEFAULT_SIZE: Size = Size {
-    width: 1280,
-    height: 720,
-};
 
 /// The window, its device, and what draws to it.
 pub(super) struct Stage {
@@ -50,17 +44,14 @@ impl Stage {
     /// # Errors
     /// When the window system or every device refuses.
     pub(super) fn new(event_loop: &ActiveEventLoop, options: &Options) -> Result<Self> {
-        let size = options.size.unwrap_or(DEFAULT_SIZE);
         let attributes = Window::default_attributes()
             .with_title("skylight")
-            .with_inner_size(PhysicalSize::new(size.width, size.height));
+            .with_inner_size(PhysicalSize::new(options.size.width, options.size.height));
         let window = event_loop
             .create_window(attributes)
-            .map_err(|e| GpuError::Window(e.to_string()))?;
+            .map_err(|e| GpuError::Window(super::reason(&e)))?;
         let window = Arc::new(window);
-        let device = options.device.clone();
-        let wanted = context_options(device, options.validate, options.without);
-        let (context, surface) = Context::for_window(&wanted, window.clone())?;
+        let (context, surface) = Context::for_window(&context_options(options), window.clone())?;
         if !options.quiet {
             notice(&context);
         }
@@ -153,7 +144,7 @@ impl Stage {
         })
     }
 
-    /// Does work outside of frames, when nothing is in flight, and waits for it.
+    /// Does work outside of frames, when nothing is in flight, and waits for it. Work that fails is not submitted.
     ///
     /// # Errors
     /// Whatever `work` returns, or a lost device.
@@ -161,7 +152,10 @@ impl Stage {
         let recorder = self.presenter.idle()?;
         recorder.begin()?;
         let result = work(recorder);
-        recorder.finish()?;
+        match result {
+            Ok(_) => recorder.finish()?,
+            Err(_) => recorder.abandon()?,
+        }
         result
     }
 

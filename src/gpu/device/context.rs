@@ -280,6 +280,14 @@ impl Context {
             })
     }
 
+    /// For tests: plans another fault in place of [`ContextOptions::fault`], or none; calls are counted from here on.
+    ///
+    /// # Errors
+    /// A text that names no fault.
+    pub fn plan_fault(&self, fault: Option<&str>) -> Result<()> {
+        self.faults.plan(fault)
+    }
+
     pub(in crate::gpu) fn raw(&self) -> &ash::Device {
         &self.device.raw
     }

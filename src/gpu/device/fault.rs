@@ -1,9 +1,10 @@
 //! Fault injection: a test names a Vulkan call, and that call returns an error as a broken driver would.
 //!
-//! Without a planned fault a call costs one comparison with `None`. Tests and users run the same build.
+//! Without a planned fault a call costs one load of a flag. Tests and users run the same build.
 
 use std::str::FromStr;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use ash::vk;
 
@@ -90,26 +91,36 @@ impl FromStr for Fault {
 /// The planned fault of a device, if there is one.
 #[derive(Debug, Default)]
 pub(in crate::gpu) struct Faults {
-    planned: Option<Fault>,
+    is_planned: AtomicBool,
+    planned: Mutex<Option<Fault>>,
     seen: AtomicU32,
 }
 
 impl Faults {
     /// From a text such as `memory@12=out-of-device-memory`.
     pub fn new(text: Option<&str>) -> Result<Self, GpuError> {
-        Ok(Self {
-            planned: text.map(str::parse).transpose()?,
-            seen: AtomicU32::new(0),
-        })
+        let faults = Self::default();
+        faults.plan(text)?;
+        Ok(faults)
+    }
+
+    /// Replaces the planned fault; calls are counted from here on.
+    pub fn plan(&self, text: Option<&str>) -> Result<(), GpuError> {
+        let fault: Option<Fault> = text.map(str::parse).transpose()?;
+        *self.planned.lock().unwrap_or_else(PoisonError::into_inner) = fault;
+        self.seen.store(0, Ordering::Relaxed);
+        self.is_planned.store(fault.is_some(), Ordering::Relaxed);
+        Ok(())
     }
 
     /// The error that a call is to return instead of being made.
     #[inline]
     pub fn at(&self, call: Call) -> Result<(), vk::Result> {
-        match &self.planned {
-            None => Ok(()),
-            Some(fault) => self.strike(fault, call),
+        if !self.is_planned.load(Ordering::Relaxed) {
+            return Ok(());
         }
+        let planned = *self.planned.lock().unwrap_or_else(PoisonError::into_inner);
+        planned.map_or(Ok(()), |fault| self.strike(&fault, call))
     }
 
     fn strike(&self, fault: &Fault, call: Call) -> Result<(), vk::Result> {
@@ -135,6 +146,19 @@ mod tests {
         let memory: Vec<bool> = (0..4).map(|_| faults.at(Call::Memory).is_ok()).collect();
         assert_eq!(memory, [true, false, true, true]);
         assert!(faults.at(Call::Submit).is_ok());
+    }
+
+    #[test]
+    fn another_fault_is_counted_from_its_planning_on() {
+        let faults = Faults::new(Some("memory@1=out-of-device-memory")).expect("a fault");
+        assert!(faults.at(Call::Memory).is_err());
+        let planned = faults.plan(Some("image@2=out-of-host-memory"));
+        assert!(planned.is_ok() && faults.at(Call::Image).is_ok());
+        assert_eq!(
+            faults.at(Call::Image),
+            Err(vk::Result::ERROR_OUT_OF_HOST_MEMORY)
+        );
+        assert!(faults.plan(None).is_ok() && faults.at(Call::Image).is_ok());
     }
 
     #[test]

@@ -3,7 +3,6 @@
 use std::ffi::{CStr, c_char};
 
 use ash::vk;
-use clap::ValueEnum;
 
 use crate::gpu::device::surface::RawSurface;
 use crate::gpu::error::{During, GpuError, Result};
@@ -30,7 +29,7 @@ pub struct DeviceSummary {
 }
 
 /// Features that are used where present and not required.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Optional {
     /// The extension VK_KHR_push_descriptor; descriptor pools otherwise.
     PushDescriptor,
@@ -41,6 +40,13 @@ pub enum Optional {
 }
 
 impl Optional {
+    /// All of them.
+    pub const ALL: [Self; 3] = [
+        Self::PushDescriptor,
+        Self::GeometryShader,
+        Self::PipelineStatistics,
+    ];
+
     /// Name in the Vulkan specification.
     pub fn name(self) -> &'static str {
         match self {
@@ -186,7 +192,7 @@ fn optional(
         Optional::GeometryShader => core.geometry_shader == vk::TRUE,
         Optional::PipelineStatistics => core.pipeline_statistics_query == vk::TRUE,
     };
-    Optional::value_variants()
+    Optional::ALL
         .iter()
         .map(|o| (*o, present(o) && !without.contains(o)))
         .collect()

@@ -118,6 +118,19 @@ impl Recorder {
         submitted.and(done)
     }
 
+    /// Forgets what was recorded since [`Self::begin`], because something that it uses could not be made. Images that outlive
+    /// it must not have been recorded.
+    ///
+    /// # Errors
+    /// When the driver has no memory left.
+    pub fn abandon(&mut self) -> Result<()> {
+        let flags = vk::CommandBufferResetFlags::empty();
+        // SAFETY: the command buffer was not submitted, and its pool lets it be reset.
+        unsafe { self.context.raw().reset_command_buffer(self.command, flags) }
+            .during("reset a command buffer")?;
+        self.wait()
+    }
+
     /// Submits the recorded work without waiting; `signal` is signalled at its end.
     pub(in crate::gpu) fn submit(&mut self, signal: Option<vk::Semaphore>) -> Result<()> {
         let raw = self.context.raw();

@@ -20,11 +20,11 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
-use crate::passes::dome::fit::{Receivers, fit};
 use crate::passes::dome::specular::SpecularSky;
 use crate::passes::light::lighting::{LightingSettings, Show};
 use crate::passes::sun_shadow::fit::ShadowView;
 use crate::passes::sun_shadow::map::{Casters, Tile};
+use crate::passes::sun_shadow::perspective::{Receivers, fit};
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
@@ -92,6 +92,8 @@ pub struct DomeSettings {
     pub map_edge: u32,
     /// Start of the sequences.
     pub seed: u32,
+    /// Whether the picture's fourth channel has the illuminance, klx, whatever is shown: for read-outs.
+    pub illuminance: bool,
 }
 
 impl Default for DomeSettings {
@@ -100,6 +102,7 @@ impl Default for DomeSettings {
             directions: 12,
             map_edge: 1024,
             seed: 0,
+            illuminance: false,
         }
     }
 }
@@ -133,6 +136,8 @@ pub struct Dome {
     maps: Image,
     /// Alternating means: sky and rest, see `dome_gather.frag`.
     means: [[Image; 2]; 2],
+    /// Alternating means of the parts of the illuminance, where it is wanted.
+    illuminance: Option<[Image; 2]>,
     radiance: Image,
     /// Specular reflection of the sky with its visibility, if asked for.
     specular: Option<SpecularSky>,
@@ -186,16 +191,20 @@ impl Dome {
                 "dome: resolve",
                 &shaders::DOME_RESOLVE_FRAG,
                 FORMAT,
-                &[],
+                &[("ILLUMINANCE", settings.illuminance.into())],
             )?,
             maps: Image::new(context, &ImageDesc::flat("dome maps", depth, atlas))?,
             means: [
                 [image("sky mean 0")?, image("rest mean 0")?],
                 [image("sky mean 1")?, image("rest mean 1")?],
             ],
+            illuminance: settings
+                .illuminance
+                .then(|| Ok([image("illuminance mean 0")?, image("illuminance mean 1")?]))
+                .transpose()?,
             radiance: image("radiance, converging")?,
             sky: None,
-            is_shown: shows_sky(show) || specular.is_some(),
+            is_shown: shows_sky(show) || specular.is_some() || settings.illuminance,
             specular,
         })
     }
@@ -301,6 +310,7 @@ impl Dome {
     fn draw_maps(&self, recorder: &mut Recorder, geometry: &Geometry, views: &[ShadowView]) {
         let tile = |(k, view): (usize, &ShadowView)| Tile {
             view: *view,
+            mask: None,
             origin: self.origin(k),
             edge: self.settings.map_edge,
         };
@@ -336,7 +346,7 @@ impl Dome {
         let [[sky, rest], [old_sky, old_rest]] = &self.means;
         let surfaces = gathered.surfaces;
         let albedo = surfaces.albedo.as_ref().unwrap_or(gathered.materials);
-        recorder
+        let pass = recorder
             .pass("dome: gather", &self.gather)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
             .sample(
@@ -355,16 +365,28 @@ impl Dome {
             .uniform("dome", block)
             .push(push)
             .color(sky, Load::Discard)
-            .color(rest, Load::Discard)
-            .draw();
+            .color(rest, Load::Discard);
+        match &mut self.illuminance {
+            Some(means) => {
+                means.swap(0, 1);
+                let [new, old] = means;
+                pass.sample("previous_illuminance", old, Sampler::Nearest)
+                    .color(new, Load::Discard)
+                    .draw();
+            }
+            None => pass.draw(),
+        }
     }
 
     fn resolve(&self, recorder: &mut Recorder) {
         let [sky, rest] = &self.means[0];
+        // Without it any image: the binding must be there.
+        let illuminance = self.illuminance.as_ref().map_or(rest, |means| &means[0]);
         recorder
             .pass("dome: resolve", &self.resolve)
             .sample("sky", sky, Sampler::Nearest)
             .sample("rest", rest, Sampler::Nearest)
+            .sample("illuminance", illuminance, Sampler::Nearest)
             .color(&self.radiance, Load::Discard)
             .draw();
     }
@@ -376,11 +398,16 @@ fn gather_pipeline(
     settings: DomeSettings,
     show: Show,
 ) -> Result<Pipeline> {
+    let (shader, targets) = if settings.illuminance {
+        (&shaders::DOME_GATHER_FRAG_ILLUMINANCE, 3)
+    } else {
+        (&shaders::DOME_GATHER_FRAG, 2)
+    };
     fullscreen_at(
         context,
         "dome: gather",
-        &shaders::DOME_GATHER_FRAG,
-        &[FORMAT, FORMAT],
+        shader,
+        &[FORMAT; 3][..targets],
         Depth::Off,
         &[
             ("SHOW_IRRADIANCE", (show == Show::Irradiance).into()),

@@ -1,5 +1,4 @@
 //! The sky's visibility by shadow maps from directions of the sky, averaged over converging frames.
 
-pub mod fit;
 pub mod gather;
 pub mod specular;

@@ -6,7 +6,6 @@
 
 use std::sync::Arc;
 
-use clap::ValueEnum;
 use glam::Vec2;
 
 use crate::daylight::sampling;
@@ -22,7 +21,7 @@ use crate::passes::view::View;
 use crate::passes::{fullscreen, fullscreen_at};
 
 /// The specular lobe.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Phong {
     /// The lecture's: (r·l)^p of the sun, and the sky as in a perfect mirror.
     #[default]
@@ -32,7 +31,7 @@ pub enum Phong {
 }
 
 /// The sky's visibility in specular reflections.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Reflections {
     /// Nothing, as in the lecture's illumination model.
     #[default]

@@ -26,19 +26,19 @@ gpu_struct! {
     }
 }
 
-/// The pass; it completes the picture of [`crate::passes::light::lighting::Lighting`].
+/// The pass: it fills the picture of [`crate::passes::light::lighting::Lighting`] where no surface is.
 pub struct Background {
     settings: LightingSettings,
-    /// For the many views that do not see the sun.
+    /// For views without the sun.
     without_disc: Pipeline,
     with_disc: Pipeline,
 }
 
-/// Whether the sky is drawn, and otherwise what stands for "nothing".
+/// Whether the sky is drawn, and the value of pixels without a surface otherwise.
 fn content(show: Show) -> (bool, f32) {
     match show {
         Show::Beauty | Show::Luminance | Show::Background => (true, 0.0),
-        // Nothing hides the sun or the sky from the sky.
+        // Nothing occludes the sky itself.
         Show::Visibility | Show::Occlusion => (false, 1.0),
         _ => (false, 0.0),
     }
@@ -83,7 +83,7 @@ impl Background {
         let push = Push {
             size: view.size.as_vec2(),
             direction: light.daylight.sun_direction.as_vec3(),
-            // The mean over the disc stays: that of 1 - u (1 - mu) is 1 - u/3.
+            // The mean over the disc is kept: that of 1 - u (1 - mu) is 1 - u/3.
             luminance: kilo(light.daylight.sun_luminance) / (1.0 - limb / 3.0),
             sin_radius: SUN_ANGULAR_RADIUS.sin() as f32,
             limb,
@@ -105,7 +105,7 @@ impl Background {
     }
 }
 
-/// Whether the sun's disc may be in the picture: within the cone around the line of sight that holds its corners.
+/// Whether the sun's disc may be in view: within the cone around the line of sight that holds the corners of the picture.
 fn sees(view: &View, direction: Vec3) -> bool {
     let block = view.block();
     let corner = block.ray_scale.abs() + block.ray_offset.abs();
@@ -121,7 +121,7 @@ mod tests {
     use crate::scene::Camera;
 
     #[test]
-    fn the_disc_is_drawn_where_the_eye_may_see_it() {
+    fn the_disc_is_drawn_where_it_may_be_in_view() {
         let camera = Camera {
             eye: Vec3::ZERO,
             target: Vec3::NEG_Z,
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn only_whole_pictures_have_a_sky() {
+    fn only_whole_pictures_and_the_background_have_a_sky() {
         let drawn: Vec<Show> = [Show::ADDENDS.as_slice(), &Show::INPUTS]
             .concat()
             .into_iter()

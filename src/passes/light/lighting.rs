@@ -4,15 +4,12 @@
 
 use std::sync::Arc;
 
-use clap::ValueEnum;
 use glam::{IVec2, Vec3};
-use serde::Deserialize;
 
 use crate::daylight::false_colour::Quantity;
 use crate::daylight::sky::Daylight;
 use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, Recorder, Result, Sampler,
-    shaders,
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
 };
 use crate::gpu_struct;
 
@@ -40,8 +37,7 @@ gpu_struct! {
 }
 
 /// What is shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, ValueEnum, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Show {
     /// The whole picture, cd/m².
     #[default]
@@ -91,25 +87,6 @@ impl Show {
         Self::Normal,
         Self::Depth,
     ];
-
-    /// Name on the command line and of layers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Beauty => "beauty",
-            Self::Sun => "sun",
-            Self::Sky => "sky",
-            Self::SunSpecular => "sun-specular",
-            Self::SkySpecular => "sky-specular",
-            Self::Background => "background",
-            Self::Visibility => "visibility",
-            Self::Occlusion => "occlusion",
-            Self::Irradiance => "irradiance",
-            Self::Albedo => "albedo",
-            Self::Normal => "normal",
-            Self::Depth => "depth",
-            Self::Luminance => "luminance",
-        }
-    }
 
     /// Factor from the device's unit to the file's: kcd/m² and klx to cd/m² and lux.
     pub fn file_unit(self) -> f32 {
@@ -291,7 +268,8 @@ impl Lighting {
         })
     }
 
-    /// Lights the surfaces; other pixels are left to [`crate::passes::light::background::Background`].
+    /// Lights the surfaces; other pixels are left to [`crate::passes::light::background::Background`]. The fourth channel is the
+    /// illuminance of the surface, klx.
     pub fn record(
         &mut self,
         recorder: &mut Recorder,
@@ -301,37 +279,6 @@ impl Lighting {
         light: &Light<'_>,
         view: &View,
     ) -> &Image {
-        self.describe(recorder, surfaces, materials, occlusion, light, view)
-            .draw();
-        &self.radiance
-    }
-
-    /// Lights one pixel.
-    #[allow(clippy::too_many_arguments)]
-    pub fn record_pixel(
-        &mut self,
-        recorder: &mut Recorder,
-        surfaces: &Surfaces,
-        materials: &Image,
-        occlusion: &Image,
-        light: &Light<'_>,
-        view: &View,
-        pixel: [u32; 2],
-    ) {
-        self.describe(recorder, surfaces, materials, occlusion, light, view)
-            .only(pixel)
-            .draw();
-    }
-
-    fn describe<'r>(
-        &'r self,
-        recorder: &'r mut Recorder,
-        surfaces: &'r Surfaces,
-        materials: &'r Image,
-        occlusion: &'r Image,
-        light: &Light<'r>,
-        view: &View,
-    ) -> Pass<'r> {
         // A scene without textures has no albedo image; its pipeline reads none, but the binding must be written.
         let albedo = surfaces.albedo.as_ref().unwrap_or(materials);
         recorder
@@ -353,6 +300,8 @@ impl Lighting {
             .uniform("cascades", &light.sun_views.block())
             .color(&self.radiance, Load::Discard)
             .depth_test(&surfaces.depth)
+            .draw();
+        &self.radiance
     }
 
     fn sun_block(&self, light: &Light<'_>, view: &View) -> SunBlock {
@@ -379,14 +328,6 @@ impl Lighting {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn names_are_those_of_the_command_line() {
-        for show in Show::value_variants() {
-            let value = show.to_possible_value().expect("a value");
-            assert_eq!(value.get_name(), show.name());
-        }
-    }
 
     #[test]
     fn each_addend_is_in_the_picture_once() {

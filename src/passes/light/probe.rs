@@ -1,4 +1,4 @@
-//! What is under one pixel: its luminance, and the surface with its illuminance.
+//! Read-out of one pixel: its luminance, and the surface with its illuminance.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::gpu::{Buffer, BufferKind, Context, Image, Recorder, Result, Texel, copy_texel};
 
-use crate::passes::light::lighting::{Lighting, LightingSettings, Precision, Show};
+use crate::passes::light::lighting::Show;
 use crate::passes::surfaces::gbuffer::{Surfaces, unpack_normal};
 
 /// What one pixel shows.
@@ -20,11 +20,11 @@ pub struct Reading {
     pub surface: Option<SurfaceReading>,
 }
 
-/// A surface under a pixel.
+/// A surface under a pixel: of an average, the one that the newest sample of the pixel hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceReading {
-    /// Illuminance by sun and sky, linear RGB, lux.
-    pub illuminance: [f32; 3],
+    /// Illuminance by sun and sky, lux: the mean over the pixel.
+    pub illuminance: f32,
     /// World normal on the viewer's side.
     pub normal: [f32; 3],
     /// ρ_d, linear RGB.
@@ -35,101 +35,88 @@ pub struct SurfaceReading {
     pub material: u32,
 }
 
-/// Texels that are copied: radiance, illuminance, words, depth.
+/// Most texels that are copied: of the picture, normal and material, depth, ρ_d.
 const TEXELS: usize = 4;
 
-/// The pass and where its texels arrive.
+/// Where the texels of a pixel are copied to.
 pub struct Probe {
-    illuminance: Lighting,
     buffer: Buffer,
-    asked: Option<Asked>,
+    picked: Option<Picked>,
 }
 
 /// What the texels in the buffer are.
 #[derive(Clone, Copy)]
-struct Asked {
+struct Picked {
     pixel: [u32; 2],
-    texels: [Texel; TEXELS],
+    picture: Texel,
+    words: Texel,
+    depth: Texel,
     /// Of scenes with maps.
     albedo: Option<Texel>,
     near: f32,
-    unit: f32,
+    shown: Show,
 }
 
 impl Probe {
-    /// For pictures of `size` pixels.
-    ///
     /// # Errors
-    /// When the device refuses.
-    pub fn new(context: &Arc<Context>, size: [u32; 2], settings: LightingSettings) -> Result<Self> {
-        let settings = LightingSettings {
-            show: Show::Irradiance,
-            precision: Precision::Half,
-            ..settings
-        };
-        let bytes = ((TEXELS + 1) * Texel::SLOT_BYTES) as u64;
+    /// When the device has no memory left.
+    pub fn new(context: &Arc<Context>) -> Result<Self> {
+        let bytes = (TEXELS * Texel::SLOT_BYTES) as u64;
         Ok(Self {
-            illuminance: Lighting::new(context, size, settings)?,
             buffer: Buffer::new(context, "probe", BufferKind::ReadBack, bytes)?,
-            asked: None,
+            picked: None,
         })
     }
 
-    /// Asks for one pixel. `light` draws the illuminance with the pass it is given, at this pixel alone.
-    pub fn record(
+    /// Copies a pixel of a picture, whose fourth channel is the illuminance, and of its surfaces. `near` is the distance of the
+    /// near plane, metres.
+    pub fn pick(
         &mut self,
         recorder: &mut Recorder,
         pixel: [u32; 2],
-        (radiance, shown): (&Image, Show),
+        (picture, shown): (&Image, Show),
         surfaces: &Surfaces,
         near: f32,
-        light: impl FnOnce(&mut Lighting, &mut Recorder),
     ) {
-        light(&mut self.illuminance, recorder);
-        let images = [
-            radiance,
-            self.illuminance.image(),
-            &surfaces.normal_material,
-            &surfaces.depth,
-        ];
-        let mut slot = 0;
+        let mut slots = 0..;
         let mut copied = |image| {
-            let texel = copy_texel(recorder, image, pixel, &self.buffer, slot);
-            slot += 1;
-            texel
+            let slot = slots.next().unwrap_or_default();
+            copy_texel(recorder, image, pixel, &self.buffer, slot)
         };
-        let texels = images.map(&mut copied);
-        let albedo = surfaces.albedo.as_ref().map(copied);
-        self.asked = Some(Asked {
+        self.picked = Some(Picked {
             pixel,
-            texels,
-            albedo,
+            picture: copied(picture),
+            words: copied(&surfaces.normal_material),
+            depth: copied(&surfaces.depth),
+            albedo: surfaces.albedo.as_ref().map(copied),
             near,
-            unit: shown.file_unit(),
+            shown,
         });
     }
 
-    /// The answer, once the frame that asked is done. `diffuse` is ρ_d of a material.
+    /// The pixel that was picked, once, when the work is done. `diffuse` is ρ_d of a material.
     pub fn reading(&mut self, diffuse: impl FnOnce(u32) -> Vec3) -> Option<Reading> {
-        let asked = self.asked.take()?;
-        let [radiance, illuminance, words, depth] = asked.texels.map(|t| t.read(&self.buffer));
-        let rgb = |t: [f32; 4], unit: f32| [t[0] * unit, t[1] * unit, t[2] * unit];
+        let picked = self.picked.take()?;
+        let read = |texel: Texel| texel.read(&self.buffer);
+        let [r, g, b, illuminance] = read(picked.picture);
+        let (words, depth) = (read(picked.words), read(picked.depth)[0]);
         // Halves of the words.
-        let number = words[2] as u32;
-        let albedo = match asked.albedo {
-            Some(texel) => rgb(texel.read(&self.buffer), 1.0),
-            None => diffuse(number).to_array(),
+        let material = words[2] as u32;
+        let albedo = match picked.albedo {
+            Some(texel) => Vec3::from_slice(&read(texel)),
+            None => diffuse(material),
         };
-        let surface = (depth[0] > 0.0).then(|| SurfaceReading {
-            illuminance: rgb(illuminance, Show::Irradiance.file_unit()),
+        let surface = (depth > 0.0).then(|| SurfaceReading {
+            illuminance: illuminance * Show::Irradiance.file_unit(),
             normal: unpack_normal([words[0] as u16, words[1] as u16]),
-            albedo,
-            distance: asked.near / depth[0],
-            material: number,
+            albedo: albedo.to_array(),
+            distance: picked.near / depth,
+            material,
         });
+        let unit = picked.shown.file_unit();
         Some(Reading {
-            pixel: asked.pixel,
-            radiance: rgb(radiance, asked.unit),
+            pixel: picked.pixel,
+            radiance: [r, g, b].map(|value| value * unit),
             surface,
         })
     }

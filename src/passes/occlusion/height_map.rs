@@ -66,6 +66,7 @@ impl HeightMap {
         if self.serves(radius) && !std::mem::replace(&mut self.is_drawn, true) {
             let tile = Tile {
                 view: self.view,
+                mask: None,
                 origin: [0; 2],
                 edge: EDGE,
             };

@@ -1,31 +1,30 @@
-//! The sun's maps: one, or for large scenes several around the viewer, each some times as wide as the one before.
+//! The sun's shadow maps: one, or for large scenes several cascades around the viewer, each a few times as wide as the one before.
 //!
-//! Each map covers what is seen within a cube around the eye and follows the view in the steps of [`fit::fit`], so that
-//! shadows do not swim. A point takes the finest map whose cube it is in, and blends into the next toward the cube's side.
+//! Each cascade covers what is seen within a cube around the eye and follows the view in the steps of [`fit::fit`], so that
+//! shadows do not swim. A point takes the finest cascade whose cube it is in, and blends into the next toward the cube's side.
 
 use arrayvec::ArrayVec;
 use glam::Vec3;
 
 use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
 use crate::gpu_struct;
-use crate::scene::{Bounds, Cluster};
+use crate::scene::Bounds;
 
 use crate::passes::sun_shadow::fit::{self, ShadowView};
-use crate::passes::sun_shadow::receiver_mask::Shade;
 use crate::passes::view::View;
 
 /// How the sun's shadow is looked up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Shadows {
-    /// Number of maps, 1 to 4; 0: by the extent of the scene, which [`crate::frame::Frame`] knows.
+    /// Number of cascades, 1 to 4; 0: by the extent of the scene, which [`crate::frame::Frame`] knows.
     pub cascades: u32,
     /// Penumbrae as wide as the sun's disc makes them, in a single frame.
     pub penumbrae: bool,
 }
 
 impl Shadows {
-    /// How far lookups reach from what they shade, texels: penumbrae, and around them the tent after the offset along the normal.
-    fn reach(&self) -> f32 {
+    /// Radius of the lookups around a receiver, texels: penumbrae, and around them the tent after the offset along the normal.
+    pub(in crate::passes) fn filter_radius(&self) -> f32 {
         if self.penumbrae {
             MAX_RADIUS + 4.0
         } else {
@@ -34,17 +33,17 @@ impl Shadows {
     }
 }
 
-/// Most maps of a scene.
-pub const MOST: usize = 4;
+/// Most cascades of a scene.
+pub const MAX_CASCADES: usize = 4;
 /// Texels of a single map that are larger than this call for cascades, metres.
-const COARSE: f32 = 0.08;
+const MAX_SINGLE_MAP_TEXEL: f32 = 0.08;
 /// Extent of a scene above which there are four cascades instead of three, metres.
-const VAST: f32 = 1000.0;
+const FOUR_CASCADES_EXTENT: f32 = 1000.0;
 /// From the eye to the side of the nearest cascade's cube, metres.
-const NEAREST: f32 = 20.0;
-/// Texel of a map over that of the next, up to which it is worth its drawing.
-const FINER: f32 = 0.75;
-/// Share of a cube from which on its map is blended into the next.
+const NEAREST_REACH: f32 = 20.0;
+/// Texel of a cascade over that of the next, up to which it is worth its drawing.
+const MAX_TEXEL_RATIO: f32 = 0.75;
+/// Share of a cube from which on its cascade is blended into the next.
 pub(in crate::passes) const BLEND: f32 = 0.85;
 /// Largest radius of penumbrae, texels: taps farther apart miss thin casters.
 pub(in crate::passes) const MAX_RADIUS: f32 = 48.0;
@@ -52,7 +51,7 @@ pub(in crate::passes) const MAX_RADIUS: f32 = 48.0;
 pub(in crate::passes) const NORMAL_OFFSET_TEXELS: f32 = 1.5;
 
 gpu_struct! {
-    /// The maps, for `include/sun_shadow.glsl`.
+    /// The cascades, for `include/sun_shadow.glsl`.
     pub struct CascadesBlock: cascades of LIGHTING_FRAG {
         from_world: [[[f32; 4]; 4]; 4],
         sizes: [[f32; 4]; 4],
@@ -60,13 +59,13 @@ gpu_struct! {
     }
 }
 
-/// How many maps a scene within `bounds` has, of `resolution` texels a side.
+/// How many cascades a scene within `bounds` has, of `resolution` texels a side.
 pub fn count(bounds: &Bounds, resolution: u32, most_texels: u32) -> u32 {
     let extent = bounds.extent().max_element();
     let wanted = match extent {
-        _ if extent.is_nan() || extent <= COARSE * resolution as f32 => 1,
-        _ if extent <= VAST => 3,
-        _ => MOST as u32,
+        _ if extent.is_nan() || extent <= MAX_SINGLE_MAP_TEXEL * resolution as f32 => 1,
+        _ if extent <= FOUR_CASCADES_EXTENT => 3,
+        _ => MAX_CASCADES as u32,
     };
     // They lie side by side in one image.
     if wanted * resolution <= most_texels {
@@ -76,12 +75,12 @@ pub fn count(bounds: &Bounds, resolution: u32, most_texels: u32) -> u32 {
     }
 }
 
-/// Fitted maps, the finest first.
+/// Fitted cascades, the finest first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SunViews {
-    views: [ShadowView; MOST],
+    views: [ShadowView; MAX_CASCADES],
     /// From the eye to the sides of the cube that each covers, metres.
-    reach: [f32; MOST],
+    reach: [f32; MAX_CASCADES],
     count: usize,
 }
 
@@ -89,13 +88,13 @@ impl SunViews {
     /// One map.
     pub fn one(view: ShadowView) -> Self {
         Self {
-            views: [view; MOST],
-            reach: [f32::INFINITY; MOST],
+            views: [view; MAX_CASCADES],
+            reach: [f32::INFINITY; MAX_CASCADES],
             count: 1,
         }
     }
 
-    /// Fits up to `count` maps of `resolution` texels a side; see [`fit::fit`]. A map that would hardly be finer than the
+    /// Fits up to `count` cascades of `resolution` texels a side; see [`fit::fit`]. A cascade that would hardly be finer than the
     /// next is left out: where the view is narrow, or from far away, one shows as much as several.
     pub fn fit(
         sun_direction: Vec3,
@@ -108,9 +107,9 @@ impl SunViews {
         let of = |part: &Bounds| fit::fit(sun_direction, part, casters, view, resolution);
         let whole = of(bounds);
         let mut fitted = Self::one(whole);
-        fitted.count = (count as usize).clamp(1, MOST);
+        fitted.count = (count as usize).clamp(1, MAX_CASCADES);
         let reaches = reaches(bounds, view.camera.eye, fitted.count);
-        let (mut coarser, mut maps) = (whole, ArrayVec::<_, MOST>::new());
+        let (mut coarser, mut maps) = (whole, ArrayVec::<_, MAX_CASCADES>::new());
         for reach in reaches.into_iter().take(fitted.count - 1).rev() {
             let around = Bounds {
                 min: bounds.min.max(view.camera.eye - reach),
@@ -118,12 +117,12 @@ impl SunViews {
             };
             // Or nothing is that near.
             let map = (!around.is_empty()).then(|| of(&around));
-            if let Some(map) = map.filter(|map| map.texel <= FINER * coarser.texel) {
+            if let Some(map) = map.filter(|map| map.texel <= MAX_TEXEL_RATIO * coarser.texel) {
                 coarser = map;
                 maps.push((map, reach));
             }
         }
-        // The maps after these are the whole again, where nothing takes it from.
+        // The cascades after these are the whole again, and no point takes them.
         for (k, (map, reach)) in maps.into_iter().rev().enumerate() {
             fitted.views[k] = map;
             fitted.reach[k] = reach;
@@ -131,61 +130,44 @@ impl SunViews {
         fitted
     }
 
-    /// Narrows the maps to the casters that can shade what `seen` holds, from an eye that may go `room` metres.
-    pub fn shade<'c>(
-        &mut self,
-        seen: impl IntoIterator<Item = &'c Cluster>,
+    /// Numbers of the cascades in which receivers in a box are looked up while the eye is within `slack` metres of `eye`.
+    pub(in crate::passes) fn looked_up(
+        &self,
+        receivers: &Bounds,
         eye: Vec3,
-        room: f32,
-        shadows: &Shadows,
-    ) {
-        for view in &mut self.views[..self.count] {
-            view.shade = Shade::none(view.toward, &view.shadow_from_world);
-        }
-        for cluster in seen {
-            for k in looked_up(&self.reach, &cluster.bounds, eye, room) {
-                let view = &mut self.views[k];
-                let reach = shadows.reach() * view.texel;
-                view.shade.add(&cluster.bounds, reach);
-            }
-        }
+        slack: f32,
+    ) -> impl Iterator<Item = usize> + use<> {
+        let &Bounds { min, max } = receivers;
+        let farthest = (max - eye).abs().max((eye - min).abs()).max_element() + slack;
+        let nearest = (min - eye).max(eye - max).max_element() - slack;
+        // A cascade begins where the one before is blended into it; after the whole, which reaches without end, none does.
+        let reach = self.reach;
+        let mut finer = 0.0;
+        (0..MAX_CASCADES).filter(move |&k| {
+            let is_in = farthest >= finer && nearest <= reach[k];
+            finer = BLEND * reach[k];
+            is_in
+        })
     }
 
-    /// Takes over what maps of the same views were drawn for, if that holds all of `seen`; whether it does.
-    pub fn stay<'c>(
-        &mut self,
-        drawn: &Self,
-        seen: impl IntoIterator<Item = &'c Cluster>,
-        eye: Vec3,
-        shadows: &Shadows,
-    ) -> bool {
-        let is_same = |(mine, other): (&ShadowView, &ShadowView)| {
-            let shade = other.shade;
-            *other == ShadowView { shade, ..*mine }
-        };
-        let are_same = self.count == drawn.count && self.iter().zip(drawn.iter()).all(is_same);
-        let is_held = |cluster: &Cluster| {
-            looked_up(&self.reach, &cluster.bounds, eye, 0.0).all(|k| {
-                let view = &drawn.views[k];
-                let reach = shadows.reach() * view.texel;
-                view.shade.holds(&cluster.bounds, reach)
-            })
-        };
-        let stays = are_same && seen.into_iter().all(is_held);
-        if stays {
-            self.views = drawn.views;
-        }
-        stays
-    }
-
-    /// The maps, the finest first.
+    /// The cascades, the finest first.
     pub fn iter(&self) -> impl Iterator<Item = &ShadowView> {
         self.views.iter().take(self.count)
     }
 
-    /// The map of a scene that has one; of others the finest.
+    /// The only map, or the finest cascade.
     pub fn first(&self) -> &ShadowView {
         &self.views[0]
+    }
+
+    /// Whether the maps are those of other views.
+    pub(in crate::passes) fn are_those_of(&self, other: &Self) -> bool {
+        self.iter().eq(other.iter())
+    }
+
+    /// Edge of a texel of cascade `k`, metres.
+    pub(in crate::passes) fn texel(&self, k: usize) -> f32 {
+        self.views[k].texel
     }
 
     /// What the shader needs to know.
@@ -202,30 +184,10 @@ impl SunViews {
     }
 }
 
-/// The maps in which something of a box is looked up, from an eye that may go `room` metres; `reach` is that of the views.
-fn looked_up(
-    reach: &[f32; MOST],
-    bounds: &Bounds,
-    eye: Vec3,
-    room: f32,
-) -> impl Iterator<Item = usize> {
-    let &Bounds { min, max } = bounds;
-    let farthest = (max - eye).abs().max((eye - min).abs()).max_element() + room;
-    let nearest = (min - eye).max(eye - max).max_element() - room;
-    // A map begins where the one before is blended into it; behind the whole, which reaches without end, there is none.
-    let reach = *reach;
-    let mut finer = 0.0;
-    (0..MOST).filter(move |&k| {
-        let is_in = farthest >= finer && nearest <= reach[k];
-        finer = BLEND * reach[k];
-        is_in
-    })
-}
-
-/// From the eye to the sides of the cubes, metres, in equal ratios up to what holds the scene.
-fn reaches(bounds: &Bounds, eye: Vec3, count: usize) -> [f32; MOST] {
+/// From the eye to the sides of the cubes, metres, in equal ratios up to the cube that holds the scene.
+fn reaches(bounds: &Bounds, eye: Vec3, count: usize) -> [f32; MAX_CASCADES] {
     let beside = (bounds.min - eye).max(eye - bounds.max).max(Vec3::ZERO);
-    let nearest = beside.max_element() + NEAREST;
+    let nearest = beside.max_element() + NEAREST_REACH;
     let farthest = (bounds.max - eye).abs().max((eye - bounds.min).abs());
     // In powers of two: a walking camera seldom changes them.
     let farthest = farthest.max_element().max(nearest).log2().ceil().exp2();
@@ -263,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn large_scenes_have_more_maps() {
+    fn large_scenes_have_more_cascades() {
         let of = |half, most| count(&square(half), 2048, most);
         assert_eq!([of(20.0, 16_384), of(80.0, 16_384)], [1, 1]);
         assert_eq!([of(200.0, 16_384), of(2000.0, 16_384)], [3, 4]);
@@ -271,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn near_maps_are_finer_and_the_last_is_the_whole() {
+    fn near_cascades_are_finer_and_the_last_is_the_whole() {
         let (sun, bounds) = (Vec3::new(0.5, 0.7, 0.2).normalize(), square(1000.0));
         let view = view(Vec3::new(10.0, 1.7, 0.0));
         let views = SunViews::fit(sun, &bounds, &bounds, &view, 2048, 4);
@@ -284,30 +246,25 @@ mod tests {
     }
 
     #[test]
-    fn maps_that_are_hardly_finer_than_the_next_are_left_out() {
+    fn cascades_that_are_hardly_finer_than_the_next_are_left_out() {
         let (sun, bounds) = (Vec3::new(0.5, 0.7, 0.2).normalize(), square(200.0));
         // From far away all that is seen is about as far.
         let mut view = view(Vec3::new(300.0, 300.0, 400.0));
         view.camera.target = Vec3::ZERO;
         view.camera.fov_deg = 5.0;
-        let mut views = SunViews::fit(sun, &bounds, &bounds, &view, 2048, 3);
+        let views = SunViews::fit(sun, &bounds, &bounds, &view, 2048, 3);
         let mut used = views.reach.iter().take(3).filter(|r| r.is_finite());
         assert!(used.all(|r| *r > 0.0) && views.reach.is_sorted());
         let kept: Vec<f32> = views.iter().map(|v| v.texel).collect();
         assert!(kept.windows(2).all(|t| t[0] < 0.8 * t[1] || t[0] == t[1]));
-        let finer = kept.windows(2).filter(|t| t[0] <= FINER * t[1]).count();
+        let finer = kept
+            .windows(2)
+            .filter(|t| t[0] <= MAX_TEXEL_RATIO * t[1])
+            .count();
         assert_eq!(finer, views.reach.iter().filter(|r| r.is_finite()).count());
-        // Those behind the whole are never looked at, and so never drawn.
-        let cluster = Cluster {
-            first: 0,
-            count: 3,
-            bounds,
-            solid: None,
-            normals_match_winding: false,
-        };
-        views.shade([&cluster], view.camera.eye, 0.0, &Shadows::default());
-        let drawn = views.iter().filter(|v| !v.shade.is_nothing()).count();
-        assert_eq!(drawn, finer + 1, "{kept:?}");
+        // Those after the whole are never looked up.
+        let used = views.looked_up(&bounds, view.camera.eye, 0.0).count();
+        assert_eq!(used, finer + 1, "{kept:?}");
     }
 
     #[test]
@@ -331,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn maps_stay_while_the_camera_takes_a_step() {
+    fn cascades_stay_while_the_camera_takes_a_step() {
         let (sun, bounds) = (Vec3::new(0.5, 0.7, 0.2).normalize(), square(1000.0));
         let fit = |x: f32| {
             let view = view(Vec3::new(x, 1.7, 0.0));

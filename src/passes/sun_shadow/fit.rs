@@ -1,17 +1,16 @@
-//! The sun's orthographic view: fitted to what the camera sees, deep enough for everything that may cast on it.
+//! The orthographic view of a shadow map: fitted to the receivers in view, deep enough for all their casters.
 
 use arrayvec::ArrayVec;
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use crate::scene::Bounds;
 
-use crate::passes::sun_shadow::receiver_mask::Shade;
 use crate::passes::surfaces::culling::Cull;
 use crate::passes::view::View;
 
-/// Share of the extent by which the fit may grow before the map changes its scale: the extent is rounded up to a power of this.
+/// The extent of a map is rounded up to a power of this, so that its scale seldom changes.
 const SCALE_STEP: f32 = 1.25;
-/// Share of the extent in whose steps the map follows the view, at the price of as much margin: between two steps a moving
+/// Step in which the centre follows the view, as a share of the extent; the map has as much margin. Between two steps a moving
 /// camera needs no new map.
 const CENTRE_STEP: f32 = 1.0 / 16.0;
 
@@ -20,31 +19,29 @@ const CENTRE_STEP: f32 = 1.0 / 16.0;
 pub struct ShadowView {
     /// World to the map's clip space: depth 1 nearest the sun, 0 farthest.
     pub shadow_from_world: Mat4,
-    /// Edge of a texel, metres; where the map is warped, at the viewer's end.
+    /// Edge of a texel, metres; of a perspective map at the viewer's end.
     pub texel: f32,
-    /// Depth that the edge of a texel is long.
+    /// The same in units of the map's depth.
     pub texel_depth: f32,
     /// Unit vector toward the light.
     pub toward: Vec3,
-    /// A point that it shows.
+    /// A point within the map.
     pub inside: Vec3,
-    /// What it is to shade, beyond which it needs no casters.
-    pub shade: Shade,
 }
 
 impl ShadowView {
-    /// Takes planes from the world to clip space.
+    /// Takes planes from the world to the map's clip space.
     pub fn planes(&self) -> Mat4 {
         self.shadow_from_world.inverse().transpose()
     }
 
-    /// What it does not see.
+    /// Culls what it does not see.
     pub fn cull(&self) -> Cull {
         Cull::light(self)
     }
 }
 
-/// Right, up and toward-the-sun axes of the map.
+/// Axes of the map in the world: right, up, and toward the light.
 pub(in crate::passes) fn axes(sun_direction: Vec3) -> [Vec3; 3] {
     let hint = if sun_direction.y.abs() > 0.99 {
         Vec3::NEG_Z
@@ -55,16 +52,16 @@ pub(in crate::passes) fn axes(sun_direction: Vec3) -> [Vec3; 3] {
     [right, sun_direction.cross(right), sun_direction]
 }
 
-/// A point in a map's axes.
+/// Coordinates of a point along axes.
 fn along(axes: [Vec3; 3], p: Vec3) -> Vec3 {
     Vec3::from_array(axes.map(|axis| axis.dot(p)))
 }
 
-/// Fits the map of `resolution` texels a side to the part of `bounds` that `view` sees and that may lie in the shadow of
-/// what is within `casters`.
+/// Fits a map of `resolution` texels a side to the receivers: the part of `bounds` that is in view and that something within
+/// `casters` may shadow.
 ///
-/// The centre moves in steps of whole texels and the extent in steps too, so that shadows do not swim under a moving camera
-/// and the map seldom changes. A map as large as the scene stays where it is.
+/// The centre is snapped to whole texels and the extent grows in steps, so that shadows do not swim under a moving camera and
+/// the map seldom changes. A map of the whole scene never moves.
 pub fn fit(
     sun_direction: Vec3,
     bounds: &Bounds,
@@ -75,9 +72,8 @@ pub fn fit(
     let axes = axes(sun_direction);
     let to_light = |p| along(axes, p);
     let casters = Bounds::of(casters.corners().map(to_light));
-    let seen = visible_points(bounds, view);
-    // Sunlight is parallel: nothing beside the casters, seen from the sun, is in their shadow.
-    let receivers = Bounds::of(seen.into_iter().map(to_light));
+    let receivers = Bounds::of(visible_points(bounds, view).into_iter().map(to_light));
+    // Sunlight is parallel: what lies beside the casters, as the sun sees it, is not in their shadow.
     let receivers = Bounds {
         min: receivers
             .min
@@ -115,7 +111,7 @@ pub fn fit(
     square(axes, &casters, centre, side, step, resolution)
 }
 
-/// The map that shows all of `casters`, whatever the view.
+/// The map of all of `casters`, whatever the view.
 pub fn fit_all(direction: Vec3, casters: &Bounds, resolution: u32) -> ShadowView {
     let axes = axes(direction);
     let casters = Bounds::of(casters.corners().map(|p| along(axes, p)));
@@ -124,7 +120,7 @@ pub fn fit_all(direction: Vec3, casters: &Bounds, resolution: u32) -> ShadowView
     square(axes, &casters, centre, side, 1.0, resolution)
 }
 
-/// A square map around a centre that is rounded to steps of so many texels, deep enough for `casters` (in the axes).
+/// A square map deep enough for `casters` (in the axes), its centre snapped to steps of so many texels.
 fn square(
     axes: [Vec3; 3],
     casters: &Bounds,
@@ -145,11 +141,10 @@ fn square(
         texel_depth: texel / depth_range(casters).1,
         toward,
         inside: right * centre.x + up * centre.y + toward * casters.centre().z,
-        shade: Shade::ALL,
     }
 }
 
-/// Far end and depth of a map, metres along the axis toward the light, `casters` being in the light's axes.
+/// Far end and depth of a map of `casters` (in the light's axes), metres along the axis toward the light.
 pub(in crate::passes) fn depth_range(casters: &Bounds) -> (f32, f32) {
     let deep = (casters.max.z - casters.min.z).max(1e-3);
     // A little slack keeps the nearest and farthest casters inside the clip volume.
@@ -183,14 +178,14 @@ impl Plane {
     }
 }
 
-/// The corners of the view's pyramid cut with the box: the receivers' hull.
+/// Corners of the hull of the receivers: the view's pyramid cut with the box.
 pub(in crate::passes) fn visible_points(bounds: &Bounds, view: &View) -> Hull {
     let frustum = frustum(view);
     let mut points = Hull::new();
     for face in box_faces(bounds) {
         points.extend(clip(&face, &frustum));
     }
-    // Where the pyramid's own edges end inside the box.
+    // Corners of the pyramid inside the box.
     let sides = box_planes(bounds);
     for face in pyramid_faces(bounds, view) {
         points.extend(clip(&face, &sides));
@@ -198,10 +193,10 @@ pub(in crate::passes) fn visible_points(bounds: &Bounds, view: &View) -> Hull {
     points
 }
 
-/// Corners of a convex polygon: a plane adds one at most, and no more than four and six planes cut triangles and squares.
+/// Corners of a convex polygon. A plane adds one at most: four planes cut squares, six cut triangles.
 type Polygon = ArrayVec<Vec3, 10>;
 
-/// Corners of the polygons of six faces of a box and four of a pyramid.
+/// Corners of the clipped faces, six of a box and four of a pyramid.
 pub(in crate::passes) type Hull = ArrayVec<Vec3, 100>;
 
 /// Cuts a convex polygon with half-spaces (Sutherland and Hodgman 1974).
@@ -226,7 +221,7 @@ fn clip(corners: &[Vec3], planes: &[Plane]) -> Polygon {
 
 /// Directions of the pyramid's four edges, in order around it.
 fn edges(view: &View) -> [Vec3; 4] {
-    // Parts of a picture share their maps.
+    // Tiles share the maps of the whole picture.
     let block = view.whole().block();
     [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
         .map(|(x, y)| block.world_from_view * (Vec2::new(x, y) * block.ray_scale).extend(-1.0))

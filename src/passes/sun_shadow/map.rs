@@ -1,8 +1,8 @@
-//! The shadow map: depth of the scene seen from the sun.
+//! The sun's shadow map: depth of the scene seen from the sun, fitted to what the camera sees, and reused while it serves.
 
 use std::sync::Arc;
 
-use glam::UVec2;
+use glam::{UVec2, Vec2, Vec3};
 
 use crate::gpu::{
     Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
@@ -10,9 +10,13 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
-use crate::passes::sun_shadow::cascades::{MOST, SunViews};
-use crate::passes::sun_shadow::fit::ShadowView;
+use crate::passes::sun_shadow::cascades::{MAX_CASCADES, Shadows, SunViews};
+use crate::passes::sun_shadow::fit::{ShadowView, fit_all};
+use crate::passes::sun_shadow::perspective::{self, Receivers};
+use crate::passes::sun_shadow::receiver_mask::{ReceiverMask, reuse_distance};
+use crate::passes::surfaces::culling::Cull;
 use crate::passes::surfaces::geometry::Geometry;
+use crate::passes::view::View;
 
 gpu_struct! {
     /// The sun's view.
@@ -22,28 +26,30 @@ gpu_struct! {
 }
 
 gpu_struct! {
-    /// The sun's view, and where a surface has holes.
+    /// The sun's view, and the alpha below which a surface has a hole.
     pub struct CutOutPush: push of SHADOW_CUT_OUT_VERT, SHADOW_CUT_OUT_FRAG {
         shadow_from_world: [[f32; 4]; 4],
         cutoff: f32,
     }
 }
 
-/// Slopes of depth, in texels, by which casters are pushed away from the sun.
+/// Slope-scaled depth bias of casters, texels.
 const SLOPE_BIAS: f32 = 1.5;
 
-/// Draws what casts shadows into maps.
+/// Draws casters into maps.
 pub(in crate::passes) struct Casters {
     solid: Pipeline,
     /// For surfaces with holes, if there are any.
     cut_outs: Option<Pipeline>,
 }
 
-/// A map in an image of maps.
-#[derive(Debug, Clone, Copy)]
+/// A map in an atlas of maps.
+#[derive(Debug, Clone)]
 pub(in crate::passes) struct Tile {
     /// What it shows.
     pub view: ShadowView,
+    /// The receivers that are looked up in it; anything in the map without one.
+    pub mask: Option<Arc<ReceiverMask>>,
     /// Its first texel.
     pub origin: [u32; 2],
     /// Texels of its edge.
@@ -51,19 +57,24 @@ pub(in crate::passes) struct Tile {
 }
 
 impl Tile {
-    /// First texel and size of what is ever looked up in it.
-    fn part(&self) -> ([u32; 2], [u32; 2]) {
-        let corners = self.view.shade.part();
+    /// First texel and size of the rectangle that is looked up.
+    fn rectangle(&self) -> ([u32; 2], [u32; 2]) {
+        let whole = [Vec2::ZERO, Vec2::ONE];
+        let corners = self.mask.as_ref().map_or(whole, |mask| mask.rectangle());
         let [low, high] = corners.map(|corner| corner * self.edge as f32);
         let first = low.floor().as_uvec2().min(UVec2::splat(self.edge - 1));
         let end = high.ceil().as_uvec2().max(first + 1);
         let origin = UVec2::from(self.origin);
         ((origin + first).to_array(), (end - first).to_array())
     }
+
+    fn cull(&self) -> Cull {
+        self.view.cull().masked(self.mask.clone())
+    }
 }
 
 impl Casters {
-    /// With casters pushed away from the light by so many slopes of depth.
+    /// With a slope-scaled depth bias, texels.
     pub fn new(context: &Arc<Context>, geometry: &Geometry, slope_bias: f32) -> Result<Self> {
         let has_holes = geometry.kinds().any(|kind| kind.cut_out);
         Ok(Self {
@@ -74,7 +85,7 @@ impl Casters {
         })
     }
 
-    /// Draws maps of an image. What lies beside the rectangle around what is looked up in them is not even cleared.
+    /// Draws maps of an atlas. What lies beside the rectangle around all that is looked up is not even cleared.
     pub fn record(
         &self,
         recorder: &mut Recorder,
@@ -90,11 +101,11 @@ impl Casters {
             .within(first, size)
             .draws(|draws| {
                 for tile in tiles {
-                    draws.window(tile.origin, [tile.edge; 2], tile.part());
+                    draws.window(tile.origin, [tile.edge; 2], tile.rectangle());
                     draws.push(&Push {
                         shadow_from_world: tile.view.shadow_from_world.to_cols_array_2d(),
                     });
-                    geometry.draw_positions(draws, &tile.view.cull());
+                    geometry.draw_positions(draws, &tile.cull());
                 }
             });
         if let Some(pipeline) = &self.cut_outs {
@@ -103,11 +114,11 @@ impl Casters {
     }
 }
 
-/// First texel and size of the rectangle around the parts of tiles.
+/// First texel and size of the rectangle around those of tiles.
 fn around(tiles: &[Tile]) -> ([u32; 2], [u32; 2]) {
-    let parts = tiles.iter().map(Tile::part);
-    let ends =
-        parts.map(|(first, size)| (UVec2::from(first), UVec2::from(first) + UVec2::from(size)));
+    let rectangles = tiles.iter().map(Tile::rectangle);
+    let ends = rectangles
+        .map(|(first, size)| (UVec2::from(first), UVec2::from(first) + UVec2::from(size)));
     let both = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
     let (first, end) = both.unwrap_or_default();
     (first.to_array(), (end - first).to_array())
@@ -125,8 +136,8 @@ fn record_cut_outs(
         .depth(maps, Load::Keep)
         .draws(|draws| {
             for tile in tiles {
-                draws.window(tile.origin, [tile.edge; 2], tile.part());
-                geometry.draw_cut_outs(draws, &tile.view.cull(), |draws, bound| {
+                draws.window(tile.origin, [tile.edge; 2], tile.rectangle());
+                geometry.draw_cut_outs(draws, &tile.cull(), |draws, bound| {
                     let map = bound.diffuse_map.unwrap_or(bound.white);
                     draws.texture("diffuse_map", map, Sampler::Repeat);
                     draws.push(&CutOutPush {
@@ -158,144 +169,193 @@ fn pipeline(context: &Arc<Context>, name: &str, slope_bias: f32, holes: bool) ->
     )
 }
 
-/// The pass and its map.
+/// How the map is fitted.
+#[derive(Debug, Clone, Copy)]
+enum Fit {
+    /// Cascades that follow the view in steps ([`SunViews::fit`]), each drawn for the receivers in view.
+    Cascades(Shadows),
+    /// One map warped toward the viewer ([`perspective::fit`]): another one for each frame of an average.
+    Perspective,
+}
+
+/// The pass and its map: cascades side by side.
 pub struct Shadow {
+    fit: Fit,
     casters: Casters,
     depth: Image,
-    drawn: Option<SunViews>,
+    views: SunViews,
+    masks: [Arc<ReceiverMask>; MAX_CASCADES],
+    /// Whether the map shows these views, for these receivers.
+    is_drawn: bool,
 }
 
 impl Shadow {
-    /// A map of `resolution` texels a side, and what drawing `geometry` takes.
+    /// Cascades of `resolution` texels a side for single frames.
     ///
     /// # Errors
-    /// When the device refuses.
-    pub fn new(context: &Arc<Context>, geometry: &Geometry, resolution: u32) -> Result<Self> {
-        Self::with(context, geometry, resolution, 1, SLOPE_BIAS)
-    }
-
-    /// `count` maps side by side.
-    ///
-    /// # Errors
-    /// When the device refuses.
-    pub fn cascaded(
+    /// When the device has no memory left.
+    pub fn cascades(
         context: &Arc<Context>,
         geometry: &Geometry,
         resolution: u32,
-        count: u32,
+        shadows: Shadows,
     ) -> Result<Self> {
-        Self::with(context, geometry, resolution, count, SLOPE_BIAS)
+        let size = [resolution * shadows.cascades.max(1), resolution];
+        let fit = Fit::Cascades(shadows);
+        Self::new(context, geometry, size, fit, SLOPE_BIAS)
     }
 
-    /// The same for comparisons in the plane of the receiver, which need no bias of casters.
+    /// One map of `resolution` texels a side for frames that are averaged. It is compared in the plane of the receiver, which
+    /// needs no bias of casters.
     ///
     /// # Errors
-    /// When the device refuses.
-    pub fn unbiased(context: &Arc<Context>, geometry: &Geometry, resolution: u32) -> Result<Self> {
-        Self::with(context, geometry, resolution, 1, 0.0)
-    }
-
-    fn with(
+    /// When the device has no memory left.
+    pub fn perspective(
         context: &Arc<Context>,
         geometry: &Geometry,
         resolution: u32,
-        count: u32,
+    ) -> Result<Self> {
+        let size = [resolution; 2];
+        Self::new(context, geometry, size, Fit::Perspective, 0.0)
+    }
+
+    fn new(
+        context: &Arc<Context>,
+        geometry: &Geometry,
+        size: [u32; 2],
+        fit: Fit,
         slope_bias: f32,
     ) -> Result<Self> {
-        let size = [resolution * count.max(1), resolution];
         let desc = ImageDesc::flat("shadow map", Format::D32_SFLOAT, size);
+        let all = fit_all(Vec3::Y, geometry.casters(), size[1]);
         Ok(Self {
+            fit,
             casters: Casters::new(context, geometry, slope_bias)?,
             depth: Image::new(context, &desc)?,
-            drawn: None,
+            views: SunViews::one(all),
+            masks: std::array::from_fn(|_| Arc::default()),
+            is_drawn: false,
         })
     }
 
-    /// Texels a side.
-    pub fn resolution(&self) -> u32 {
-        self.depth.size()[1]
+    /// Fits the map to a view. `sun` is the unit vector toward the sun, `shift` (0..1) moves the texels of a map that is one of
+    /// many. The map that is drawn is kept if it is the same and covers every receiver in view.
+    pub fn fit(&mut self, geometry: &Geometry, view: &View, sun: Vec3, shift: Vec2) {
+        let (bounds, resolution) = (geometry.bounds(), self.depth.size()[1]);
+        let views = match self.fit {
+            Fit::Cascades(Shadows { cascades, .. }) => {
+                let casters = geometry.casters();
+                SunViews::fit(sun, bounds, casters, view, resolution, cascades)
+            }
+            Fit::Perspective => {
+                let receivers = Receivers::new(bounds, view);
+                SunViews::one(perspective::fit(sun, bounds, &receivers, resolution, shift))
+            }
+        };
+        let is_same = self.is_drawn && views.are_those_of(&self.views);
+        self.views = views;
+        self.is_drawn = match self.fit {
+            Fit::Cascades(shadows) => {
+                let radius = shadows.filter_radius();
+                let is_kept = is_same && self.reuse_if_covered(geometry, view, radius);
+                if !is_kept {
+                    self.mask(geometry, view, radius);
+                }
+                is_kept
+            }
+            Fit::Perspective => is_same,
+        };
     }
 
-    /// What the maps were drawn for.
-    pub fn drawn(&self) -> Option<&SunViews> {
-        self.drawn.as_ref()
+    /// Whether the map that is drawn has the casters of every receiver in view; `radius` is that of lookups, texels.
+    fn reuse_if_covered(&self, geometry: &Geometry, view: &View, radius: f32) -> bool {
+        geometry.seen(view).all(|cluster| {
+            let receivers = &cluster.bounds;
+            let mut cascades = self.views.looked_up(receivers, view.camera.eye, 0.0);
+            cascades.all(|k| self.masks[k].covers(receivers, radius * self.views.texel(k)))
+        })
     }
 
-    /// Whether the maps of these views must be drawn anew.
-    pub fn is_stale(&self, views: &SunViews) -> bool {
-        !self
-            .drawn()
-            .is_some_and(|drawn| drawn.iter().eq(views.iter()))
+    /// Masks the cascades by the receivers in view, and by those that come into view while the eye moves a little.
+    fn mask(&mut self, geometry: &Geometry, view: &View, radius: f32) {
+        let (eye, slack) = (
+            view.camera.eye,
+            reuse_distance(geometry.bounds(), view.camera.eye),
+        );
+        // Nothing else holds a mask between frames: this makes no copy.
+        let mut masks = self.masks.each_mut().map(Arc::make_mut);
+        for (mask, map) in masks.iter_mut().zip(self.views.iter()) {
+            mask.reset(map);
+        }
+        for cluster in geometry.around(&view.from_behind(slack)) {
+            let receivers = &cluster.bounds;
+            for k in self.views.looked_up(receivers, eye, slack) {
+                masks[k].add(receivers, radius * self.views.texel(k));
+            }
+        }
     }
 
-    /// Draws the map if the sun or the fit changed.
-    pub fn record(
-        &mut self,
-        recorder: &mut Recorder,
-        geometry: &Geometry,
-        views: &SunViews,
-    ) -> &Image {
-        if self.is_stale(views) {
-            let edge = self.resolution();
-            let origins = (0..).map(|k| [k * edge, 0]);
-            let tile = |(view, origin): (&ShadowView, _)| Tile {
+    /// The map, if [`Self::record`] will draw it.
+    pub fn target(&self) -> Option<&Image> {
+        (!self.is_drawn).then_some(&self.depth)
+    }
+
+    /// Draws the map if it is not the one that was fitted last; gives it with its views.
+    pub fn record(&mut self, recorder: &mut Recorder, geometry: &Geometry) -> (&SunViews, &Image) {
+        if !std::mem::replace(&mut self.is_drawn, true) {
+            let edge = self.depth.size()[1];
+            let is_masked = matches!(self.fit, Fit::Cascades(_));
+            let tile = |((view, mask), k): ((&ShadowView, &Arc<ReceiverMask>), u32)| Tile {
                 view: *view,
-                origin,
+                mask: is_masked.then(|| mask.clone()),
+                origin: [k * edge, 0],
                 edge,
             };
-            let mut tiles: arrayvec::ArrayVec<Tile, MOST> =
-                views.iter().zip(origins).map(tile).collect();
-            // Cascades in which nothing is in view cost no more than their place; the first stands in when that is all of them.
-            let first = tiles.first().copied();
-            tiles.retain(|tile| !tile.view.shade.is_nothing());
+            let views = self.views.iter().zip(&self.masks);
+            let mut tiles: arrayvec::ArrayVec<Tile, MAX_CASCADES> =
+                views.zip(0..).map(tile).collect();
+            // Cascades without a receiver in view are left out; the first stands in when all are.
+            let first = tiles.first().cloned();
+            tiles.retain(|tile| tile.mask.as_ref().is_none_or(|mask| !mask.is_empty()));
             if tiles.is_empty() {
                 tiles.extend(first);
             }
             self.casters
                 .record(recorder, "shadow map", geometry, &tiles, &self.depth);
-            self.drawn = Some(*views);
         }
-        &self.depth
+        (&self.views, &self.depth)
     }
 
-    /// The map as it was last drawn.
-    pub fn image(&self) -> &Image {
-        &self.depth
-    }
-
-    /// Forgets what was drawn, so that the next frame draws it again.
+    /// Forgets what was drawn: the next frame draws it again.
     pub fn invalidate(&mut self) {
-        self.drawn = None;
+        self.is_drawn = false;
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::{Vec2, Vec3};
-
     use super::*;
-    use crate::passes::sun_shadow::fit;
-    use crate::passes::sun_shadow::receiver_mask::Shade;
     use crate::scene::Bounds;
 
     #[test]
-    fn what_is_looked_up_in_a_tile_lies_in_its_part() {
+    fn what_is_looked_up_in_a_tile_lies_in_its_rectangle() {
         let toward = Vec3::new(0.4, 0.5, 0.3).normalize();
         let of = |half: f32| Bounds {
             min: Vec3::new(-half, 0.0, -half),
             max: Vec3::new(half, 1.0, half),
         };
-        let mut view = fit::fit_all(toward, &of(50.0), 256);
-        let tile = |view| Tile {
+        let view = fit_all(toward, &of(50.0), 256);
+        let mut mask = ReceiverMask::new(&view);
+        let tile = |mask: Option<&ReceiverMask>| Tile {
             view,
+            mask: mask.map(|mask| Arc::new(mask.clone())),
             origin: [256, 512],
             edge: 256,
         };
-        assert_eq!(tile(view).part(), ([256, 512], [256; 2]), "all of it");
-        view.shade = Shade::none(toward, &view.shadow_from_world);
-        assert_eq!(tile(view).part().1, [256; 2], "nothing is known");
-        view.shade.add(&of(10.0), 0.0);
-        let (first, size) = tile(view).part();
+        assert_eq!(tile(None).rectangle(), ([256, 512], [256; 2]), "no mask");
+        assert_eq!(tile(Some(&mask)).rectangle().1, [256; 2], "no receiver");
+        mask.add(&of(10.0), 0.0);
+        let (first, size) = tile(Some(&mask)).rectangle();
         assert!(size.iter().all(|edge| *edge < 80), "{size:?}");
         for corner in of(10.0).corners() {
             let at = view.shadow_from_world.project_point3(corner).truncate();

@@ -1,5 +1,5 @@
-//! Which casters a map of the sun needs: those that can shade what the camera sees in it. Where nothing is seen, as the sun sees
-//! it, and behind all that is seen there, a caster shades nothing that is in the picture.
+//! Shadow caster culling by receiver masks (Bittner, Mattausch, Silvennoinen & Wimmer 2011, "Shadow caster culling for efficient
+//! shadow mapping"): a caster is drawn only where a receiver in view lies behind it, as the light sees it.
 
 use std::ops::RangeInclusive;
 
@@ -7,94 +7,102 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use crate::scene::{Bounds, Cluster};
 
-use crate::passes::sun_shadow::fit::axes;
+use crate::passes::sun_shadow::fit::ShadowView;
 
 /// Cells along an edge of a map.
 const CELLS: usize = 128;
-/// Cells along an edge of the squares in which the farthest depth is kept.
-const SQUARE: usize = 4;
-/// Squares along an edge of a map.
-const SQUARES: usize = CELLS / SQUARE;
-/// Share of the distance to the end of the scene that the eye may go while a map stays.
-const ROOM: f32 = 1.0 / 24.0;
+/// Cells along an edge of the blocks in which the farthest depth is kept.
+const BLOCK: usize = 4;
+/// Blocks along an edge of a map.
+const BLOCKS: usize = CELLS / BLOCK;
+/// Share of the distance to the far end of the scene that the eye may move while a map is reused.
+const REUSE_SHARE: f32 = 1.0 / 24.0;
 
-/// How far the eye may go before what is seen of a scene within `bounds` needs another map, metres.
-pub fn room(bounds: &Bounds, eye: Vec3) -> f32 {
+/// How far the eye may move before a map that was drawn for the receivers in view is drawn anew, metres.
+pub fn reuse_distance(bounds: &Bounds, eye: Vec3) -> f32 {
     let corners = bounds.corners().map(|corner| corner.distance(eye));
-    ROOM * corners.into_iter().fold(0.0, f32::max)
+    REUSE_SHARE * corners.into_iter().fold(0.0, f32::max)
 }
 
-/// What is shaded: the cells of a map in which something is seen, and how far from the light the farthest of it lies (after the
-/// receivers' mask of Bittner, Mattausch, Silvennoinen & Wimmer 2011, "Shadow caster culling for efficient shadow mapping").
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shade {
+/// The cells of a map in which receivers are seen, and how far from the light the farthest of them lies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReceiverMask {
     /// From the world to cells from the map's corner, to the right and up, and to metres toward the light; the fourth row is
-    /// zero. All of it is where all is shaded.
+    /// zero.
     cells_from_world: Mat4,
-    /// What a metre in any direction is there.
+    /// A metre in any direction there.
     metre: Vec4,
     /// Rows of cells, a bit for each.
     rows: [u128; CELLS],
-    /// Lowest coordinate toward the light in each square, metres; infinity where nothing is shaded.
-    farthest: [[f32; SQUARES]; SQUARES],
+    /// Lowest coordinate toward the light in each block, metres; infinity without a receiver.
+    farthest: [[f32; BLOCKS]; BLOCKS],
 }
 
-/// What lies under a box.
-struct Under {
+/// The cells that a box covers, as the light sees it.
+struct Footprint {
     rows: RangeInclusive<usize>,
     /// Its columns, a bit for each.
     columns: u128,
-    /// Columns of squares.
-    squares: RangeInclusive<usize>,
+    /// Columns of blocks.
+    blocks: RangeInclusive<usize>,
     /// Lowest and highest coordinate toward the light, metres.
     toward: [f32; 2],
 }
 
-impl Under {
-    fn rows_of_squares(&self) -> RangeInclusive<usize> {
-        self.rows.start() / SQUARE..=self.rows.end() / SQUARE
+impl Footprint {
+    fn rows_of_blocks(&self) -> RangeInclusive<usize> {
+        self.rows.start() / BLOCK..=self.rows.end() / BLOCK
     }
 }
 
-impl Shade {
-    /// Everything.
-    pub const ALL: Self = Self {
-        cells_from_world: Mat4::ZERO,
-        metre: Vec4::ZERO,
-        rows: [u128::MAX; CELLS],
-        farthest: [[f32::NEG_INFINITY; SQUARES]; SQUARES],
-    };
-
-    /// Nothing yet, of a square map along the axes of [`fit`](super::fit), without perspective, of a light in the direction `toward`.
-    pub fn none(toward: Vec3, shadow_from_world: &Mat4) -> Self {
-        let half = 0.5 * CELLS as f32;
-        let scale = half * shadow_from_world.row(0).truncate().length();
-        let origin = half * (shadow_from_world.w_axis.truncate().truncate() + 1.0);
-        let [right, up, toward] = axes(toward);
-        let rows = [
-            (scale * right).extend(origin.x),
-            (scale * up).extend(origin.y),
-            toward.extend(0.0),
-            Vec4::ZERO,
-        ];
+impl Default for ReceiverMask {
+    /// Without a receiver, of no map.
+    fn default() -> Self {
         Self {
-            cells_from_world: Mat4::from_cols_array_2d(&rows.map(Vec4::into)).transpose(),
-            metre: Vec4::new(scale, scale, 1.0, 0.0),
+            cells_from_world: Mat4::ZERO,
+            metre: Vec4::ZERO,
             rows: [0; CELLS],
-            farthest: [[f32::INFINITY; SQUARES]; SQUARES],
+            farthest: [[f32::INFINITY; BLOCKS]; BLOCKS],
         }
     }
+}
 
-    /// Whether it is nothing.
-    pub fn is_nothing(&self) -> bool {
+impl ReceiverMask {
+    /// Without a receiver, of an orthographic map.
+    pub fn new(map: &ShadowView) -> Self {
+        let mut mask = Self::default();
+        mask.reset(map);
+        mask
+    }
+
+    /// Forgets all receivers, and takes up another map.
+    pub fn reset(&mut self, map: &ShadowView) {
+        let half = 0.5 * CELLS as f32;
+        let axes = [0, 1].map(|i| map.shadow_from_world.row(i).truncate());
+        let scale = half * axes[0].length();
+        let origin = half * (map.shadow_from_world.w_axis.truncate().truncate() + 1.0);
+        let rows = [
+            (half * axes[0]).extend(origin.x),
+            (half * axes[1]).extend(origin.y),
+            map.toward.extend(0.0),
+            Vec4::ZERO,
+        ];
+        self.cells_from_world = Mat4::from_cols_array_2d(&rows.map(Vec4::into)).transpose();
+        self.metre = Vec4::new(scale, scale, 1.0, 0.0);
+        self.rows = [0; CELLS];
+        self.farthest = [[f32::INFINITY; BLOCKS]; BLOCKS];
+    }
+
+    /// Whether it has no receiver.
+    pub fn is_empty(&self) -> bool {
         self.rows.iter().all(|row| *row == 0)
     }
 
-    /// What is covered by a box that is so many metres larger on all sides, if it does not lie beside the map.
-    fn under(&self, bounds: &Bounds, reach: f32) -> Option<Under> {
+    /// What a box covers that is `margin` metres larger on all sides; nothing beside the map.
+    fn footprint(&self, bounds: &Bounds, margin: f32) -> Option<Footprint> {
         let half = 0.5 * bounds.extent();
         let at = self.cells_from_world * bounds.centre().extend(1.0);
-        let size = self.cells_from_world.abs() * half.extend(0.0) + self.metre * reach;
+        let size = self.cells_from_world.abs() * half.extend(0.0) + self.metre * margin;
         let (low, high) = (at - size, at + size);
         let [first, last] = [low, high].map(|corner| corner.truncate().truncate());
         if last.cmplt(Vec2::ZERO).any() || first.cmpge(Vec2::splat(CELLS as f32)).any() {
@@ -102,49 +110,48 @@ impl Shade {
         }
         let most = Vec2::splat((CELLS - 1) as f32);
         let [first, last] = [first, last].map(|c| c.clamp(Vec2::ZERO, most).as_uvec2());
-        let squares = first.x as usize / SQUARE..=last.x as usize / SQUARE;
-        Some(Under {
+        let blocks = first.x as usize / BLOCK..=last.x as usize / BLOCK;
+        Some(Footprint {
             rows: first.y as usize..=last.y as usize,
             columns: (u128::MAX >> (CELLS as u32 - 1 - (last.x - first.x))) << first.x,
-            squares,
+            blocks,
             toward: [low.z, high.z],
         })
     }
 
-    /// Takes in a box; lookups reach so many metres farther.
-    pub fn add(&mut self, bounds: &Bounds, reach: f32) {
-        let Some(under) = self.under(bounds, reach) else {
+    /// Adds receivers in a box, around which lookups reach `radius` metres.
+    pub fn add(&mut self, receivers: &Bounds, radius: f32) {
+        let Some(footprint) = self.footprint(receivers, radius) else {
             return;
         };
-        let squares = under.rows_of_squares();
-        for row in &mut self.rows[under.rows] {
-            *row |= under.columns;
+        let blocks = footprint.rows_of_blocks();
+        for row in &mut self.rows[footprint.rows] {
+            *row |= footprint.columns;
         }
-        for row in &mut self.farthest[squares] {
-            for farthest in &mut row[under.squares.clone()] {
-                *farthest = farthest.min(under.toward[0]);
+        for row in &mut self.farthest[blocks] {
+            for farthest in &mut row[footprint.blocks.clone()] {
+                *farthest = farthest.min(footprint.toward[0]);
             }
         }
     }
 
-    /// Whether something of a cluster may stand between what is shaded and the light.
-    pub fn may_be_shaded_by(&self, cluster: &Cluster) -> bool {
-        let Some(under) = self.under(&cluster.bounds, 0.0) else {
+    /// Whether something of a cluster may stand between a receiver and the light.
+    pub fn is_shadowed_by(&self, caster: &Cluster) -> bool {
+        let Some(footprint) = self.footprint(&caster.bounds, 0.0) else {
             return false;
         };
-        let square = u128::MAX >> (CELLS - SQUARE);
-        // However near the light: it shades what is behind.
-        let is_before = |y: usize, x: usize| self.farthest[y / SQUARE][x] <= under.toward[1];
-        under.rows.clone().any(|y| {
-            let covered = self.rows[y] & under.columns;
-            let mut squares = under.squares.clone();
-            covered != 0
-                && squares.any(|x| covered & square << (SQUARE * x) != 0 && is_before(y, x))
+        let block = u128::MAX >> (CELLS - BLOCK);
+        // However near the light: the caster shadows what is behind it.
+        let is_before = |y: usize, x: usize| self.farthest[y / BLOCK][x] <= footprint.toward[1];
+        footprint.rows.clone().any(|y| {
+            let covered = self.rows[y] & footprint.columns;
+            let mut blocks = footprint.blocks.clone();
+            covered != 0 && blocks.any(|x| covered & block << (BLOCK * x) != 0 && is_before(y, x))
         })
     }
 
-    /// The first and the last corner of what is shaded, each 0 to 1 over the map: all of it where nothing is.
-    pub fn part(&self) -> [Vec2; 2] {
+    /// First and last corner of the rectangle around all receivers, each 0 to 1 over the map; the whole map without one.
+    pub fn rectangle(&self) -> [Vec2; 2] {
         let columns = self.rows.iter().fold(0, |all, row| all | row);
         let first = self.rows.iter().position(|row| *row != 0);
         let last = self.rows.iter().rposition(|row| *row != 0);
@@ -158,13 +165,14 @@ impl Shade {
         ]
     }
 
-    /// Whether a box, of which lookups reach so many metres farther, is within it already: taking it in would change nothing.
-    pub fn holds(&self, bounds: &Bounds, reach: f32) -> bool {
-        self.under(bounds, reach).is_none_or(|under| {
-            let mut rows = self.rows[under.rows.clone()].iter();
-            let squares = self.farthest[under.rows_of_squares()].iter();
-            let mut depths = squares.flat_map(|row| &row[under.squares.clone()]);
-            rows.all(|row| under.columns & !row == 0) && depths.all(|z| *z <= under.toward[0])
+    /// Whether receivers in a box, around which lookups reach `radius` metres, are in it already: adding them would change nothing.
+    pub fn covers(&self, receivers: &Bounds, radius: f32) -> bool {
+        self.footprint(receivers, radius).is_none_or(|footprint| {
+            let mut rows = self.rows[footprint.rows.clone()].iter();
+            let blocks = self.farthest[footprint.rows_of_blocks()].iter();
+            let mut depths = blocks.flat_map(|row| &row[footprint.blocks.clone()]);
+            rows.all(|row| footprint.columns & !row == 0)
+                && depths.all(|z| *z <= footprint.toward[0])
         })
     }
 }
@@ -172,7 +180,7 @@ impl Shade {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::passes::sun_shadow::fit;
+    use crate::passes::sun_shadow::fit::{self, axes};
 
     const TOWARD: Vec3 = Vec3::new(0.6, 0.8, 0.0);
 
@@ -193,87 +201,85 @@ mod tests {
         }
     }
 
-    /// Of a map of about 50 m.
-    fn nothing() -> Shade {
+    /// A map of about 50 m.
+    fn map() -> ShadowView {
         let casters = Bounds {
             min: Vec3::splat(-16.0),
             max: Vec3::splat(16.0),
         };
         let map = fit::fit_all(TOWARD, &casters, 1024);
         assert!((30.0..90.0).contains(&(map.texel * 1024.0)), "{map:?}");
-        Shade::none(TOWARD, &map.shadow_from_world)
+        map
+    }
+
+    fn empty() -> ReceiverMask {
+        ReceiverMask::new(&map())
     }
 
     #[test]
-    fn what_stands_toward_the_light_shades_and_what_stands_beside_or_behind_does_not() {
+    fn what_stands_toward_the_light_casts_and_what_stands_beside_or_behind_does_not() {
         let [right, up, _] = axes(TOWARD);
-        let mut shade = nothing();
-        assert!(
-            !shade.may_be_shaded_by(&at(Vec3::ZERO)),
-            "nothing is shaded"
-        );
-        assert!(shade.is_nothing());
-        assert_eq!(shade.part(), [Vec2::ZERO, Vec2::ONE]);
-        shade.add(&around(Vec3::ZERO), 0.0);
-        assert!(!shade.is_nothing() && !Shade::ALL.is_nothing());
-        let [low, high] = shade.part();
+        let mut mask = empty();
+        assert!(!mask.is_shadowed_by(&at(Vec3::ZERO)), "no receiver");
+        assert!(mask.is_empty());
+        assert_eq!(mask.rectangle(), [Vec2::ZERO, Vec2::ONE]);
+        mask.add(&around(Vec3::ZERO), 0.0);
+        assert!(!mask.is_empty());
+        let [low, high] = mask.rectangle();
         assert!(low.cmplt(Vec2::splat(0.5)).all() && high.cmpgt(Vec2::splat(0.5)).all());
         assert!((high - low).max_element() < 0.2, "{low} {high}");
         for distance in [0.0, 5.0, 1e4] {
-            assert!(shade.may_be_shaded_by(&at(TOWARD * distance)), "{distance}");
+            assert!(mask.is_shadowed_by(&at(TOWARD * distance)), "{distance}");
         }
-        assert!(!shade.may_be_shaded_by(&at(-TOWARD * 3.0)));
+        assert!(!mask.is_shadowed_by(&at(-TOWARD * 3.0)));
         for beside in [right, -right, up, -up] {
-            assert!(!shade.may_be_shaded_by(&at(TOWARD * 20.0 + beside * 6.0)));
-            assert!(!shade.may_be_shaded_by(&at(beside * 1e3)), "beside the map");
+            assert!(!mask.is_shadowed_by(&at(TOWARD * 20.0 + beside * 6.0)));
+            assert!(!mask.is_shadowed_by(&at(beside * 1e3)), "beside the map");
         }
-        assert!(Shade::ALL.may_be_shaded_by(&at(-TOWARD * 3e3)));
     }
 
     #[test]
-    fn between_what_is_seen_nothing_is_shaded() {
+    fn between_receivers_nothing_is_shadowed() {
         let [right, ..] = axes(TOWARD);
-        let mut shade = nothing();
+        let mut mask = empty();
         for side in [-10.0, 10.0] {
-            shade.add(&around(right * side), 0.0);
+            mask.add(&around(right * side), 0.0);
         }
-        assert!(!shade.may_be_shaded_by(&at(TOWARD)));
-        assert!(shade.may_be_shaded_by(&at(TOWARD + right * 10.0)));
+        assert!(!mask.is_shadowed_by(&at(TOWARD)));
+        assert!(mask.is_shadowed_by(&at(TOWARD + right * 10.0)));
         // What is beside the map is not looked up in it.
-        let before = shade;
-        shade.add(&around(right * 500.0), 0.0);
-        assert_eq!(shade, before);
+        let before = mask.clone();
+        mask.add(&around(right * 500.0), 0.0);
+        assert_eq!(mask, before);
+        // Another map begins anew.
+        mask.reset(&map());
+        assert_eq!(mask, empty());
     }
 
     #[test]
-    fn lookups_reach_farther_than_what_is_seen() {
+    fn lookups_reach_beyond_their_receivers() {
         let [right, ..] = axes(TOWARD);
-        let mut shade = nothing();
-        shade.add(&around(Vec3::ZERO), 6.0);
-        assert!(shade.may_be_shaded_by(&at(TOWARD + right * 5.0)));
-        assert!(shade.may_be_shaded_by(&at(-TOWARD * 5.0)));
+        let mut mask = empty();
+        mask.add(&around(Vec3::ZERO), 6.0);
+        assert!(mask.is_shadowed_by(&at(TOWARD + right * 5.0)));
+        assert!(mask.is_shadowed_by(&at(-TOWARD * 5.0)));
     }
 
     #[test]
-    fn what_is_drawn_with_room_holds_what_is_seen_after_a_step() {
-        let mut drawn = nothing();
+    fn a_mask_covers_its_receivers_and_no_others() {
+        let mut drawn = empty();
         let boxes = [Vec3::ZERO, Vec3::X * 3.0].map(around);
         boxes.iter().for_each(|seen| drawn.add(seen, 0.5));
         for seen in &boxes {
-            assert!(drawn.holds(seen, 0.5) && drawn.holds(seen, 0.0));
-            assert!(!nothing().holds(seen, 0.0), "nothing");
-            assert!(!drawn.holds(seen, 3.0), "lookups reach farther");
+            assert!(drawn.covers(seen, 0.5) && drawn.covers(seen, 0.0));
+            assert!(!empty().covers(seen, 0.0), "nothing");
+            assert!(!drawn.covers(seen, 3.0), "lookups reach farther");
         }
-        assert!(!drawn.holds(&around(Vec3::X * 6.0), 0.0), "beside");
+        assert!(!drawn.covers(&around(Vec3::X * 6.0), 0.0), "beside");
         assert!(
-            !drawn.holds(&around(-TOWARD * 2.0), 0.0),
+            !drawn.covers(&around(-TOWARD * 2.0), 0.0),
             "farther from the light"
         );
-        assert!(drawn.holds(&around(Vec3::X * 1e3), 0.0), "beside the map");
-        let everything = Bounds {
-            min: Vec3::splat(-1e3),
-            max: Vec3::splat(1e3),
-        };
-        assert!(Shade::ALL.holds(&everything, 0.0) && !drawn.holds(&everything, 0.0));
+        assert!(drawn.covers(&around(Vec3::X * 1e3), 0.0), "beside the map");
     }
 }

@@ -1,13 +1,15 @@
 //! Culling: clusters outside of a view's frustum, back-facing clusters of solids, and for a light the casters that shade no
 //! receiver in the picture. What is left is drawn in runs of indices.
 
+use std::sync::Arc;
+
 use glam::{DVec2, Mat4, Vec3};
 
 use crate::gpu::{Draws, Faces, Winding};
 use crate::scene::{Bounds, Cluster};
 
 use crate::passes::sun_shadow::fit::ShadowView;
-use crate::passes::sun_shadow::receiver_mask::Shade;
+use crate::passes::sun_shadow::receiver_mask::ReceiverMask;
 use crate::passes::view::View;
 
 /// Where a view looks from.
@@ -20,14 +22,14 @@ enum Viewer {
 }
 
 /// The culling tests of a view.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Cull {
     /// Left, right, bottom, top, a row each: inside where the product with (p, 1) is not negative.
     sides: Mat4,
     viewer: Viewer,
     front: Winding,
-    /// Of a light: its receivers in the picture.
-    shade: Option<Shade>,
+    /// Of a light: the receivers in the picture; all of the map without one.
+    mask: Option<Arc<ReceiverMask>>,
 }
 
 impl Cull {
@@ -52,10 +54,12 @@ impl Cull {
     /// For a directional light.
     pub fn light(map: &ShadowView) -> Self {
         let viewer = Viewer::Toward(map.toward);
-        Self {
-            shade: Some(map.shade),
-            ..Self::new(map.shadow_from_world, viewer, map.inside, map.texel)
-        }
+        Self::new(map.shadow_from_world, viewer, map.inside, map.texel)
+    }
+
+    /// Leaves out casters that shadow none of these receivers.
+    pub fn masked(self, mask: Option<Arc<ReceiverMask>>) -> Self {
+        Self { mask, ..self }
     }
 
     fn new(clip_from_world: Mat4, viewer: Viewer, at: Vec3, size: f32) -> Self {
@@ -67,14 +71,14 @@ impl Cull {
             sides: sides(&clip_from_world),
             viewer,
             front: front(clip_from_world, toward, at, size),
-            shade: None,
+            mask: None,
         }
     }
 
     /// Whether a part of a cluster may be visible, or for a light may cast a visible shadow.
     pub fn sees(&self, cluster: &Cluster) -> bool {
-        let shades = |shade: &Shade| shade.may_be_shaded_by(cluster);
-        self.holds(cluster) && !self.is_behind(cluster) && self.shade.as_ref().is_none_or(shades)
+        let casts = |mask: &Arc<ReceiverMask>| mask.is_shadowed_by(cluster);
+        self.holds(cluster) && !self.is_behind(cluster) && self.mask.as_ref().is_none_or(casts)
     }
 
     /// Whether a part of it is within the sides of the frustum.

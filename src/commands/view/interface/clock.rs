@@ -4,7 +4,7 @@ use chrono::{Datelike, TimeDelta};
 
 use crate::daylight::place::Place;
 use crate::daylight::sun_position::YEARS;
-use crate::settings::SunInput;
+use crate::options::SunInput;
 
 /// Speeds to choose from: seconds of the sun's time per second of the user's.
 pub(super) const SPEEDS: [(f64, &str); 4] = [

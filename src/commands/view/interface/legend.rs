@@ -4,15 +4,15 @@ use egui::{Align2, Color32, FontId, Mesh, Rect, Sense, Ui, pos2, vec2};
 
 use super::corner;
 use crate::daylight::false_colour::Range;
-use crate::settings::Settings;
+use crate::options::Options;
 
 /// Size of the bar, points.
 const BAR: [f32; 2] = [18.0, 220.0];
 /// Colour steps in the bar.
 const STEPS: u32 = 48;
 
-/// Shows the legend when the picture is in false colours.
-pub(super) fn show(ui: &Ui, settings: &Settings) {
+/// Of the false colours that are shown, when they are.
+pub(super) fn show(ui: &Ui, settings: &Options) {
     let Some(quantity) = settings.false_colour.filter(|q| settings.show.holds(*q)) else {
         return;
     };

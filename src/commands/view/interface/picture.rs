@@ -2,13 +2,12 @@
 
 use std::ops::RangeInclusive;
 
-use clap::ValueEnum;
 use egui::{ComboBox, DragValue, Slider, Ui};
 
 use super::{UiRequest, choice};
 use crate::commands::view::document::Document;
 use crate::commands::view::keys::Action;
-use crate::settings::{Exposure, Quantity, Range, Settings, Show};
+use crate::options::{Choice, Options, Quantity, Range, Show};
 
 /// Range of the exposure slider: dusk to snow in the sun.
 const EV100_RANGE: RangeInclusive<f64> = -4.0..=18.0;
@@ -19,8 +18,8 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, requests: &mut Vec<UiRe
     let settings = &mut document.job.settings;
     choice(ui, "show", &mut settings.show);
     false_colours(ui, settings);
-    choice(ui, "tone curve", &mut settings.tone_curve);
-    exposure(ui, &mut settings.exposure);
+    choice(ui, "tone curve", &mut settings.tonemap);
+    exposure(ui, &mut settings.ev100);
     ui.horizontal(|ui| {
         for (text, action) in [
             ("screenshot", Action::Screenshot),
@@ -33,14 +32,14 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, requests: &mut Vec<UiRe
     });
 }
 
-/// False colours: off, or of a quantity over a range.
-fn false_colours(ui: &mut Ui, settings: &mut Settings) {
+/// Off, or of which quantity and over which range.
+fn false_colours(ui: &mut Ui, settings: &mut Options) {
     let before = settings.false_colour;
-    let name = |q: Option<Quantity>| q.map_or("off".to_owned(), crate::settings::name);
+    let name = |q: Option<Quantity>| q.map_or("off", crate::options::name);
     ComboBox::new("false colours", "false colours")
         .selected_text(name(before))
         .show_ui(ui, |ui| {
-            let each = Quantity::value_variants().iter().map(|q| Some(*q));
+            let each = Quantity::VALUES.iter().map(|q| Some(q.0));
             for quantity in std::iter::once(None).chain(each) {
                 ui.selectable_value(&mut settings.false_colour, quantity, name(quantity));
             }
@@ -84,16 +83,12 @@ fn power(ui: &mut Ui, value: &mut f64, range: RangeInclusive<f64>) -> bool {
     ui.add(power.range(range)).changed()
 }
 
-fn exposure(ui: &mut Ui, exposure: &mut Exposure) {
-    let mut auto = *exposure == Exposure::Auto;
+fn exposure(ui: &mut Ui, ev100: &mut Option<f64>) {
+    let mut auto = ev100.is_none();
     if ui.checkbox(&mut auto, "automatic exposure").changed() {
-        *exposure = if auto {
-            Exposure::Auto
-        } else {
-            Exposure::Ev100(SUNNY_EV100)
-        };
+        *ev100 = (!auto).then_some(SUNNY_EV100);
     }
-    if let Exposure::Ev100(ev100) = exposure {
+    if let Some(ev100) = ev100 {
         ui.add(Slider::new(ev100, EV100_RANGE).text("EV100"));
     }
 }

@@ -84,7 +84,11 @@ fn picture(ui: &mut Ui, reading: &Reading) {
 }
 
 fn about(ui: &mut Ui, surface: &SurfaceReading, scene: &Scene) {
-    row(ui, "illuminance", air::illuminance(of(surface.illuminance)));
+    row(
+        ui,
+        "illuminance",
+        air::illuminance(surface.illuminance.into()),
+    );
     let material = scene.materials.get(surface.material as usize);
     let name = material.map_or("", |m| m.name.as_str());
     let name = if name.is_empty() { "unnamed" } else { name };

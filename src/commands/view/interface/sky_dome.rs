@@ -8,7 +8,7 @@ use crate::commands::view::document::Document;
 use crate::commands::view::style;
 use crate::daylight::sun_path::{Line, Observer, SunPath};
 use crate::daylight::sun_position::direction;
-use crate::settings::{SunInput, Switch};
+use crate::options::{SunInput, Switch};
 
 const SOLSTICE: Color32 = Color32::from_rgb(120, 190, 255);
 const EQUINOX: Color32 = Color32::from_rgb(150, 230, 170);

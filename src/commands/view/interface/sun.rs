@@ -7,10 +7,9 @@ use super::clock::{Clock, SPEEDS};
 use crate::commands::view::document::Document;
 use crate::commands::view::style;
 use crate::daylight::cities;
-use crate::daylight::moment::default_moment;
 use crate::daylight::place::{Axis, Place, Zone};
 use crate::daylight::sun_position::{SunEvents, SunPosition, YEARS, sun_events};
-use crate::settings::{Settings, SunInput};
+use crate::options::{Options, SunInput};
 
 /// Most cities that a search lists.
 const MAX_FOUND: usize = 8;
@@ -93,14 +92,9 @@ pub(super) fn show(
 }
 
 /// Switches between the three kinds of input, keeping what they share.
-fn kind(ui: &mut Ui, settings: &mut Settings, sun: &SunPosition) {
+fn kind(ui: &mut Ui, settings: &mut Options, sun: &SunPosition) {
     let now = std::mem::discriminant(&settings.sun);
-    let default = Place::default();
-    let place = SunInput::Place {
-        latitude: default.latitude,
-        longitude: default.longitude,
-        when: default_moment(default),
-    };
+    let place = SunInput::default();
     let solar = solar_of(&settings.sun);
     let direction = SunInput::Direction {
         azimuth_deg: sun.azimuth_deg,
@@ -339,6 +333,7 @@ fn events_text(events: &SunEvents) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::daylight::moment::default_moment;
 
     fn names(text: &str) -> Vec<String> {
         suggestions(text)
@@ -355,6 +350,47 @@ mod tests {
         assert_eq!(names("-33.87 N, 151.21"), ["33.87° S, 151.21° E"]);
         assert_eq!(names("33.87"), [""; 0]);
         assert_eq!(names("a").len(), MAX_FOUND);
+    }
+
+    /// The place and the moment after `text` and Enter were typed into the field.
+    fn entered(text: &str) -> (String, String) {
+        let context = egui::Context::default();
+        let (mut field, mut place) = (PlaceField::default(), Place::default());
+        let mut when = default_moment(place);
+        let key = |key| egui::Event::Key {
+            key,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers: egui::Modifiers::NONE,
+        };
+        // Tab moves the focus to the field.
+        let typed = egui::Event::Text(text.to_owned());
+        for event in [
+            None,
+            Some(key(Key::Tab)),
+            Some(typed),
+            Some(key(Key::Enter)),
+        ] {
+            let input = egui::RawInput {
+                events: event.into_iter().collect(),
+                ..egui::RawInput::default()
+            };
+            let output = context.run_ui(input, |ui| {
+                field.show(ui, &mut place.latitude, &mut place.longitude, &mut when);
+            });
+            output.drop_without_applying_deltas();
+        }
+        (place.to_string(), when.to_rfc3339())
+    }
+
+    #[test]
+    fn enter_takes_the_suggestion() {
+        let tokyo = "35.68° N, 139.69° E".to_owned();
+        let afternoon = "2026-06-21T15:00:00+09:00".to_owned();
+        assert_eq!(entered("toky"), (tokyo, afternoon));
+        assert_eq!(entered("-33.87 N, 151.21").0, "33.87° S, 151.21° E");
+        assert_eq!(entered("").0, "55.79° N, 12.52° E");
     }
 
     #[test]

@@ -1,24 +1,22 @@
-//! Views from a direction of the sky, fitted to what the camera sees and warped so that near things get more texels.
-//!
-//! Wimmer, Scherzer & Purgathofer 2004, "Light Space Perspective Shadow Maps": a perspective along the line of sight, across
-//! the rays of the light, which stay parallel. Planes stay planes.
+//! Light space perspective shadow maps (Wimmer, Scherzer & Purgathofer 2004): views from a direction, fitted to what the camera
+//! sees and warped by a perspective along the line of sight, so that near things get more texels. Rays of the light stay
+//! parallel, planes stay planes.
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use crate::scene::Bounds;
 
 use crate::passes::sun_shadow::fit::{Hull, ShadowView, depth_range, visible_points};
-use crate::passes::sun_shadow::receiver_mask::Shade;
 use crate::passes::view::View;
 
 /// Texels around what is seen: one for the sub-texel shift, one for rounding.
 const MARGIN: f32 = 2.0;
 
-/// The nearest receivers, as a share of the farthest's distance: what is nearer is not worth the texels that it takes from
-/// the rest.
-const NEAREST: f32 = 0.03;
+/// Least distance of the nearest receivers, as a share of that of the farthest: a nearer one would take too many texels from the
+/// rest.
+const MIN_NEAR_SHARE: f32 = 0.03;
 
-/// What is seen: the hull of the receivers, and from where.
+/// The hull of the receivers in view, and the camera.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Receivers {
     points: Hull,
@@ -27,7 +25,7 @@ pub struct Receivers {
 }
 
 impl Receivers {
-    /// The part of `bounds` that `view` sees; all of it when it sees nothing.
+    /// The part of `bounds` that is in view; all of it when none is.
     pub fn new(bounds: &Bounds, view: &View) -> Self {
         let mut points = visible_points(bounds, view);
         if points.is_empty() {
@@ -50,7 +48,7 @@ impl Receivers {
         let distance = |p: &Vec3| (*p - self.eye).dot(self.forward);
         let far = self.points.iter().map(distance).fold(1e-3, f32::max);
         let near = self.points.iter().map(distance).fold(far, f32::min);
-        let near = near.max(NEAREST * far);
+        let near = near.max(MIN_NEAR_SHARE * far);
         (near + (near * far).sqrt()) / sine.max(1e-3)
     }
 }
@@ -113,7 +111,6 @@ pub fn fit(
         texel_depth: texel / depth,
         toward,
         inside: receivers.centre(),
-        shade: Shade::ALL,
     }
 }
 

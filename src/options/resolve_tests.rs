@@ -1,26 +1,31 @@
 use super::*;
+use crate::options::{SunInput, ToneCurve};
 use crate::scene::{NamedCamera, Scene};
 
 fn pairs(list: &[(&str, &str)]) -> Vec<(String, String)> {
-    list.iter()
-        .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
-        .collect()
+    OptionValues::from(list).into_pairs()
 }
 
-fn resolve(user: &[(&str, &str)], file: &[(&str, &str)]) -> Result<Settings, String> {
-    let porch = NamedCamera {
-        name: "porch".into(),
-        options: pairs(&[("eye", "1,1,1")]),
+/// A scene file that sets these options in tables where they may stand, with a camera named porch.
+fn scene(file: &[(&str, &str)]) -> Loaded {
+    let table = |pair: &(&str, &str)| NamedOptions {
+        name: tables(pair.0)[0].to_owned(),
+        options: pairs(&[*pair]),
     };
-    let loaded = Loaded {
+    Loaded {
         path: "s.toml".into(),
         scene: Scene::default(),
-        options: pairs(file),
-        cameras: vec![porch],
+        options: file.iter().map(table).collect(),
+        cameras: vec![NamedCamera {
+            name: "porch".into(),
+            options: pairs(&[("eye", "1,1,1")]),
+        }],
         moments: Vec::new(),
-    };
-    let user = Options::from_pairs(&pairs(user)).map_err(|e| e.to_string())?;
-    Settings::resolve(user, &loaded).map_err(|e| e.to_string())
+    }
+}
+
+fn resolve(user: &[(&str, &str)], file: &[(&str, &str)]) -> Result<Options, String> {
+    Options::resolve(&user.into(), &scene(file)).map_err(|e| e.to_string())
 }
 
 fn sun(user: &[(&str, &str)], file: &[(&str, &str)]) -> SunInput {
@@ -59,6 +64,13 @@ fn local_times_are_those_of_the_place_that_is_used() {
     assert!(
         error.starts_with("--when: 2026-10-25 02:30 occurs twice") && error.lines().count() == 1,
         "{error}"
+    );
+    // Which of the readings matters at the scene's place alone.
+    let user = OptionValues::from([("when", "2026-10-25 02:30")].as_slice());
+    assert!(user.alone().is_ok());
+    assert_eq!(
+        when(&[("when", "2026-10-25 02:30")], &[tokyo]),
+        "2026-10-25T02:30:00+09:00"
     );
 }
 
@@ -102,27 +114,80 @@ fn cameras_and_exposures_are_groups() {
         ("fov", "20"),
         ("ev100", "14"),
     ];
-    let porch = resolve(&[("camera", "porch")], &file).expect("good").camera;
-    let name = Some("porch".to_owned());
+    let porch = resolve(&[("camera", "porch")], &file).expect("good");
     assert_eq!(
-        porch,
-        CameraParts {
-            eye: Some([1.0; 3]),
-            name,
-            ..CameraParts::default()
-        }
+        (porch.eye, porch.target, porch.fov, porch.camera.as_deref()),
+        (Some([1.0; 3]), None, 45.0, Some("porch"))
     );
-    let eye = resolve(&[("eye", "-5,2,2")], &file).expect("good").camera;
+    let eye = resolve(&[("eye", "-5,2,2")], &file).expect("good");
     assert_eq!(
         (eye.eye, eye.target),
         (Some([-5.0, 2.0, 2.0]), Some([0.0, 1.0, 0.0]))
     );
-    let tuned = resolve(&[("camera", "porch"), ("fov", "70")], &file)
-        .expect("good")
-        .camera;
-    assert_eq!((tuned.eye, tuned.fov_deg), (Some([1.0; 3]), Some(70.0)));
+    let tuned = resolve(&[("camera", "porch"), ("fov", "70")], &file).expect("good");
+    assert_eq!((tuned.eye, tuned.fov), (Some([1.0; 3]), 70.0));
     let auto = resolve(&[("exposure", "auto")], &file).expect("good");
-    assert_eq!(auto.exposure, Exposure::Auto);
+    assert_eq!(auto.ev100, None);
+}
+
+#[test]
+fn defaults_follow_other_options() {
+    let of = |user: &[(&str, &str)]| resolve(user, &[]).expect("good");
+    assert_eq!(of(&[]).visibility, Visibility::Ssao);
+    assert_eq!(of(&[("samples", "16")]).visibility, Visibility::Dome);
+    let screen = of(&[("samples", "16"), ("visibility", "ssao")]);
+    assert_eq!(screen.visibility, Visibility::Ssao);
+    let noise = of(&[("noise", "0.01")]);
+    assert_eq!((noise.samples, noise.visibility), (4096, Visibility::Dome));
+    assert_eq!(of(&[("noise", "0.01"), ("samples", "9")]).samples, 9);
+    let lux = of(&[("false-colour", "illuminance")]);
+    assert_eq!(lux.show.to_string(), "irradiance");
+}
+
+#[test]
+fn tables_hold_their_own_options() {
+    let table = |name: &str, options: &[(&str, &str)]| NamedOptions {
+        name: name.to_owned(),
+        options: pairs(options),
+    };
+    let error = |tables: Vec<NamedOptions>| {
+        let loaded = Loaded {
+            options: tables,
+            ..scene(&[])
+        };
+        let resolved = Options::resolve(&OptionValues::default(), &loaded);
+        resolved.expect_err("odd tables").to_string()
+    };
+    for (tables, part) in [
+        (
+            vec![table("sky", &[("turbidty", "3")])],
+            "s.toml: unknown key \"turbidty\" in [sky]; known are sky, turbidity",
+        ),
+        (
+            vec![table("skye", &[])],
+            "unknown key \"skye\" in the scene file; known are mesh, place, sun, ",
+        ),
+        (
+            vec![
+                table("place", &[("place", "1,2")]),
+                table("sun", &[("place", "1,2")]),
+            ],
+            "\"place\" is given twice; keep the one in [sun]",
+        ),
+        (
+            vec![table("light", &[("samples", "4")])],
+            "\"samples\" in [light]",
+        ),
+    ] {
+        let error = error(tables);
+        assert!(error.contains(part), "{error}");
+        assert_eq!(error.lines().count(), 1, "{error}");
+    }
+    let mut loaded = scene(&[]);
+    loaded.moments = vec![table("dusk", &[("ao-radius", "4")])];
+    let unused = Options::resolve(&OptionValues::default(), &loaded);
+    let text = unused.expect_err("a key of [light]").to_string();
+    assert!(text.contains("\"ao-radius\" in [[moment]]"), "{text}");
 }
 
 #[test]
@@ -133,7 +198,7 @@ fn the_preset_is_below_what_is_given() {
     )
     .expect("good");
     assert_eq!(
-        (s.turbidity, s.scale, s.tone_curve),
+        (s.turbidity, s.scale, s.tonemap),
         (5.0, Some(0.025), ToneCurve::Linear)
     );
     assert_eq!(
@@ -182,33 +247,4 @@ fn bad_values_are_one_line() {
     let both =
         resolve(&[("sun", "1,2"), ("when", "2026-01-01T12:00Z")], &[]).expect_err("conflict");
     assert!(both.contains("cannot be used with"), "{both}");
-}
-
-#[test]
-fn parameters_can_be_given_back() {
-    let first = resolve(
-        &[
-            ("sun", "90,5"),
-            ("gamma", "2.2"),
-            ("sky-illuminance", "9000"),
-            ("refraction", "off"),
-        ],
-        &[],
-    )
-    .expect("good");
-    let list: Vec<_> = first
-        .parameters()
-        .into_iter()
-        .map(|(k, v)| (k.to_owned(), v))
-        .collect();
-    let loaded = Loaded {
-        path: "s.toml".into(),
-        scene: Scene::default(),
-        options: Vec::new(),
-        cameras: Vec::new(),
-        moments: Vec::new(),
-    };
-    let again =
-        Settings::resolve(Options::from_pairs(&list).expect("options"), &loaded).expect("good");
-    assert_eq!(first, again);
 }

@@ -1,15 +1,15 @@
-//! Values of options: their types, and text to value with a clear message.
+//! Values of options: their types, text to value with a clear message, and value to text.
 
+use std::fmt;
 use std::ops::RangeInclusive;
 
-use clap::ValueEnum;
-
+use super::Choice;
 use crate::daylight::false_colour::Range;
 pub use crate::daylight::moment::When;
 pub use crate::daylight::place::Place;
-pub use crate::passes::light::lighting::Show;
+use crate::frame::FrameSettings;
 
-/// Width and height of a picture, pixels, 1..16 384 each.
+/// Width and height of a picture, pixels, 1..32 768 each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Size {
     /// Pixels in a row.
@@ -27,7 +27,7 @@ pub struct SolarTime {
     pub hours: f64,
 }
 
-/// Where the sun stands.
+/// A direction to the sun.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Direction {
     /// Degrees clockwise from north, 0..360.
@@ -37,21 +37,22 @@ pub struct Direction {
 }
 
 /// `--exposure`: the opposite of `--ev100`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum ExposureMode {
+    #[default]
     /// From the picture's log-average luminance.
     Auto,
 }
 
 /// A set of defaults.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Preset {
     /// As in the lecture: its sun, its sky, Monte Carlo, and its linear scale.
     Lecture,
 }
 
 /// On or off, where the default is not plainly off.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Switch {
     /// On.
     #[default]
@@ -61,7 +62,7 @@ pub enum Switch {
 }
 
 /// How mirrors depend on the angle.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Fresnel {
     /// Not at all: the lecture's ρ_s.
     #[default]
@@ -71,7 +72,7 @@ pub enum Fresnel {
 }
 
 /// How wide the edges of the sun's shadow are in a single frame.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Penumbra {
     /// A texel of the map; the mean of several samples has the true ones.
     #[default]
@@ -80,20 +81,120 @@ pub enum Penumbra {
     Sun,
 }
 
-/// What a scene was allowed when it was loaded; none where the program's own limit held.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Limits {
-    /// Whether its files may lie outside of its folder tree.
-    pub allow_outside: bool,
-    /// Most triangles, instances counted.
-    pub max_triangles: Option<u32>,
-    /// Longest edge of a texture, texels.
-    pub max_texture_edge: Option<u32>,
-    /// Most memory of all textures, MiB.
-    pub max_texture_mib: Option<u32>,
-    /// Largest file, MiB.
-    pub max_file_mib: Option<u32>,
+/// How finely ambient occlusion is computed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum AoResolution {
+    /// Half from 720 rows on, full below.
+    #[default]
+    Auto,
+    /// From every pixel, at every second of every second row.
+    Full,
+    /// From every second pixel of every second row, at every fourth of every fourth.
+    Half,
 }
+
+impl AoResolution {
+    /// Pixels of a picture of so many rows to an occluder, each way.
+    pub fn downscale(self, rows: u32) -> u32 {
+        match self {
+            Self::Full => 1,
+            Self::Half => 2,
+            Self::Auto => 1 + u32::from(rows >= 720),
+        }
+    }
+}
+
+impl Default for Size {
+    fn default() -> Self {
+        let [width, height] = FrameSettings::default().size.to_array();
+        Self { width, height }
+    }
+}
+
+/// As [`size`] reads it.
+impl fmt::Display for Size {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}x{}", self.width, self.height)
+    }
+}
+
+/// As [`sun`] reads it.
+impl fmt::Display for Direction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{}", self.azimuth_deg, self.elevation_deg)
+    }
+}
+
+/// As [`solar`] reads it.
+impl fmt::Display for SolarTime {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{}", self.day, self.hours)
+    }
+}
+
+/// The text that an option is set with, the reverse of its parser; none for what is not set.
+pub(super) trait Written {
+    fn written(&self) -> Option<String>;
+}
+
+impl<T: Choice> Written for T {
+    fn written(&self) -> Option<String> {
+        Some(self.option_name().to_owned())
+    }
+}
+
+impl<T: Written> Written for Option<T> {
+    fn written(&self) -> Option<String> {
+        self.as_ref().and_then(Written::written)
+    }
+}
+
+/// A flag: it is set or it is not.
+impl Written for bool {
+    fn written(&self) -> Option<String> {
+        self.then(|| "true".to_owned())
+    }
+}
+
+impl Written for Place {
+    fn written(&self) -> Option<String> {
+        Some(format!("{},{}", self.latitude, self.longitude))
+    }
+}
+
+impl Written for When {
+    fn written(&self) -> Option<String> {
+        Some(match self {
+            Self::Moment(moment) => moment.to_rfc3339(),
+            Self::Local(local) => local.to_string(),
+        })
+    }
+}
+
+impl Written for [f64; 3] {
+    fn written(&self) -> Option<String> {
+        Some(self.map(|v| v.to_string()).join(","))
+    }
+}
+
+impl Written for Range {
+    fn written(&self) -> Option<String> {
+        Some(format!("{},{}", self.min, self.max))
+    }
+}
+
+/// Values whose [`fmt::Display`] is what their parser reads.
+macro_rules! written_as_displayed {
+    ($($type:ty)*) => {
+        $(impl Written for $type {
+            fn written(&self) -> Option<String> {
+                Some(self.to_string())
+            }
+        })*
+    };
+}
+
+written_as_displayed! { u32 f64 String Size Direction SolarTime }
 
 /// A finite number.
 pub(super) fn number(text: &str) -> Result<f64, String> {
@@ -219,6 +320,12 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn small_pictures_have_an_occluder_at_every_pixel() {
+        let of = |rows| AoResolution::Auto.downscale(rows);
+        assert_eq!([of(360), of(719), of(720), of(2160)], [1, 1, 2, 2]);
+    }
 
     #[test]
     fn numbers_are_finite_and_in_range() {

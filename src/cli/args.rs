@@ -1,0 +1,178 @@
+//! The arguments of single commands, besides the options that all share.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::builder::{ArgPredicate, PathBufValueParser, TypedValueParser};
+use clap::{Args, value_parser};
+
+use crate::options::{Direction, choice, choices};
+
+/// What to measure, and where to put it.
+#[derive(Debug, Clone, PartialEq, Args)]
+pub struct BenchArgs {
+    /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, the default; island).
+    pub scene: Option<PathBuf>,
+    /// Write the table as JSON too.
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Write the table as CSV too, every row complete: device, commit, scene, size ..
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Frames to measure; 10 by default at each step of a sweep.
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1_000_000), default_value_t = 100,
+          default_value_if("sweep", ArgPredicate::IsPresent, "10"))]
+    pub frames: u32,
+    /// What moves from frame to frame while whole frames are timed.
+    #[arg(long, value_name = "WHAT", value_parser = choice::<Motion>(), default_value_t)]
+    pub motion: Motion,
+    /// Measure again and again with more of one thing: cost against size, with the exponent of the growth.
+    #[arg(long, value_name = "WHAT", value_parser = choice::<Sweep>(), conflicts_with = "compare")]
+    pub sweep: Option<Sweep>,
+    /// Compare with an earlier run's --json: the ratio of every time, and how far noise alone would move it.
+    #[arg(long, value_name = "OLD.json")]
+    pub compare: Option<PathBuf>,
+    /// With --compare: exit code 1 when something takes more than R times as long as before, and not by noise alone.
+    #[arg(long, value_name = "R", requires = "compare", allow_hyphen_values = true, value_parser = crate::options::ratio)]
+    pub fail_above: Option<f64>,
+}
+
+/// What moves while whole frames are timed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Motion {
+    /// Nothing: every frame shows the same.
+    None,
+    /// The camera, every frame: nothing of the view can be reused.
+    #[default]
+    Camera,
+    /// Camera and sun, every frame: sky, irradiance and shadow map begin anew.
+    Sun,
+}
+
+/// What grows from step to step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sweep {
+    /// Pixels of the picture, 640x360 to 3840x2160.
+    Resolution,
+    /// Triangles: those of the scene, cut into 4, 9, 16 .., or without one hills of 10 000 to 2 million; of a view of all and of
+    /// one that sees 5 %.
+    Triangles,
+    /// Irradiance samples of one pass, 64 to 4096.
+    Samples,
+    /// Texels of the shadow map, 256² to 4096².
+    Shadow,
+    /// Depth samples of a pixel's ambient occlusion.
+    Ssao,
+}
+
+/// What to tell of a daylight.
+#[derive(Debug, Clone, PartialEq, Args)]
+pub struct SkyArgs {
+    /// Machine-readable instead of a table.
+    #[arg(long)]
+    pub json: bool,
+    /// Also the radiance in this direction, degrees; may be given several times.
+    #[arg(long = "direction", value_name = "AZ,EL", value_parser = crate::options::direction, allow_hyphen_values = true)]
+    pub directions: Vec<Direction>,
+    /// Draw the sun's spectra (or the study) as an SVG file.
+    #[arg(long, value_name = "FILE.svg", value_parser = named(&["svg"]))]
+    pub plot: Option<PathBuf>,
+    /// Instead: error against samples for each way of computing the irradiance of this sky.
+    #[arg(long)]
+    pub irradiance_study: bool,
+}
+
+/// What to bake.
+#[derive(Debug, Clone, PartialEq, Args)]
+pub struct BakeArgs {
+    /// What the map holds.
+    #[arg(long, value_name = "WHAT", value_parser = choice::<Map>())]
+    pub map: Map,
+    /// Texels along an edge of a cube face, 4 to 4096; 32 by default for irradiance, which is smooth, and each texel of it a sum
+    /// over the sky.
+    #[arg(long = "size", id = "edge", value_name = "N", value_parser = value_parser!(u32).range(4..=4096), default_value_t = 256,
+          default_value_if("map", "irradiance", "32"))]
+    pub edge: u32,
+    /// How the sphere is laid out.
+    #[arg(long, value_name = "LAYOUT", value_parser = choice::<Layout>(), default_value_t)]
+    pub layout: Layout,
+    /// Where to: .exr (32-bit floats) or .hdr (Radiance); the JSON file has the same name.
+    #[arg(short, long, value_name = "FILE", value_parser = named(&["exr", "hdr"]))]
+    pub output: PathBuf,
+}
+
+/// What a map holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Map {
+    /// Radiance of sky and ground without the sun's disc, cd/m².
+    Sky,
+    /// Irradiance E(n) of sky and ground without the sun, lux, by the direction of the normal.
+    Irradiance,
+}
+
+/// How the sphere is laid out.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Layout {
+    /// 4N x 2N: first row the zenith, first column north, azimuth clockwise to the right.
+    #[default]
+    Equirect,
+    /// 4N x 3N: -X +Z +X -Z in the middle row, +Y above and -Y below +Z; each face as Vulkan has it.
+    Cross,
+    /// Six files NAME_px .. NAME_nz, N x N, each as Vulkan has it.
+    Faces,
+}
+
+/// What to compare, and how.
+#[derive(Debug, Clone, PartialEq, Args)]
+pub struct CompareArgs {
+    /// The picture that is right: .exr (scene-linear), or .png and other 8-bit files (sRGB).
+    pub reference: PathBuf,
+    /// The picture in question.
+    pub test: PathBuf,
+    /// Compare only where this picture is not black, one pixel away from its edges: for instance an .exr with a depth.
+    #[arg(long, value_name = "FILE")]
+    pub mask: Option<PathBuf>,
+    /// Factor on scene-linear light before LDR-FLIP; by default it brings the 75th percentile of the reference to 0.5.
+    #[arg(long, value_name = "FACTOR", value_parser = crate::options::exposure_factor)]
+    pub exposure: Option<f64>,
+    /// Write the map of FLIP, black (none) to white.
+    #[arg(long, value_name = "FILE.png", value_parser = named(&["png"]))]
+    pub diff: Option<PathBuf>,
+}
+
+choices! {
+    Motion {
+        None = "none": "Nothing: every frame shows the same",
+        Camera = "camera": "The camera, every frame: nothing of the view can be reused",
+        Sun = "sun": "Camera and sun, every frame: sky, irradiance and shadow map begin anew",
+    }
+    Sweep {
+        Resolution = "resolution": "Pixels of the picture, 640x360 to 3840x2160",
+        Triangles = "triangles": "Triangles: those of the scene, cut into 4, 9, 16 .., or without one hills of 10 000 to 2 million; of a view of all and of one that sees 5 %",
+        Samples = "samples": "Irradiance samples of one pass, 64 to 4096",
+        Shadow = "shadow": "Texels of the shadow map, 256² to 4096²",
+        Ssao = "ssao": "Depth samples of a pixel's ambient occlusion",
+    }
+    Map {
+        Sky = "sky": "Radiance of sky and ground without the sun's disc, cd/m²",
+        Irradiance = "irradiance": "Irradiance E(n) of sky and ground without the sun, lux, by the direction of the normal",
+    }
+    Layout {
+        Equirect = "equirect": "4N x 2N: first row the zenith, first column north, azimuth clockwise to the right",
+        Cross = "cross": "4N x 3N: -X +Z +X -Z in the middle row, +Y above and -Y below +Z; each face as Vulkan has it",
+        Faces = "faces": "Six files NAME_px .. NAME_nz, N x N, each as Vulkan has it",
+    }
+}
+
+/// The parser of a file name with one of these extensions; it need not be UTF-8.
+pub(super) fn named(extensions: &'static [&'static str]) -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(move |path: PathBuf| {
+        let extension = path.extension().map(|e| e.to_ascii_lowercase());
+        let is_known = |known: &&str| extension.as_ref() == Some(&OsString::from(known));
+        if extensions.iter().any(is_known) {
+            return Ok(path);
+        }
+        let known: Vec<String> = extensions.iter().map(|e| format!(".{e}")).collect();
+        Err(format!("the name must end in {}", known.join(" or ")))
+    })
+}

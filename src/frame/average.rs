@@ -1,0 +1,173 @@
+//! How the frames of an average become a picture, and what lights them.
+
+use std::sync::Arc;
+
+use super::{FrameSettings, Visibility};
+use crate::gpu::{Context, Image, Recorder, Result};
+use crate::passes::dome::gather::{Dome, Gathered};
+use crate::passes::light::lighting::{Light, Lighting};
+use crate::passes::picture::accumulate::Accumulate;
+use crate::passes::picture::fade::Fade;
+use crate::passes::sun_shadow::map::Shadow;
+use crate::passes::surfaces::gbuffer::Surfaces;
+use crate::passes::surfaces::geometry::Geometry;
+use crate::passes::view::View;
+
+/// The sun's shadow and the lighting of a frame.
+pub(super) struct Lit {
+    pub shadow: Shadow,
+    pub lighting: Lighting,
+}
+
+/// How the frames of an average become a picture.
+pub(super) enum Average {
+    /// Each frame is a picture.
+    None,
+    /// By their mean.
+    Mean(Box<Accumulate>),
+    /// By the true visibility of the sky.
+    Dome(Box<Converging>),
+}
+
+/// The passes of [`Visibility::Dome`] and [`Visibility::Progressive`].
+pub(super) struct Converging {
+    /// Hard shadows, and all light but the diffuse light of the sky.
+    lit: Lit,
+    /// That light, and the means.
+    dome: Dome,
+    /// From the preview to the means.
+    fade: Option<Fade>,
+    /// Whether the newest frame was a preview.
+    is_previewed: bool,
+}
+
+impl Average {
+    /// # Errors
+    /// When the device refuses or has no memory left.
+    pub fn new(
+        context: &Arc<Context>,
+        geometry: &Geometry,
+        settings: &FrameSettings,
+    ) -> Result<Self> {
+        let size = settings.size.to_array();
+        if settings.takes_mean() {
+            let mean = Accumulate::new(context, size)?;
+            return Ok(Self::Mean(Box::new(mean)));
+        }
+        if !settings.converges() {
+            return Ok(Self::None);
+        }
+        let (sampling, lighting) = (&settings.sampling, settings.lighting);
+        let fades = sampling.visibility == Visibility::Progressive;
+        Ok(Self::Dome(Box::new(Converging {
+            lit: Lit {
+                shadow: Shadow::perspective(context, geometry, settings.shadow_resolution)?,
+                lighting: Lighting::converging(context, size, lighting)?,
+            },
+            dome: Dome::new(context, geometry, size, sampling.dome, lighting)?,
+            fade: fades
+                .then(|| Fade::new(context, size, settings.samples))
+                .transpose()?,
+            is_previewed: false,
+        })))
+    }
+
+    /// Whether new settings need another one.
+    pub fn is_changed(old: &FrameSettings, new: &FrameSettings) -> bool {
+        let of = |s: &FrameSettings| {
+            let of_dome = (s.samples, s.sampling, s.lighting, s.shadow_resolution);
+            (s.size, s.takes_mean(), s.converges().then_some(of_dome))
+        };
+        of(old) != of(new)
+    }
+
+    /// What lights frame number `index` of an average, and how it becomes the picture. A frame without a number is a preview.
+    pub fn frame<'a>(
+        &'a mut self,
+        preview: &'a mut Lit,
+        index: Option<u32>,
+    ) -> (&'a mut Lit, Resolve<'a>) {
+        match (self, index) {
+            (Self::Dome(converging), Some(index)) => {
+                let Converging {
+                    lit,
+                    dome,
+                    fade,
+                    is_previewed,
+                } = &mut **converging;
+                let from = (preview.lighting.image(), std::mem::take(is_previewed));
+                let fade = fade.as_mut().map(|fade| (fade, from));
+                (lit, Resolve::Dome { dome, fade, index })
+            }
+            (Self::Dome(converging), None) => {
+                converging.is_previewed = true;
+                (preview, Resolve::None)
+            }
+            (Self::Mean(mean), Some(index)) => (preview, Resolve::Mean(mean, index)),
+            _ => (preview, Resolve::None),
+        }
+    }
+
+    /// The newest picture, kcd/m²; of single frames that is their own.
+    pub fn image(&self) -> Option<&Image> {
+        match self {
+            Self::None => None,
+            Self::Mean(mean) => Some(mean.image()),
+            Self::Dome(c) => Some(c.fade.as_ref().map_or(c.dome.image(), Fade::image)),
+        }
+    }
+}
+
+/// How one frame becomes the picture.
+pub(super) enum Resolve<'a> {
+    /// It is the picture.
+    None,
+    /// It is added to a mean, as its number.
+    Mean(&'a mut Accumulate, u32),
+    /// It is added to the means of the dome, and faded to from a preview.
+    Dome {
+        dome: &'a mut Dome,
+        /// With the preview, and whether that was the frame before.
+        fade: Option<(&'a mut Fade, (&'a Image, bool))>,
+        index: u32,
+    },
+}
+
+impl<'a> Resolve<'a> {
+    /// Whether the dome brings the diffuse light of the sky.
+    pub fn is_dome(&self) -> bool {
+        matches!(self, Self::Dome { .. })
+    }
+
+    /// Gives the picture after this frame.
+    pub fn record(
+        self,
+        rec: &mut Recorder,
+        geometry: &Geometry,
+        frame: &'a Image,
+        surfaces: &Surfaces,
+        light: &Light<'_>,
+        view: &View,
+    ) -> &'a Image {
+        match self {
+            Self::None => frame,
+            Self::Mean(mean, index) => mean.record(rec, frame, index),
+            Self::Dome { dome, fade, index } => {
+                let gathered = Gathered {
+                    surfaces,
+                    materials: geometry.materials(),
+                    frame,
+                    sky_irradiance: light.sky_irradiance,
+                    sky_radiance: light.sky_radiance,
+                };
+                let picture = dome.record(rec, geometry, &gathered, light.daylight, view, index);
+                match fade {
+                    Some((fade, (preview, is_previewed))) => {
+                        fade.record(rec, preview, picture, index, is_previewed)
+                    }
+                    None => picture,
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,410 @@
+//! The options: every name, accepted value, default and help text of the command line and of scene files.
+//!
+//! [`Options`] is what a picture is made with. It is read from the values that four sources set, each over the ones before
+//! it: the preset, the scene file, the camera or moment of the scene file that is asked for by name, the user
+//! ([`OptionValues`], [`Options::resolve`]). [`Options::values`] is the way back: metadata of files, `--resume` and
+//! [`Options::command_line`] come from it.
+//!
+//! A new option takes three edits:
+//!
+//! 1. its field in [`Options`] below, with help text, default and parser, in the group of its help heading and of the tables
+//!    of a scene file in which it may stand;
+//! 2. the code that uses the field;
+//! 3. only if it has a type of its own: the names of an enum's variants in `choices.rs`, or its text form in `values.rs`.
+
+mod choices;
+mod command_line;
+mod given;
+mod resolve;
+mod sun_input;
+mod values;
+
+use std::sync::LazyLock;
+
+use clap::builder::ArgPredicate;
+use clap::{ArgAction, Args, Command, value_parser};
+
+pub use crate::daylight::false_colour::{Quantity, Range};
+pub use crate::daylight::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCurve};
+pub use crate::frame::{Filter, Visibility};
+pub use crate::gpu::Optional;
+pub use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
+pub use crate::passes::light::lighting::Show;
+pub use choices::{Choice, name};
+pub(crate) use choices::{choice, choices};
+pub use given::OptionValues;
+pub use sun_input::SunInput;
+pub use values::{
+    AoResolution, Direction, ExposureMode, Fresnel, Penumbra, Place, Preset, Size, SolarTime,
+    Switch, When,
+};
+pub(crate) use values::{exposure_factor, ratio, sun as direction};
+
+use crate::daylight::sky::Conditions;
+use crate::frame::FrameSettings;
+use crate::passes::dome::gather::{DomeSettings, MOST_DIRECTIONS};
+use crate::passes::occlusion::ssao::SsaoSettings;
+use crate::passes::sky::irradiance::IrradianceSettings;
+use crate::scene::{DEFAULT_FOV_DEG, LoadOptions};
+use values::Written;
+
+/// A value or a name that makes no sense: one line that names it and the remedy.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct OptionsError(pub String);
+
+/// What is known of a struct of options besides its fields.
+trait OptionGroup {
+    /// Identifier of each field, and the tables of a scene file in which the option may stand.
+    const TABLES: &'static [(&'static str, &'static [&'static str])];
+
+    /// Name and text of every option that has a value, in the order of the fields.
+    fn written(&self) -> Vec<(String, String)>;
+}
+
+/// Defines a struct of options in groups: `"help heading" [tables of a scene file] { fields }`.
+macro_rules! options {
+    (
+        $(#[$attribute:meta])*
+        $visibility:vis struct $name:ident {
+            $($(#[$flat_attribute:meta])* flatten $flat:ident: $flat_type:ty;)*
+            $($heading:literal $tables:tt {
+                $($(#[$field_attribute:meta])* $field:ident: $type:ty,)*
+            })*
+        }
+    ) => {
+        $(#[$attribute])*
+        #[derive(Debug, Clone, PartialEq, clap::Args)]
+        $visibility struct $name {
+            $($(#[$flat_attribute])* #[command(flatten)] pub $flat: $flat_type,)*
+            $($($(#[$field_attribute])* #[arg(long, help_heading = $heading)] pub $field: $type,)*)*
+        }
+
+        impl crate::options::OptionGroup for $name {
+            const TABLES: &'static [(&'static str, &'static [&'static str])] =
+                &[$($((stringify!($field), &$tables),)*)*];
+
+            fn written(&self) -> Vec<(String, String)> {
+                let mut list = Vec::new();
+                $($(
+                    let text = crate::options::Written::written(&self.$field);
+                    list.extend(text.map(|text| (crate::options::long(stringify!($field)), text)));
+                )*)*
+                list
+            }
+        }
+    };
+}
+pub(crate) use options;
+
+options! {
+    /// Everything that decides a picture besides the scene.
+    pub struct Options {
+        /// Where the sun comes from.
+        flatten sun: SunInput;
+
+        "Sun and sky" ["place", "sun", "moment"] {
+            /// Formulas of the sun's position.
+            #[arg(value_name = "METHOD", value_parser = choice::<SunPositionMethod>(), default_value_t)]
+            sun_position: SunPositionMethod,
+        }
+
+        "Sun and sky" ["sky", "moment"] {
+            /// Model of the sky.
+            #[arg(value_name = "MODEL", value_parser = choice::<SkyModel>(), default_value_t)]
+            sky: SkyModel,
+            /// Turbidity: 2 very clear, 3 clear, 6 hazy, 10 murky; clamped to what the model holds for.
+            #[arg(value_name = "T", value_parser = values::turbidity, allow_hyphen_values = true,
+                  default_value_t = Conditions::default().turbidity)]
+            turbidity: f64,
+            /// Horizontal illuminance of the sky alone, lux: scales the sky to a measured value; by default the model's own.
+            #[arg(value_name = "LUX", value_parser = values::sky_illuminance, allow_hyphen_values = true)]
+            sky_illuminance: Option<f64>,
+            /// Whether the air lifts the sun to its apparent elevation (of --place and --solar; --sun is as seen).
+            #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
+            refraction: Switch,
+            /// Reflectance of the ground below the horizon, 0 to 1; 0 is black.
+            #[arg(value_name = "ALBEDO", value_parser = values::ground_albedo, allow_hyphen_values = true,
+                  default_value_t = Conditions::default().ground_albedo)]
+            ground_albedo: f64,
+        }
+
+        "Sun and sky" [] {
+            /// Name of a moment of the scene file: its sun, sky and exposure.
+            #[arg(value_name = "NAME")]
+            moment: Option<String>,
+        }
+
+        "Picture" [] {
+            /// Size of the picture, pixels.
+            #[arg(value_name = "WxH", value_parser = values::size, default_value_t)]
+            size: Size,
+            /// Edge of the tiles in which large pictures are drawn, pixels, 64 to 16384; by default 2048 above 36 million pixels or
+            /// what the device can do (render only).
+            #[arg(value_name = "PIXELS", value_parser = value_parser!(u32).range(64..=16_384))]
+            tile: Option<u32>,
+            /// Frames to accumulate: anti-aliasing, soft sun, less noise; with --noise the most, by default 4096.
+            #[arg(value_name = "N", value_parser = value_parser!(u32).range(1..=65_536),
+                  default_value_t = FrameSettings::default().samples,
+                  default_value_if("noise", ArgPredicate::IsPresent, "4096"))]
+            samples: u32,
+            /// Stop before --samples when the picture's noise is less: the standard error of its luminance, relative to the mean, as
+            /// an estimate from the samples, for instance 0.01 (render only).
+            #[arg(value_name = "R", value_parser = values::noise, allow_hyphen_values = true)]
+            noise: Option<f64>,
+            /// What hides the sky: ambient occlusion of the screen, or shadow maps from directions of the sky, which converge to the
+            /// truth with the samples. From 16 samples on the default is dome.
+            #[arg(value_name = "HOW", value_parser = choice::<Visibility>(), default_value_t)]
+            visibility: Visibility,
+            /// Spread of the samples in a pixel.
+            #[arg(value_name = "FILTER", value_parser = choice::<Filter>(), default_value_t)]
+            filter: Filter,
+            /// Start of the sample sequences: the same number, the same picture.
+            #[arg(value_name = "N", default_value_t = DomeSettings::default().seed)]
+            seed: u32,
+            /// What to show: the picture, or one quantity of the equation. With --false-colour illuminance the default is irradiance.
+            #[arg(value_name = "WHAT", value_parser = choice::<Show>(), default_value_t,
+                  default_value_if("false_colour", name(Quantity::Illuminance), name(Show::Irradiance)))]
+            show: Show,
+            /// Write every addend, V, A, normal, depth and albedo as named layers (render to .exr only).
+            layers: bool,
+            /// Defaults of the lecture: its sun, sky, sampling and scale; other options override them.
+            #[arg(value_name = "NAME", value_parser = choice::<Preset>())]
+            preset: Option<Preset>,
+        }
+
+        "Camera" [] {
+            /// Name of a camera of the scene file.
+            #[arg(value_name = "NAME")]
+            camera: Option<String>,
+        }
+
+        "Camera" ["camera"] {
+            /// Position of the camera, metres: east, up, south; by default the whole model is in view.
+            #[arg(value_name = "X,Y,Z", value_parser = values::point, allow_hyphen_values = true)]
+            eye: Option<[f64; 3]>,
+            /// Point that the camera looks at, metres; by default the middle of the model.
+            #[arg(value_name = "X,Y,Z", value_parser = values::point, allow_hyphen_values = true)]
+            target: Option<[f64; 3]>,
+            /// Vertical field of view, degrees, 1 to 170.
+            #[arg(value_name = "DEG", value_parser = values::fov, allow_hyphen_values = true,
+                  default_value_t = DEFAULT_FOV_DEG.into())]
+            fov: f64,
+        }
+
+        "Tone" ["exposure", "moment"] {
+            /// Exposure value at ISO 100; 15 is bright sun.
+            #[arg(value_name = "EV", value_parser = values::ev100, allow_hyphen_values = true, conflicts_with = "exposure")]
+            ev100: Option<f64>,
+            /// Exposure from the picture itself, unless --ev100 or --scale is given.
+            #[arg(value_name = "MODE", value_parser = choice::<ExposureMode>(), default_value_t)]
+            exposure: ExposureMode,
+            /// Tone curve of .png pictures and the window.
+            #[arg(value_name = "CURVE", value_parser = choice::<ToneCurve>(), default_value_t)]
+            tonemap: ToneCurve,
+            /// Gamma instead of the sRGB curve, 0.1 to 10.
+            #[arg(value_name = "G", value_parser = values::gamma, allow_hyphen_values = true)]
+            gamma: Option<f64>,
+            /// Factor before the tone curve, instead of an exposure.
+            #[arg(value_name = "S", value_parser = values::scale, allow_hyphen_values = true)]
+            scale: Option<f64>,
+        }
+
+        "Tone" [] {
+            /// False colours with a legend instead of the picture: luminance in cd/m², illuminance of the surfaces in lux.
+            #[arg(value_name = "QUANTITY", value_parser = choice::<Quantity>())]
+            false_colour: Option<Quantity>,
+            /// Values of the first and the last false colour; by default from the picture, in the window those of a sunny day.
+            #[arg(value_name = "MIN,MAX", value_parser = values::colour_range, allow_hyphen_values = true)]
+            false_colour_range: Option<Range>,
+        }
+
+        "Light" ["sky", "moment"] {
+            /// How the light of the sky is integrated.
+            #[arg(value_name = "METHOD", value_parser = choice::<IrradianceMethod>(), default_value_t)]
+            irradiance: IrradianceMethod,
+            /// Most samples of the irradiance cube, 1 to 65536.
+            #[arg(value_name = "N", value_parser = value_parser!(u32).range(1..=65_536),
+                  default_value_t = IrradianceSettings::default().samples)]
+            irradiance_samples: u32,
+            /// Error at which sampling stops, percent of the irradiance from above, 0 to 100.
+            #[arg(value_name = "PERCENT", value_parser = values::irradiance_error, allow_hyphen_values = true, default_value_t = 0.1)]
+            irradiance_error: f64,
+        }
+
+        "Light" ["light"] {
+            /// Radius of ambient occlusion, metres; 0 turns it off.
+            #[arg(value_name = "METRES", value_parser = values::ao_radius, allow_hyphen_values = true,
+                  default_value_t = SsaoSettings::default().radius.into())]
+            ao_radius: f64,
+            /// Resolution of ambient occlusion.
+            #[arg(value_name = "WHICH", value_parser = choice::<AoResolution>(), default_value_t)]
+            ao_resolution: AoResolution,
+            /// Factor on every specular reflectance; 0 turns reflections off.
+            #[arg(value_name = "SCALE", value_parser = values::specular, allow_hyphen_values = true,
+                  default_value_t = FrameSettings::default().lighting.specular_scale.into())]
+            specular: f64,
+            /// Whether specular reflectance grows toward grazing angles.
+            #[arg(value_name = "HOW", value_parser = choice::<Fresnel>(), default_value_t)]
+            fresnel: Fresnel,
+            /// Edge of the shadow map, texels, 64 to 16384.
+            #[arg(value_name = "TEXELS", value_parser = value_parser!(u32).range(64..=16_384),
+                  default_value_t = FrameSettings::default().shadow_resolution)]
+            shadow_size: u32,
+            /// Edges of the sun's shadow in a single frame: a texel of the map, or the penumbra of the sun's disc.
+            #[arg(value_name = "HOW", value_parser = choice::<Penumbra>(), default_value_t)]
+            penumbra: Penumbra,
+        }
+
+        "Light" [] {
+            /// Specular lobe: the lecture's (r·l)^p beside a perfect mirror of the sky, or one energy-conserving reflectance for both.
+            #[arg(value_name = "FORM", value_parser = choice::<Phong>(), default_value_t)]
+            phong: Phong,
+            /// Whether geometry occludes the sky in reflections (hidden needs --visibility dome).
+            #[arg(value_name = "HOW", value_parser = choice::<Reflections>(), default_value_t)]
+            reflections: Reflections,
+            /// Draw the sun's disc darker toward its limb, as it is (same illuminance).
+            limb_darkening: bool,
+            /// Directions of the sky in each sample of --visibility dome, 1 to 16.
+            #[arg(value_name = "N", value_parser = value_parser!(u32).range(1..=i64::from(MOST_DIRECTIONS)),
+                  default_value_t = DomeSettings::default().directions)]
+            dome_directions: u32,
+            /// Edge of the shadow map of each of them, texels, 64 to 4096.
+            #[arg(value_name = "TEXELS", value_parser = value_parser!(u32).range(64..=4096),
+                  default_value_t = DomeSettings::default().map_edge)]
+            dome_size: u32,
+            /// Smooth models without normals below this angle between faces, degrees, 0 to 180.
+            #[arg(value_name = "DEGREES", value_parser = values::crease, allow_hyphen_values = true)]
+            smooth: Option<f64>,
+        }
+
+        "Limits" [] {
+            /// Let a model read libraries and pictures outside of its own folder tree.
+            allow_outside: bool,
+            /// Read large models anew instead of keeping them processed in the user's cache folder.
+            no_cache: bool,
+            /// Most triangles of a scene, instances counted.
+            #[arg(value_name = "N", value_parser = value_parser!(u32).range(1..),
+                  default_value_t = LoadOptions::default().max_triangles as u32)]
+            max_triangles: u32,
+            /// Longest edge of a texture, texels.
+            #[arg(value_name = "TEXELS", value_parser = value_parser!(u32).range(1..=65_536),
+                  default_value_t = LoadOptions::default().max_texture_edge)]
+            max_texture_edge: u32,
+            /// Most memory of all textures together, MiB.
+            #[arg(value_name = "MIB", value_parser = value_parser!(u32).range(1..),
+                  default_value_t = (LoadOptions::default().max_texture_bytes >> 20) as u32)]
+            max_texture_mib: u32,
+            /// Largest file that is read, MiB.
+            #[arg(value_name = "MIB", value_parser = value_parser!(u32).range(1..),
+                  default_value_t = (LoadOptions::default().max_file_bytes >> 20) as u32)]
+            max_file_mib: u32,
+        }
+
+        "Program" [] {
+            /// Vulkan device: part of its name, or its number in `skylight info`.
+            #[arg(value_name = "NAME|INDEX")]
+            device: Option<String>,
+            /// No progress, no warnings.
+            quiet: bool,
+            /// Check every Vulkan call with the validation layers; slow.
+            validate: bool,
+            /// Do without something that the device has, as on a device that lacks it.
+            #[arg(value_name = "FEATURE", value_parser = choice::<Optional>())]
+            without: Option<Optional>,
+        }
+    }
+}
+
+impl Options {
+    /// Every option that has a value, by name: reading them gives these options again.
+    pub fn values(&self) -> OptionValues {
+        let mut list = self.sun.written();
+        list.extend(self.written());
+        // What another option puts out of force is as good as not set.
+        let colours = self.false_colour.is_some_and(|q| self.show.holds(q));
+        list.retain(|(name, _)| match name.as_str() {
+            "exposure" => self.ev100.is_none(),
+            "false-colour" => colours,
+            _ => true,
+        });
+        OptionValues::from(list)
+    }
+
+    /// Those of [`Options::values`] that decide a daylight and how its irradiance is integrated; the others decide a picture.
+    pub fn light(&self) -> Vec<(String, String)> {
+        let all = self.values().into_pairs().into_iter();
+        all.filter(|(name, _)| decides_light(name)).collect()
+    }
+}
+
+/// Whether an option has a part in a daylight without a picture. The irradiance's error limit has not: there the number of
+/// samples is that of `--irradiance-samples`.
+pub(crate) fn decides_light(name: &str) -> bool {
+    let mut tables = tables(name).iter();
+    name != "irradiance-error" && tables.any(|table| ["sun", "sky"].contains(table))
+}
+
+/// Identifiers of all options with the tables of a scene file in which they may stand.
+fn all_tables() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
+    let groups = [SunInput::TABLES, Options::TABLES];
+    groups.into_iter().flatten().copied()
+}
+
+/// The tables of a scene file in which an option may stand.
+fn tables(name: &str) -> &'static [&'static str] {
+    all_tables()
+        .find(|(field, _)| long(field) == name)
+        .map_or(&[], |(_, tables)| tables)
+}
+
+/// Name of the option of a field.
+fn long(field: &str) -> String {
+    field.replace('_', "-")
+}
+
+/// The definition that reads values which are no command line.
+static DEFINITION: LazyLock<Command> =
+    LazyLock::new(|| Options::augment_args(Command::new("options").no_binary_name(true)));
+
+/// Whether there is an option of this name.
+#[cfg(test)]
+pub(crate) fn is_option(name: &str) -> bool {
+    DEFINITION
+        .get_arguments()
+        .any(|arg| arg.get_long() == Some(name))
+}
+
+/// Whether an option is without a value on the command line.
+fn is_flag(name: &str) -> bool {
+    let mut args = DEFINITION.get_arguments();
+    args.any(|arg| arg.get_long() == Some(name) && matches!(arg.get_action(), ArgAction::SetTrue))
+}
+
+/// Whether two options cannot be given together.
+fn exclude_each_other(name: &str, other: &str) -> bool {
+    let excludes = |a: &str, b: &str| {
+        let mut args = DEFINITION.get_arguments();
+        let arg = args.find(|arg| arg.get_long() == Some(a));
+        let excluded = arg.map(|arg| DEFINITION.get_arg_conflicts_with(arg));
+        excluded.is_some_and(|list| list.iter().any(|arg| arg.get_long() == Some(b)))
+    };
+    excludes(name, other) || excludes(other, name)
+}
+
+/// A message of `clap` (several lines with usage and hints) as one line.
+pub(crate) fn one_line(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let lines = text
+        .lines()
+        .map(str::trim)
+        .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
+    let line = lines
+        .filter(|line| !line.is_empty())
+        .collect::<Vec<_>>()
+        .join(" ");
+    line.trim_start_matches("error: ").to_owned()
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

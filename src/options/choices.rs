@@ -1,0 +1,176 @@
+//! Enums as values of options: the name of each variant and its line of help.
+
+use std::fmt;
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+
+use super::{
+    AoResolution, ExposureMode, Filter, Fresnel, IrradianceMethod, Optional, Penumbra, Phong,
+    Preset, Quantity, Reflections, Show, SkyModel, SunPositionMethod, Switch, ToneCurve,
+    Visibility,
+};
+
+/// An enum whose variants are values of an option.
+pub trait Choice: Copy + PartialEq + Send + Sync + 'static {
+    /// Each variant that can be chosen, with its name and its line of help.
+    const VALUES: &'static [(Self, &'static str, &'static str)];
+
+    /// Name of the variant on the command line and in files.
+    fn option_name(self) -> &'static str;
+}
+
+/// Name of a value on the command line and in files.
+pub fn name(value: impl Choice) -> &'static str {
+    value.option_name()
+}
+
+/// The parser of an option with such values.
+pub(crate) fn choice<T: Choice>() -> impl TypedValueParser<Value = T> {
+    let values = T::VALUES.iter();
+    let values = values.map(|(_, name, help)| PossibleValue::new(*name).help(*help));
+    PossibleValuesParser::new(values).try_map(|text| {
+        let mut values = T::VALUES.iter();
+        let found = values.find(|(_, name, _)| *name == text);
+        found.map(|(value, ..)| *value).ok_or(fmt::Error)
+    })
+}
+
+/// Implements [`Choice`] and [`Display`](fmt::Display): `Variant | SynonymThatCannotBeChosen = "name": "help"`.
+macro_rules! choices {
+    ($($type:ident {
+        $($variant:ident $(| $synonym:ident)* = $name:literal: $help:literal,)*
+    })*) => {
+        $(
+            impl crate::options::Choice for $type {
+                const VALUES: &'static [(Self, &'static str, &'static str)] =
+                    &[$((Self::$variant, $name, $help),)*];
+
+                fn option_name(self) -> &'static str {
+                    match self {
+                        $(Self::$variant $(| Self::$synonym)* => $name,)*
+                    }
+                }
+            }
+
+            impl std::fmt::Display for $type {
+                fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                    f.write_str(crate::options::name(*self))
+                }
+            }
+        )*
+    };
+}
+pub(crate) use choices;
+
+choices! {
+    AoResolution {
+        Auto = "auto": "Half from 720 rows on, full below",
+        Full = "full": "From every pixel, at every second of every second row",
+        Half = "half": "From every second pixel of every second row, at every fourth of every fourth",
+    }
+    ExposureMode {
+        Auto = "auto": "From the picture's luminances",
+    }
+    Filter {
+        Box = "box": "Evenly over the pixel",
+        BlackmanHarris = "blackman-harris": "By a Blackman-Harris window 3 pixels wide: smooth, little ringing of fine patterns",
+    }
+    Fresnel {
+        Off = "off": "Not at all: the lecture's ρ_s",
+        Schlick = "schlick": "Schlick's approximation of Fresnel's equations",
+    }
+    IrradianceMethod {
+        MonteCarlo = "monte-carlo": "Random cosine-weighted directions, as in the lecture",
+        Quasi = "quasi": "Low-discrepancy cosine-weighted directions",
+        Exact = "exact": "Sum over the sky cube's texels",
+        Sh = "sh": "Spherical harmonics of order 2",
+    }
+    Optional {
+        PushDescriptor = "push-descriptor": "The extension VK_KHR_push_descriptor; descriptor pools otherwise",
+        GeometryShader = "geometry-shader": "The feature geometryShader; compute shaders write the cubes of sky and irradiance otherwise",
+        PipelineStatistics = "pipeline-statistics": "The feature pipelineStatisticsQuery; the benchmark has no such columns otherwise",
+    }
+    Penumbra {
+        Map = "map": "A texel of the map; the mean of several samples has the true ones",
+        Sun = "sun": "As the sun's disc makes them",
+    }
+    Phong {
+        Lecture = "lecture": "(r·l)^p of the sun, and the sky as in a perfect mirror",
+        Normalized = "normalized": "Energy-conserving, ρ_s (p + 2)/(2π) (r·l)^p cos θ: of sun and sky alike",
+    }
+    Preset {
+        Lecture = "lecture": "As in the lecture: its sun, its sky, Monte Carlo, and its linear scale",
+    }
+    Quantity {
+        Luminance = "luminance": "Of the light toward the eye, cd/m²",
+        Illuminance = "illuminance": "Of the surface under the pixel, lux",
+    }
+    Reflections {
+        Open = "open": "Nothing occludes the sky in reflections, as in the lecture's illumination model",
+        Hidden = "hidden": "What occludes the sky elsewhere does so in reflections, as in the lecture's rendering equation",
+    }
+    Show {
+        Beauty = "beauty": "The whole picture, cd/m²",
+        Sun = "sun": "ρ_d/π (n·l) V E_sun, cd/m²",
+        Sky = "sky": "ρ_d/π A E_sky(n), cd/m²",
+        SunSpecular = "sun-specular": "ρ_s (r·l)^p V E_sun, cd/m²",
+        SkySpecular = "sky-specular": "ρ_s L_sky(r), cd/m²",
+        Background = "background": "Sky, ground and the sun's disc where no surface is, cd/m²",
+        Visibility = "visibility": "V, 0..1",
+        Occlusion = "occlusion": "A, 0..1",
+        Irradiance = "irradiance": "(n·l) V E_sun + A E_sky(n), lux",
+        Albedo = "albedo": "ρ_d, 0..1",
+        Normal = "normal": "World normal on the viewer's side, -1..1",
+        Depth = "depth": "Distance along the view axis, metres; 0 is background",
+        Luminance = "luminance": "Luminance of the whole picture, cd/m², as grey",
+    }
+    SkyModel {
+        Preetham = "preetham": "Clear sky of Preetham, Shirley & Smits 1999 (the lecture's)",
+        Hosek = "hosek": "Clear sky of Hošek & Wilkie 2012",
+        Overcast = "overcast": "CIE standard overcast sky; no sun",
+        CieClear = "cie-clear": "CIE standard clear sky, white",
+    }
+    SunPositionMethod {
+        Spa = "spa": "NREL's Solar Position Algorithm (Reda & Andreas 2004): 0.0003°",
+        Lecture = "lecture": "The lecture's formulas (Preetham et al. 1999, A.6), azimuth corrected: 0.3° typical, 1.2° worst",
+    }
+    Switch {
+        On = "on": "On",
+        Off = "off": "Off",
+    }
+    ToneCurve {
+        Linear = "linear": "Clamp to 0..=1 (the lecture's, scale 1)",
+        Exponential = "exponential": "Ferschin's exponential per channel (the lecture's other one)",
+        ExponentialLuminance = "exponential-luminance": "The same on luminance, the colour kept",
+        Reinhard = "reinhard": "Reinhard et al. 2002, global operator with white at 4, on luminance",
+        Agx = "agx": "AgX, base look",
+        Neutral = "neutral": "Khronos PBR Neutral: colours of surfaces stay as they are up to 0.8",
+        Aces = "aces": "ACES RRT + ODT, Hill's fit",
+    }
+    Visibility {
+        Ssao = "ssao": "Screen-space ambient occlusion: at once, from what is on the screen",
+        Dome | Progressive = "dome": "Shadow maps from directions of the sky: converges to the truth over the samples",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_unique_and_read_as_its_value() {
+        fn check<T: Choice + std::fmt::Debug>() {
+            for (value, text, help) in T::VALUES {
+                assert_eq!(name(*value), *text);
+                assert!(!help.is_empty(), "{text}");
+                let same = T::VALUES.iter().filter(|(_, other, _)| other == text);
+                assert_eq!(same.count(), 1, "{text}");
+            }
+        }
+        check::<Show>();
+        check::<ToneCurve>();
+        check::<IrradianceMethod>();
+        assert_eq!(name(Visibility::Progressive), "dome");
+        assert_eq!(Show::VALUES.len(), 13);
+    }
+}

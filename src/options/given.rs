@@ -1,0 +1,151 @@
+//! The options that one source sets, as names and texts: a command line, a scene file, a preset.
+
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args, Command, FromArgMatches};
+
+use super::{DEFINITION, Options, OptionsError, exclude_each_other, is_flag, one_line};
+
+/// What an option of one source puts out of force in the sources below, besides itself and the options that it excludes.
+const REPLACES: [(&str, &[&str]); 3] = [
+    ("camera", &["eye", "target", "fov"]),
+    ("exposure", &["scale"]),
+    ("ev100", &["scale"]),
+];
+
+/// Options that are set, by name; each once. A flag's text is `true`.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct OptionValues(Vec<(String, String)>);
+
+impl From<Vec<(String, String)>> for OptionValues {
+    fn from(pairs: Vec<(String, String)>) -> Self {
+        Self(pairs)
+    }
+}
+
+impl OptionValues {
+    /// Text of an option that is set.
+    pub fn get(&self, name: &str) -> Option<&str> {
+        let mut pairs = self.0.iter();
+        pairs
+            .find(|(own, _)| own == name)
+            .map(|(_, text)| text.as_str())
+    }
+
+    /// Sets an option.
+    pub fn set(&mut self, name: &str, text: impl ToString) {
+        self.remove(&[name]);
+        self.0.push((name.to_owned(), text.to_string()));
+    }
+
+    /// Sets an option that is not set.
+    pub fn set_default(&mut self, name: &str, text: impl ToString) {
+        if self.get(name).is_none() {
+            self.set(name, text);
+        }
+    }
+
+    /// Leaves options to the sources below.
+    pub fn remove(&mut self, names: &[&str]) {
+        self.0.retain(|(name, _)| !names.contains(&name.as_str()));
+    }
+
+    /// Names and texts, in the order in which they were set.
+    pub fn iter(&self) -> impl Iterator<Item = &(String, String)> {
+        self.0.iter()
+    }
+
+    /// Names and texts.
+    pub fn into_pairs(self) -> Vec<(String, String)> {
+        self.0
+    }
+
+    /// These options, and those of `base` that none of these replaces.
+    ///
+    /// The sun is one matter: a direction here replaces place and moment there, and the other way round; so is the exposure,
+    /// and a named camera here replaces the camera there.
+    #[must_use]
+    pub fn over(self, base: Self) -> Self {
+        let mut all = base;
+        all.0
+            .retain(|(name, _)| self.0.iter().all(|(own, _)| !replaces(own, name)));
+        all.0.extend(self.0);
+        all
+    }
+
+    /// These options with the defaults of all others, whatever the scene and the preset: for what has to be known before a
+    /// scene is loaded. The moment is the default one, since it may depend on the scene's place.
+    ///
+    /// # Errors
+    /// An unknown name, a bad value, or options that exclude each other.
+    pub fn alone(&self) -> Result<Options, OptionsError> {
+        let mut values = self.clone();
+        values.remove(&["when"]);
+        values.parse().map(|(options, _)| options)
+    }
+
+    /// Checks names and values one by one, and that no two options exclude each other.
+    ///
+    /// # Errors
+    /// The first that is wrong.
+    pub fn check(&self) -> Result<(), OptionsError> {
+        self.matches().map(|_| ())
+    }
+
+    /// The options, and by what each was set.
+    pub(super) fn parse(&self) -> Result<(Options, ArgMatches), OptionsError> {
+        let matches = self.matches()?;
+        let options = Options::from_arg_matches(&matches);
+        let options = options.map_err(|error| OptionsError(one_line(&error)))?;
+        Ok((options, matches))
+    }
+
+    fn matches(&self) -> Result<ArgMatches, OptionsError> {
+        let words = self
+            .0
+            .iter()
+            .filter_map(|(name, text)| match (is_flag(name), text.as_str()) {
+                (true, "true") => Some(format!("--{name}")),
+                (true, "false") => None,
+                _ => Some(format!("--{name}={text}")),
+            });
+        let matches = DEFINITION.clone().try_get_matches_from(words);
+        matches.map_err(|error| OptionsError(one_line(&error)))
+    }
+}
+
+/// Whether `name` puts `other` of a source below out of force.
+pub(super) fn replaces(name: &str, other: &str) -> bool {
+    let listed = |(from, list): &(&str, &[&str])| *from == name && list.contains(&other);
+    name == other || REPLACES.iter().any(listed) || exclude_each_other(name, other)
+}
+
+/// On the command line: all options of [`Options`], checked; those that the user gave are kept.
+impl Args for OptionValues {
+    fn augment_args(command: Command) -> Command {
+        Options::augment_args(command)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Options::augment_args_for_update(command)
+    }
+}
+
+impl FromArgMatches for OptionValues {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let mut values = Self::default();
+        for arg in DEFINITION.get_arguments() {
+            let (id, name) = (arg.get_id().as_str(), arg.get_long().unwrap_or_default());
+            if matches.value_source(id) == Some(ValueSource::CommandLine) {
+                let mut raw = matches.get_raw(id).into_iter().flatten();
+                let text = raw.next().map(|text| text.to_string_lossy());
+                values.set(name, text.as_deref().unwrap_or("true"));
+            }
+        }
+        Ok(values)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}

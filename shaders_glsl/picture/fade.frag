@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 
-// From the picture that was shown while something moved to the one that converges.
+// Cross-fade from the preview to the converging picture.
 
 layout(location = 0) out vec4 radiance; // rgb: kcd/m^2, or the quantity asked for; a: illuminance, klx
 
@@ -9,7 +9,7 @@ layout(set = 0, binding = 0) uniform sampler2D preview;
 layout(set = 0, binding = 1) uniform sampler2D converging;
 
 layout(push_constant, scalar) uniform Push {
-    float share; // of the preview, 0..1
+    float share; // weight of the preview, 0..1
 } push;
 
 void main() {

@@ -3,11 +3,11 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "colour.glsl"
 
-// The picture into the window: texel by texel, or stretched while the two have different sizes.
+// Copies the picture to the window; scales it while their sizes differ.
 
 layout(location = 0) out vec4 window; // linear; the target's sRGB format encodes
 
-// The picture holds encoded values: undo what the target will do, so that they arrive as they are.
+// The picture holds encoded values: decode, because the target's format encodes again.
 layout(constant_id = 0) const bool ENCODED = false;
 
 layout(set = 0, binding = 0) uniform sampler2D display;

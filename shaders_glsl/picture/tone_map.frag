@@ -7,19 +7,19 @@
 
 layout(location = 0) out vec4 display;
 
-// One curve; none of them is the lecture's linear scale.
+// At most one curve; without one the scale is linear, as in the lecture.
 layout(constant_id = 0) const bool EXPONENTIAL = false;
 layout(constant_id = 1) const bool REINHARD = false;
 layout(constant_id = 2) const bool AGX = false;
 layout(constant_id = 3) const bool NEUTRAL = false;
 layout(constant_id = 4) const bool ACES = false;
-// Encode with a power instead of leaving the sRGB curve to the target's format.
+// Encode with a power law; otherwise the target's sRGB format encodes.
 layout(constant_id = 5) const bool GAMMA = false;
 // Exposure from the average luminance instead of the push constant.
 layout(constant_id = 6) const bool AUTO = false;
 // Ferschin's curve on luminance.
 layout(constant_id = 8) const bool EXPONENTIAL_LUMINANCE = false;
-// Show the luminance only.
+// Show the luminance as grey.
 layout(constant_id = 7) const bool GREY = false;
 // False colours of the luminance instead of exposure and curve.
 layout(constant_id = 9) const bool FALSE_COLOUR = false;

@@ -1,4 +1,4 @@
-//! `skylight bake`: the sky or its irradiance as an environment map, with a JSON file that says what it is.
+//! `skylight bake`: the sky or its irradiance as an environment map, with a JSON description.
 
 use std::path::{Path, PathBuf};
 
@@ -113,7 +113,7 @@ fn encode(path: &Path, picture: &Picture, map: Map, light: &Light) -> Result<Vec
     encode_exr(path, picture.size, &[layer], &metadata)
 }
 
-/// The JSON beside the map: what it takes to light a scene with it.
+/// The JSON description: everything needed to light a scene with the map.
 fn description(
     args: &BakeArgs,
     light: &Light,

@@ -1,4 +1,4 @@
-//! `skylight compare`: the distance of two pictures in numbers, and as a picture.
+//! `skylight compare`: the difference of two pictures in numbers and as a picture.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -23,7 +23,7 @@ pub fn run(args: &CompareArgs) -> Result<()> {
     let mask = mask(args, &reference)?;
     let statistics = Statistics::new(&reference, &test, &mask)?;
     let mut text = report(&statistics);
-    let map = maps(args, [&reference, &test], &mask, &mut text);
+    let map = flip_map(args, [&reference, &test], &mask, &mut text);
     if let Some(path) = &args.diff {
         write_map(path, reference.size, &map)?;
     }
@@ -54,7 +54,7 @@ fn report(s: &Statistics) -> String {
 }
 
 /// FLIP where the mask holds, in words; gives the map for the difference picture.
-fn maps(
+fn flip_map(
     args: &CompareArgs,
     [reference, test]: [&Picture; 2],
     mask: &[bool],

@@ -1,10 +1,10 @@
-//! `skylight info`: the devices, and what each lacks.
+//! `skylight info`: the Vulkan devices and the features that they lack.
 
 use crate::error::Result;
 use crate::gpu::{DeviceSummary, GpuError, Optional, devices};
 use crate::output::print;
 
-/// Prints one block a device.
+/// Prints one block per device.
 ///
 /// # Errors
 /// When there is no Vulkan, or no device.

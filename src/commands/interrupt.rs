@@ -1,23 +1,23 @@
-//! Ctrl-C while samples are drawn: the first time it asks for what there is, the second time it ends the program.
+//! Ctrl-C while samples are drawn: the first writes the picture so far, the second ends the program.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-static ASKED: AtomicBool = AtomicBool::new(false);
+static IS_INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// Exit code of what a shell's user interrupts.
-const INTERRUPTED: i32 = 130;
+/// Exit code after an interrupt, by the convention of shells.
+const EXIT_INTERRUPTED: i32 = 130;
 
-/// Listens from now on. Where that cannot be, Ctrl-C ends the program as it did before.
+/// Installs the handler. Where that fails, Ctrl-C ends the program as before.
 pub(super) fn listen() {
     let listening = ctrlc::set_handler(|| {
-        if ASKED.swap(true, Ordering::Relaxed) {
-            std::process::exit(INTERRUPTED);
+        if IS_INTERRUPTED.swap(true, Ordering::Relaxed) {
+            std::process::exit(EXIT_INTERRUPTED);
         }
     });
     drop(listening);
 }
 
-/// Whether the user has asked for what there is.
-pub(super) fn is_asked() -> bool {
-    ASKED.load(Ordering::Relaxed)
+/// Whether the user pressed Ctrl-C.
+pub(super) fn is_interrupted() -> bool {
+    IS_INTERRUPTED.load(Ordering::Relaxed)
 }

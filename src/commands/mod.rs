@@ -27,10 +27,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::cli::Command;
 use crate::error::Result;
 
-/// Does what the user asked for.
+/// Runs a command.
 ///
 /// # Errors
-/// Whatever keeps it from being done, in one line.
+/// The reason for the failure, in one line.
 pub fn run(command: Command) -> Result<()> {
     match command {
         Command::Render {

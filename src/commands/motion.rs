@@ -1,4 +1,4 @@
-//! What changes from frame to frame while frames are timed.
+//! Motion of camera and sun while frames are timed.
 
 use std::borrow::Cow;
 
@@ -12,9 +12,9 @@ use crate::scene::Camera;
 
 /// Turn of the camera about its target between two frames, radians: a slow walk around.
 const CAMERA_STEP: f32 = 0.002;
-/// Frames after which the camera turns round, so that it stays near the view that was asked for.
+/// Frames after which the camera turns back, so that it stays near the requested view.
 const CAMERA_SWING: u32 = 64;
-/// The sun's way between two frames, degrees of azimuth: that of a minute.
+/// Movement of the sun per frame, degrees of azimuth: about that of a minute.
 const SUN_STEP_DEG: f64 = 0.25;
 
 impl Motion {
@@ -43,7 +43,7 @@ impl Motion {
         Cow::Owned(Daylight::new(&conditions(&job.settings, &sun)))
     }
 
-    /// What the row of the whole frame is called.
+    /// Name of the row of whole frames.
     pub fn frame_name(self) -> &'static str {
         match self {
             Self::None => "whole frame, nothing moves",

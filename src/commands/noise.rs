@@ -1,31 +1,31 @@
-//! How far the mean of frames still is from what it converges to, told by the frames themselves.
+//! Estimate of the standard error of the mean of frames, from the frames themselves.
 //!
-//! Batch means (Conway 1963, "Some Tactical Problems in Digital Simulation"): the frames so far are cut into a few batches of
-//! equal size, one after the other; the spread of their means tells the standard error of the mean of all. Single frames would
-//! tell far too much: each covers sky and pixel unevenly, and many of a low-discrepancy sequence cover them better than as many
-//! random ones. A whole batch is a stretch of the same sequence, so most of that gain is counted; what is gained from batch
-//! to batch is not. All pixels share the directions of the sky, so with few frames chance has a say in it.
+//! Batch means (Conway 1963, "Some Tactical Problems in Digital Simulation"): the frames so far are split into a few consecutive
+//! batches of equal size; the variance of the batch means gives the standard error of the overall mean. The variance of single
+//! frames would overestimate it: a low-discrepancy sequence converges faster than random samples. A batch is a stretch of the
+//! same sequence, so most of that gain is counted; the gain between batches is not. All pixels share the directions of the sky,
+//! so with few frames the estimate is itself noisy.
 
-/// Batches at which two become one.
+/// Number of batches at which pairs are merged.
 const MOST_BATCHES: usize = 8;
-/// Fewest batches that tell a spread.
+/// Fewest batches for an estimate.
 const FEWEST_BATCHES: usize = 4;
-/// Most pixels that are looked at: the spread is a mean over them.
+/// Most pixels that the estimate averages over.
 const MOST_PIXELS: usize = 1 << 20;
-/// Luminance at which pixels are cut, kcd/m²: only the sun's disc and its mirror images are brighter, and few pixels of them
-/// would outweigh the whole picture.
+/// Luminance to which pixels are clamped, kcd/m²: only the sun's disc and its reflections are brighter, and a few of their
+/// pixels would outweigh the whole picture.
 const BRIGHTEST: f32 = 100.0;
 
-/// The estimate over a growing number of frames.
+/// The estimate for a growing number of frames.
 pub(super) struct Noise {
     /// Frames in a batch.
     size: u32,
-    /// Luminance of the mean of the first batch, of the first two, of the first three..
+    /// Luminance of the mean over the first batch, the first two, the first three ..
     means: Vec<Vec<f32>>,
 }
 
 impl Noise {
-    /// Without frames.
+    /// Starts without frames.
     pub(super) fn new() -> Self {
         Self {
             size: 1,
@@ -33,12 +33,12 @@ impl Noise {
         }
     }
 
-    /// The number of frames after which the mean is to be looked at next.
+    /// Number of frames after which to call [`Noise::look`] next.
     pub(super) fn next_look(&self) -> u32 {
         self.size * (self.means.len() as u32 + 1)
     }
 
-    /// Looks at the mean of the first [`Noise::next_look`] frames: RGBA, kcd/m².
+    /// Takes the mean of the first [`Noise::next_look`] frames: RGBA, kcd/m².
     pub(super) fn look(&mut self, mean: &[[f32; 4]]) {
         let step = mean.len().div_ceil(MOST_PIXELS).max(1);
         let luminance = |t: &[f32; 4]| 0.2126 * t[0] + 0.7152 * t[1] + 0.0722 * t[2];
@@ -55,8 +55,8 @@ impl Noise {
         }
     }
 
-    /// Standard error of the newest mean over the picture (root of the mean square over the pixels), relative to the mean
-    /// luminance; none before there is a spread to tell it by. A black picture has none to err by.
+    /// Standard error of the newest mean (root mean square over the pixels), relative to the mean luminance; `None` with too few
+    /// batches, 0 for a black picture.
     pub(super) fn relative_error(&self) -> Option<f64> {
         let count = self.means.len();
         let newest = self.means.last().filter(|_| count >= FEWEST_BATCHES)?;

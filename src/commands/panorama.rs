@@ -8,7 +8,7 @@ use glam::DVec3;
 use crate::cli::Layout;
 use crate::daylight::cube;
 
-/// Names of the faces in Vulkan's order.
+/// Names of the faces, in Vulkan's order.
 pub const FACE_NAMES: [&str; 6] = ["px", "nx", "py", "ny", "pz", "nz"];
 
 /// Column and row of each face in a cross, in Vulkan's order. Neighbours meet without a turn.
@@ -18,17 +18,17 @@ const CROSS: [(usize, usize); 6] = [(2, 1), (0, 1), (1, 0), (1, 2), (1, 1), (3, 
 pub struct Picture {
     /// Columns and rows.
     pub size: [u32; 2],
-    /// RGB; the fourth is 1.
+    /// RGB; the fourth component is 1.
     pub texels: Vec<[f32; 4]>,
 }
 
-/// A value for each unit direction; threads share it.
+/// The value in a unit direction; shared by threads.
 type Value<'v> = &'v (dyn Fn(DVec3) -> DVec3 + Sync);
 
-/// Number and texels of a row.
+/// Index and texels of a row.
 type Row<'t> = (usize, &'t mut [[f32; 4]]);
 
-/// Rows that [`draw`] will tell the progress of, `size` texels along a cube face.
+/// Number of rows that [`draw`] reports progress for; `size` is the edge of a cube face, texels.
 pub fn rows(layout: Layout, size: u32) -> u64 {
     match layout {
         Layout::Equirect => 2 * u64::from(size),
@@ -37,7 +37,7 @@ pub fn rows(layout: Layout, size: u32) -> u64 {
     }
 }
 
-/// The pictures of `layout` with `value` at the centre of each texel, `size` texels along a cube face.
+/// The pictures of `layout` with `value` at the centre of each texel; `size` is the edge of a cube face, texels.
 pub fn draw(layout: Layout, size: u32, value: Value<'_>, done: &(dyn Fn() + Sync)) -> Vec<Picture> {
     let n = size as usize;
     match layout {
@@ -73,7 +73,7 @@ fn cross_direction(i: usize, j: usize, size: usize) -> Option<DVec3> {
     Some(cube::texel_direction(face, i % size, j % size, size))
 }
 
-/// Rows are dealt out to all cores in turn; texels without a direction are 0.
+/// Rows are distributed over all cores; texels without a direction are 0.
 fn picture(
     size: [u32; 2],
     direction: &(dyn Fn(usize, usize) -> Option<DVec3> + Sync),

@@ -20,7 +20,7 @@ const DRAWN: std::ops::Range<f64> = 0.0..2.4;
 /// The figure as SVG.
 pub fn draw(light: &Light) -> String {
     let mut svg = String::new();
-    // Nothing is written but the string, so that only a mistake in `figure` could fail.
+    // Drawing to a string cannot fail unless `figure` itself is wrong.
     figure(&mut svg, light).expect("drawing to memory");
     svg
 }
@@ -39,38 +39,7 @@ fn figure(svg: &mut String, light: &Light) -> Result<(), Box<dyn Error>> {
         .build_cartesian_2d(DRAWN_NM, DRAWN)?;
     let mesh = &mut chart.configure_mesh();
     mesh.x_desc("wavelength, nm").y_desc("W m⁻² nm⁻¹").draw()?;
-    let table = || SUN_RANGE_NM.map(f64::from);
-    let elevation = light.conditions.sun_elevation_deg;
-    let (low, high) = light.conditions.model.turbidity_range();
-    let turbidity = light.conditions.turbidity.clamp(low, high);
-    let mass = air_mass(elevation);
-    let outside = |nm: f64| extraterrestrial_radiance(nm) * SUN_SOLID_ANGLE;
-    let body: Vec<_> = (250..=1200)
-        .map(f64::from)
-        .map(|nm| (nm, planck(KELVIN, nm) * SUN_SOLID_ANGLE))
-        .collect();
-    let above: Vec<_> = table().map(|nm| (nm, outside(nm))).collect();
-    // A sun below the horizon has no light to attenuate.
-    let shines = if elevation >= 0.0 { 1.0 } else { 0.0 };
-    let below: Vec<_> = table()
-        .map(|nm| {
-            (
-                nm,
-                shines * outside(nm) * transmittance(nm, mass, turbidity),
-            )
-        })
-        .collect();
-    let ground = format!("on the ground: turbidity {turbidity}, elevation {elevation:.1}°");
-    let curves = [
-        (body, format!("black body, {KELVIN} K"), BLACK),
-        (
-            above,
-            "outside the atmosphere (Preetham's table)".to_owned(),
-            RGBColor(200, 120, 0),
-        ),
-        (below, ground, RGBColor(0, 90, 200)),
-    ];
-    for (points, label, colour) in curves {
+    for (points, label, colour) in curves(light) {
         let series = LineSeries::new(points, colour.stroke_width(2));
         let legend = move |(x, y)| PathElement::new([(x, y), (x + 24, y)], colour.stroke_width(2));
         chart.draw_series(series)?.label(label).legend(legend);
@@ -84,4 +53,35 @@ fn figure(svg: &mut String, light: &Light) -> Result<(), Box<dyn Error>> {
         .draw()?;
     root.present()?;
     Ok(())
+}
+
+/// Points (nm, W m⁻² nm⁻¹), label and colour.
+type Curve = (Vec<(f64, f64)>, String, RGBColor);
+
+/// The curves of the figure.
+fn curves(light: &Light) -> [Curve; 3] {
+    let elevation = light.conditions.sun_elevation_deg;
+    let (low, high) = light.conditions.model.turbidity_range();
+    let turbidity = light.conditions.turbidity.clamp(low, high);
+    let mass = air_mass(elevation);
+    let table = SUN_RANGE_NM.map(f64::from);
+    let body = (250..=1200).map(f64::from);
+    let body = body.map(|nm| (nm, planck(KELVIN, nm) * SUN_SOLID_ANGLE));
+    let outside = |nm: f64| (nm, extraterrestrial_radiance(nm) * SUN_SOLID_ANGLE);
+    // A sun below the horizon has no light to attenuate.
+    let shines = if elevation >= 0.0 { 1.0 } else { 0.0 };
+    let attenuated = |(nm, e): (f64, f64)| (nm, shines * e * transmittance(nm, mass, turbidity));
+    [
+        (body.collect(), format!("black body, {KELVIN} K"), BLACK),
+        (
+            table.clone().map(outside).collect(),
+            "outside the atmosphere (Preetham's table)".to_owned(),
+            RGBColor(200, 120, 0),
+        ),
+        (
+            table.map(outside).map(attenuated).collect(),
+            format!("on the ground: turbidity {turbidity}, elevation {elevation:.1}°"),
+            RGBColor(0, 90, 200),
+        ),
+    ]
 }

@@ -1,4 +1,4 @@
-//! Error against samples of every irradiance method, on logarithmic axes.
+//! Error over samples of every irradiance method, on logarithmic axes.
 
 use std::error::Error;
 
@@ -11,7 +11,7 @@ use crate::options::name;
 /// The figure as SVG.
 pub fn draw(rows: &[Convergence]) -> String {
     let mut svg = String::new();
-    // Nothing is written but the string, so that only a mistake in `figure` could fail.
+    // Drawing to a string cannot fail unless `figure` itself is wrong.
     figure(&mut svg, rows).expect("drawing to memory");
     svg
 }

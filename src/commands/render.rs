@@ -20,7 +20,7 @@ use crate::output::{
 use crate::passes::light::lighting::{Precision, Show};
 use crate::passes::picture::tone_map::ToneSettings;
 
-/// Samples from which drawing a picture takes much longer than compressing it well.
+/// Number of samples from which drawing takes much longer than good compression.
 const AVERAGED: u32 = 4;
 
 /// Renders `scene` to `output`.
@@ -94,7 +94,7 @@ impl<'j> Renderer<'j> {
         })
     }
 
-    /// Draws the picture, or the quantity that the frame shows.
+    /// Draws the quantity that the frame shows.
     fn draw(&mut self, rule: Rule) -> Result<Drawn> {
         while !self.frame.is_refined() {
             self.recorder.begin()?;
@@ -144,7 +144,7 @@ impl<'j> Renderer<'j> {
         Ok(format!("{width}x{height}{summary}{samples}"))
     }
 
-    /// What false colours show, and their range; one that was not given is looked for in the picture, which is then mapped
+    /// Quantity and range of the false colours. A range that was not given is taken from the picture, which is then mapped
     /// again.
     fn false_colours(&mut self) -> Result<Option<(Quantity, Range)>> {
         let settings = &self.job.settings;
@@ -167,7 +167,7 @@ impl<'j> Renderer<'j> {
         Ok(Some((quantity, range)))
     }
 
-    /// The exposure used, of quantities that are exposed.
+    /// EV100 used, for quantities that are exposed.
     fn ev100(&mut self) -> Result<Option<f64>> {
         let settings = &self.job.settings;
         let exposed = settings.scale.is_none() && settings.false_colour.is_none();
@@ -231,12 +231,12 @@ impl<'j> Renderer<'j> {
     }
 }
 
-/// The layers beside the picture.
+/// The additional layers.
 fn extra_layers() -> impl Iterator<Item = Show> {
     Show::ADDENDS.into_iter().chain(Show::INPUTS)
 }
 
-/// The picture, and the layers beside it that are asked for.
+/// The picture and the requested additional layers.
 fn wanted_layers(job: &Job) -> impl Iterator<Item = (Show, LayerKind)> {
     let shown = job.settings.show;
     let others = extra_layers().filter(|_| job.settings.layers);
@@ -244,7 +244,7 @@ fn wanted_layers(job: &Job) -> impl Iterator<Item = (Show, LayerKind)> {
         .chain(others.map(|show| (show, (name(show), channels(show, name(show))))))
 }
 
-/// The picture itself is always RGB, so that every program shows it.
+/// Channels of a layer. The picture itself is always RGB, so that every program shows it.
 fn channels(show: Show, name: &str) -> Channels {
     match show {
         _ if name.is_empty() => Channels::Rgb,

@@ -81,7 +81,7 @@ pub(super) fn draw(
     let (mut noise, started) = (Noise::new(), Instant::now());
     let mut error = None;
     let mut samples = 0;
-    while samples < rule.most && !interrupt::is_asked() || samples == 0 {
+    while samples < rule.most && !interrupt::is_interrupted() || samples == 0 {
         recorder.begin()?;
         frame.record(recorder, &job.daylight, &job.camera, samples);
         recorder.finish()?;

@@ -1,4 +1,4 @@
-//! `skylight sky`: the numbers of a daylight, its spectra, and how irradiance converges. No device is needed.
+//! `skylight sky`: figures of a daylight, its spectra, and the convergence of irradiance methods. Needs no device.
 
 use serde_json::json;
 
@@ -19,7 +19,7 @@ pub fn exact_by_default(options: &mut OptionValues) {
     }
 }
 
-/// Prints, and draws where wanted.
+/// Prints the figures and draws the plot if requested.
 ///
 /// # Errors
 /// Options that make no sense, or a file that cannot be written.
@@ -30,9 +30,9 @@ pub fn run(args: &SkyArgs, mut options: OptionValues) -> Result<()> {
     exact_by_default(&mut options);
     let light = Light::new(&options)?;
     let (text, drawing) = if args.irradiance_study {
-        told_study(args, &light)
+        study_text(args, &light)
     } else {
-        told_numbers(args, &light)?
+        report_text(args, &light)?
     };
     if let (Some(path), Some(drawing)) = (&args.plot, drawing) {
         write_text(path, &drawing)?;
@@ -40,7 +40,7 @@ pub fn run(args: &SkyArgs, mut options: OptionValues) -> Result<()> {
     print(&format!("{}\n", text.trim_end()))
 }
 
-fn told_numbers(args: &SkyArgs, light: &Light) -> Result<(String, Option<String>)> {
+fn report_text(args: &SkyArgs, light: &Light) -> Result<(String, Option<String>)> {
     let report = SkyReport::new(light, &args.directions)?;
     let text = if args.json {
         format!("{:#}", json!(report))
@@ -51,7 +51,7 @@ fn told_numbers(args: &SkyArgs, light: &Light) -> Result<(String, Option<String>
     Ok((text, drawing))
 }
 
-fn told_study(args: &SkyArgs, light: &Light) -> (String, Option<String>) {
+fn study_text(args: &SkyArgs, light: &Light) -> (String, Option<String>) {
     let rows = study(|direction| light.daylight.radiance(direction));
     let text = if args.json {
         study_json(&rows)

@@ -1,4 +1,4 @@
-//! The numbers of a daylight: as JSON by their field names (which are fixed), as a table by [`Display`](std::fmt::Display).
+//! Figures of a daylight: as JSON by their field names (which are fixed), as a table by [`Display`](std::fmt::Display).
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use crate::daylight::sunlight::{Sunlight, air_mass};
 use crate::error::Result;
 use crate::options::{Direction, SunInput};
 
-/// The axes with their names and what lies there.
+/// The axes with their names and directions.
 pub const AXES: [(&str, &str, DVec3); 6] = [
     ("+x", "east", DVec3::X),
     ("-x", "west", DVec3::NEG_X),
@@ -25,10 +25,10 @@ pub const AXES: [(&str, &str, DVec3); 6] = [
     ("-z", "north", DVec3::NEG_Z),
 ];
 
-/// Correlated colour temperatures beyond this (K) are those of no black body: the search ends there.
+/// Largest correlated colour temperature searched, K.
 const HOTTEST: f64 = 9e5;
 
-/// Everything that `skylight sky` knows. RGB is linear BT.709; cd/m² of luminances, lux of illuminances.
+/// The report of `skylight sky`. RGB is linear BT.709; cd/m² of luminances, lux of illuminances.
 #[derive(Debug, Serialize)]
 pub struct SkyReport {
     /// The options that give this daylight again.
@@ -47,10 +47,10 @@ pub struct SunReport {
     pub azimuth_deg: f64,
     /// True, without refraction.
     pub elevation_deg: f64,
-    /// As seen; everything else is computed with it.
+    /// Apparent, used for everything else.
     pub apparent_elevation_deg: f64,
     pub direction: [f64; 3],
-    /// Of the apparent elevation; below the horizon that at the horizon.
+    /// At the apparent elevation; below the horizon the value at the horizon.
     pub air_mass: f64,
     /// At normal incidence.
     pub illuminance_lux: f64,
@@ -79,7 +79,7 @@ pub struct SkyPart {
     pub zenith_luminance: f64,
     pub zenith_rgb: [f64; 3],
     pub zenith_chromaticity: [f64; 2],
-    /// `None` where no black body is as blue.
+    /// `None` if the sky is bluer than any black body.
     pub zenith_cct_k: Option<f64>,
     /// Of the light on a horizontal plane.
     pub cct_k: Option<f64>,
@@ -107,7 +107,7 @@ pub struct Sample {
 }
 
 impl SkyReport {
-    /// The numbers of `light`, and its radiance in `directions`.
+    /// The figures of `light`, and its radiance in `directions`.
     ///
     /// # Errors
     /// A date that the ephemeris does not cover.
@@ -171,7 +171,7 @@ fn temperature(xyz: DVec3) -> Option<f64> {
     correlated_colour_temperature(xyz).filter(|kelvin| *kelvin < HOTTEST)
 }
 
-/// As the daylight uses it; it says so in a warning when that is not what was asked for.
+/// As used by the model; a warning tells when it differs from the option.
 fn turbidity(light: &Light) -> f64 {
     let (low, high) = light.conditions.model.turbidity_range();
     light.conditions.turbidity.clamp(low, high)

@@ -1,4 +1,4 @@
-//! The numbers of a daylight as a table for people.
+//! The report of a daylight as a table.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -136,7 +136,7 @@ fn kelvin(value: Option<f64>, none: &str) -> String {
     value.map_or_else(|| none.to_owned(), |k| format!("{k:.0} K"))
 }
 
-/// Four digits, or all before the point.
+/// Four significant digits, or all before the decimal point.
 fn number(value: f64) -> String {
     let digits = 3 - value.abs().max(1e-300).log10().floor() as i32;
     match digits {

@@ -1,4 +1,4 @@
-//! `skylight info --startup`: where the time goes before the first picture of the bundled scene is there.
+//! `skylight info --startup`: the time of each step up to the first picture of the bundled scene.
 
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -11,13 +11,13 @@ use crate::options::{OptionValues, Optional};
 use crate::output::print;
 use crate::passes::light::lighting::Precision;
 
-/// Pipelines that are listed, the slowest first.
+/// Number of pipelines listed, slowest first.
 const LISTED: usize = 8;
 
-/// Goes the way of `render` and prints what each step took.
+/// Takes the steps of `render` and prints their times.
 ///
 /// # Errors
-/// Whatever keeps the picture from being drawn.
+/// No usable device, or a device error.
 pub fn run(device: Option<String>, without: Option<Optional>) -> Result<()> {
     let mut clock = Clock::new();
     let mut options = OptionValues::default();
@@ -31,14 +31,14 @@ pub fn run(device: Option<String>, without: Option<Optional>) -> Result<()> {
     clock.done("read the bundled scene, decide about its light; open the device");
     let mut recorder = Recorder::new(&context, Timing::Off)?;
     let settings = job.frame_settings(job.settings.show, Precision::Half);
-    clock.done("recorder, settings of the frame");
+    clock.done("recorder, frame settings");
     recorder.begin()?;
     let mut frame = Frame::new(&mut recorder, &job.scene, settings)?;
-    clock.done("pipelines, images, scene to the device (recorded)");
+    clock.done("pipelines, images, scene upload (recorded)");
     recorder.finish()?;
-    clock.done("scene to the device (run)");
+    clock.done("scene upload (executed)");
     for name in [
-        "first frame (software drivers compile shaders now)",
+        "first frame (software drivers compile shaders here)",
         "second frame",
     ] {
         recorder.begin()?;
@@ -81,8 +81,8 @@ fn report(steps: &[Step], context: &Context) -> String {
     for step in steps {
         line(&step.name, step.ms);
     }
-    line("together", steps.iter().map(|s| s.ms).sum());
-    let _ = writeln!(text, "\nopening the device, while the scene was read:");
+    line("total", steps.iter().map(|s| s.ms).sum());
+    let _ = writeln!(text, "\nopening the device, while the scene was loaded:");
     for step in context.opening() {
         let _ = writeln!(text, "    {:48} {:8.2}", step.name, step.ms);
     }
@@ -91,7 +91,7 @@ fn report(steps: &[Step], context: &Context) -> String {
     let one_by_one: f64 = pipelines.iter().map(|p| p.ms).sum();
     let _ = writeln!(
         text,
-        "\n{} pipelines, made in parallel; one after the other {one_by_one:.2} ms; the slowest:",
+        "\n{} pipelines, created in parallel; {one_by_one:.2} ms in sequence; the slowest:",
         pipelines.len()
     );
     for step in pipelines.iter().take(LISTED) {
@@ -100,7 +100,7 @@ fn report(steps: &[Step], context: &Context) -> String {
     let words: usize = shaders::ALL.iter().map(|s| s.words.len()).sum();
     let _ = writeln!(
         text,
-        "pipeline cache: {}\nshader modules: {}, {} KiB together",
+        "pipeline cache: {}\nshader modules: {}, {} KiB in total",
         cache(context.cache_state()),
         shaders::ALL.len(),
         4 * words / 1024
@@ -110,9 +110,9 @@ fn report(steps: &[Step], context: &Context) -> String {
 
 fn cache(state: CacheState) -> String {
     match state {
-        CacheState::Off => "none: this user has no cache folder".to_owned(),
-        CacheState::New => "none yet; it is kept from now on".to_owned(),
-        CacheState::Read(bytes) => format!("read, {bytes} bytes of the driver"),
-        CacheState::Refused => "damaged or of another driver; made anew".to_owned(),
+        CacheState::Off => "off: no cache folder".to_owned(),
+        CacheState::New => "new".to_owned(),
+        CacheState::Read(bytes) => format!("loaded, {bytes} bytes"),
+        CacheState::Refused => "damaged or of another driver; replaced".to_owned(),
     }
 }

@@ -1,13 +1,13 @@
-//! FLIP: the difference that a viewer sees when alternating between two pictures, 0 (none) to 1, pixel by pixel.
+//! FLIP: the difference that a viewer sees when alternating between two pictures, per pixel, 0 (none) to 1.
 //!
 //! Andersson et al. 2020, "FLIP: A Difference Evaluator for Alternating Images", and, for scene-linear pictures, Andersson
-//! et al. 2021, "Visualizing Errors in Rendered High Dynamic Range Images". Checked against the authors' `flip-evaluator`.
+//! et al. 2021, "Visualizing Errors in Rendered High Dynamic Range Images". Tested against the authors' `flip-evaluator`.
 
 use std::f32::consts::PI;
 
 use super::Picture;
 
-/// Pixels in a degree of the viewer's sight: a display 0.7 m and 3840 pixels wide, seen from 0.7 m.
+/// Pixels per degree of visual angle: a display 0.7 m and 3840 pixels wide, viewed from 0.7 m.
 pub const PIXELS_PER_DEGREE: f32 = 3840.0 * PI / 180.0;
 
 /// Andersson et al. 2020, Table 1: amplitude and width of the Gaussians of each channel's contrast sensitivity.
@@ -16,13 +16,13 @@ const SENSITIVITY: [&[[f32; 2]]; 3] = [
     &[[1.0, 0.0053]],
     &[[34.1, 0.04], [13.5, 0.025]],
 ];
-/// The widest of them.
+/// The largest width.
 const WIDEST: f32 = 0.04;
 /// Exponent of the colour difference.
 const Q_COLOUR: f32 = 0.7;
-/// Share of the largest colour difference that maps to [`T_COLOUR`].
+/// Fraction of the largest colour difference that maps to [`T_COLOUR`].
 const P_COLOUR: f32 = 0.4;
-/// Where it maps to.
+/// Value that the fraction [`P_COLOUR`] maps to.
 const T_COLOUR: f32 = 0.95;
 /// Exponent of the difference of features.
 const Q_FEATURE: f32 = 0.5;
@@ -36,7 +36,7 @@ const XYZ_FROM_RGB: [[f32; 3]; 3] = [
     [0.017_752_4, 0.109_465_8, 0.872_781_8],
 ];
 
-/// One number a pixel.
+/// One value per pixel.
 #[derive(Clone)]
 struct Plane {
     size: [usize; 2],
@@ -44,7 +44,7 @@ struct Plane {
 }
 
 impl Plane {
-    /// Convolved with the product of two kernels of odd length; beyond the border its last pixel goes on.
+    /// Convolution with the product of two kernels of odd length; the border pixels are repeated.
     fn convolved(&self, across: &[f32], down: &[f32]) -> Self {
         let [width, height] = self.size;
         let mut rows = vec![0.0; width * height];
@@ -82,14 +82,14 @@ fn convolve_row(row: &[f32], kernel: &[f32], out: &mut [f32]) {
     }
 }
 
-/// Values of a function at whole offsets up to `radius` on both sides.
+/// Samples a function at integer offsets up to `radius` on both sides.
 fn kernel(radius: usize, f: impl Fn(f32) -> f32) -> Vec<f32> {
     (0..=2 * radius)
         .map(|i| f(i as f32 - radius as f32))
         .collect()
 }
 
-/// Scaled so that the positive weights sum to 1 and the negative ones to −1.
+/// Scales the positive weights to the sum 1 and the negative ones to −1.
 fn normalised(kernel: &[f32]) -> Vec<f32> {
     let sum = |sign: f32| kernel.iter().map(|w| (w * sign).max(0.0)).sum::<f32>();
     let (positive, negative) = (sum(1.0), sum(-1.0));
@@ -146,7 +146,7 @@ fn hyab(p: [f32; 3], q: [f32; 3]) -> f32 {
     (p[0] - q[0]).abs() + (p[1] - q[1]).hypot(p[2] - q[2])
 }
 
-/// The colour difference as 0..=1: large ones are compressed.
+/// Maps the colour difference to 0..=1; large differences are compressed.
 fn redistributed(power: f32, largest: f32) -> f32 {
     let knee = P_COLOUR * largest;
     if power < knee {
@@ -156,7 +156,7 @@ fn redistributed(power: f32, largest: f32) -> f32 {
     }
 }
 
-/// What the eye resolves of each channel, as CIELAB with the Hunt effect.
+/// Filters each channel by its contrast sensitivity; returns CIELAB with the Hunt effect.
 fn perceived(channels: &[Plane; 3]) -> Vec<[f32; 3]> {
     let radius = (3.0 * (WIDEST / (2.0 * PI * PI)).sqrt() * PIXELS_PER_DEGREE).ceil() as usize;
     let filtered: [Vec<f32>; 3] =
@@ -169,7 +169,7 @@ fn perceived(channels: &[Plane; 3]) -> Vec<[f32; 3]> {
         .collect()
 }
 
-/// A plane under a sum of Gaussians with weights that sum to 1.
+/// Filters a plane with a normalised sum of Gaussians.
 fn filtered(plane: &Plane, gaussians: &[[f32; 2]], radius: usize) -> Vec<f32> {
     let shapes = gaussians.iter().map(|[amplitude, width]| {
         let at = |x: f32| (-(PI * x / PIXELS_PER_DEGREE).powi(2) / width).exp();
@@ -189,7 +189,7 @@ fn filtered(plane: &Plane, gaussians: &[[f32; 2]], radius: usize) -> Vec<f32> {
     result
 }
 
-/// Strength of edges and of points at every pixel.
+/// Magnitude of edges and of points at each pixel.
 fn features(luma: &Plane) -> Vec<[f32; 2]> {
     let deviation = 0.5 * FEATURE_WIDTH * PIXELS_PER_DEGREE;
     let radius = (3.0 * deviation).ceil() as usize;
@@ -211,14 +211,14 @@ fn features(luma: &Plane) -> Vec<[f32; 2]> {
         .collect()
 }
 
-/// A picture as the metric looks at it.
+/// A picture prepared for the metric.
 struct Seen {
     colours: Vec<[f32; 3]>,
     features: Vec<[f32; 2]>,
 }
 
 impl Seen {
-    /// Of display-referred light, which is cut to 0..=1.
+    /// Prepares a display-referred picture, clamped to 0..=1.
     fn new(picture: &Picture) -> Self {
         let cut = |p: &[f32; 3]| opponent(p.map(|v| v.clamp(0.0, 1.0)));
         let colours: Vec<[f32; 3]> = picture.rgb.iter().map(cut).collect();
@@ -237,7 +237,7 @@ impl Seen {
     }
 }
 
-/// FLIP of two display-referred pictures of one size, pixel by pixel, 0..=1.
+/// LDR-FLIP of two display-referred pictures of one size, per pixel, 0..=1.
 pub fn ldr(reference: &Picture, test: &Picture) -> Vec<f32> {
     let (a, b) = (Seen::new(reference), Seen::new(test));
     let [green, blue] = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(hunt_lab);
@@ -254,7 +254,7 @@ pub fn ldr(reference: &Picture, test: &Picture) -> Vec<f32> {
         .collect()
 }
 
-/// Coefficients of the tone curve between exposures: Narkowicz' fit of ACES, its input scaled by 0.6.
+/// Coefficients of the tone curve: Narkowicz' fit of ACES with its input scaled by 0.6.
 const CURVE: [f32; 6] = [
     0.6 * 0.6 * 2.51,
     0.6 * 0.03,
@@ -269,7 +269,7 @@ fn tone(x: f32) -> f32 {
     (((a * x + b) * x + c) / ((d * x + e) * x + f)).clamp(0.0, 1.0)
 }
 
-/// Exposures, in stops, at which the reference's brightest and median luminance come near white: first, last, number.
+/// Exposures of HDR-FLIP: first and last in stops (brightest and median luminance of the reference near white), and their number.
 ///
 /// Andersson et al. 2021, section 3.
 pub fn exposures(reference: &Picture) -> (f32, f32, usize) {
@@ -286,7 +286,7 @@ pub fn exposures(reference: &Picture) -> (f32, f32, usize) {
     (start, stop, ((stop - start).ceil() as usize).max(2))
 }
 
-/// FLIP of two scene-linear pictures of one size, pixel by pixel: the largest over the exposures of [`exposures`].
+/// HDR-FLIP of two scene-linear pictures of one size, per pixel: the maximum over [`exposures`].
 pub fn hdr(reference: &Picture, test: &Picture) -> Vec<f32> {
     let (start, stop, count) = exposures(reference);
     let mut worst = vec![0.0f32; reference.rgb.len()];
@@ -306,7 +306,7 @@ pub fn hdr(reference: &Picture, test: &Picture) -> Vec<f32> {
     worst
 }
 
-/// The mean of a map: the one number of FLIP.
+/// Mean of a FLIP map.
 pub fn mean(map: &[f32]) -> f64 {
     map.iter().map(|v| f64::from(*v)).sum::<f64>() / map.len() as f64
 }

@@ -1,4 +1,4 @@
-//! Two pictures of the same view: how far apart they are, in numbers of radiometry and of perception.
+//! Difference of two pictures of the same view: radiometric statistics and perceived difference (FLIP).
 
 pub mod flip;
 mod read;
@@ -10,15 +10,15 @@ use crate::error::{Error, Result};
 /// Weights of linear BT.709 in luminance.
 const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
 
-/// Relative errors are taken against at least this share of the reference's mean, so that black pixels do not rule.
+/// Lower limit of the divisor of relative errors, relative to the mean of the reference: black pixels must not dominate.
 const DARKEST: f64 = 0.02;
 
-/// What the numbers of a picture are.
+/// What the values of a picture refer to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Referred {
-    /// Proportional to the scene's radiance: any number that is not negative.
+    /// Scene-linear: proportional to radiance, not negative.
     Scene,
-    /// To a display: linear light, 0..=1.
+    /// Display-referred: linear light, 0..=1.
     Display,
 }
 
@@ -29,15 +29,15 @@ pub struct Picture {
     pub size: [usize; 2],
     /// Linear RGB.
     pub rgb: Vec<[f32; 3]>,
-    /// What the numbers are.
+    /// What the values refer to.
     pub referred: Referred,
 }
 
 impl Picture {
-    /// A picture from bytes with the sRGB curve (three a pixel).
+    /// A picture from sRGB bytes, three per pixel.
     ///
     /// # Panics
-    /// When there are not three bytes for each pixel: a fault of the caller.
+    /// The number of bytes does not match the size.
     pub fn from_srgb8(size: [usize; 2], bytes: &[u8]) -> Self {
         assert_eq!(bytes.len(), 3 * size[0] * size[1], "bytes of the picture");
         let decoded: [f32; 256] = std::array::from_fn(|i| srgb_decoded(i as f32 / 255.0));
@@ -58,7 +58,7 @@ impl Picture {
         self.rgb.iter().map(dot).collect()
     }
 
-    /// The display's light after a factor (exposure), cut to 0..=1.
+    /// Applies an exposure factor and clamps to 0..=1.
     #[must_use]
     pub fn exposed(&self, factor: f32) -> Self {
         let cut = |p: &[f32; 3]| p.map(|v| (v * factor).clamp(0.0, 1.0));
@@ -69,7 +69,7 @@ impl Picture {
         }
     }
 
-    /// The same picture where `mask` holds, black elsewhere.
+    /// The picture where `mask` is true, black elsewhere.
     #[must_use]
     pub fn masked(&self, mask: &[bool]) -> Self {
         let keep = |(p, keep): (&[f32; 3], &bool)| if *keep { *p } else { [0.0; 3] };
@@ -80,7 +80,7 @@ impl Picture {
     }
 }
 
-/// IEC 61966-2-1, from the coded value to linear light.
+/// IEC 61966-2-1: encoded value to linear light.
 fn srgb_decoded(v: f32) -> f32 {
     if v <= 0.04045 {
         v / 12.92
@@ -89,10 +89,10 @@ fn srgb_decoded(v: f32) -> f32 {
     }
 }
 
-/// That two pictures can be compared at all.
+/// Checks that two pictures can be compared.
 ///
 /// # Errors
-/// When their sizes differ, or one is meant for a display and the other is not.
+/// Their sizes differ, or one is scene-linear and the other display-referred.
 pub fn check_comparable(reference: &Picture, test: &Picture) -> Result<()> {
     let [a, b] = [reference.size, test.size];
     if a != b {
@@ -103,13 +103,13 @@ pub fn check_comparable(reference: &Picture, test: &Picture) -> Result<()> {
     }
     if reference.referred != test.referred {
         return Err(Error::Compare(
-            "one picture is scene-linear, the other for a display; compare .exr with .exr or .png with .png".to_owned(),
+            "one picture is scene-linear, the other display-referred; compare .exr with .exr or .png with .png".to_owned(),
         ));
     }
     Ok(())
 }
 
-/// Errors of luminance over the pixels compared.
+/// Errors of luminance over the compared pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistics {
     /// Number of pixels.
@@ -125,10 +125,10 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// Of the pixels where `mask` holds.
+    /// Statistics of the pixels where `mask` is true.
     ///
     /// # Errors
-    /// When there are none, or the reference is black there.
+    /// There are none, or the reference is black there.
     pub fn new(reference: &Picture, test: &Picture, mask: &[bool]) -> Result<Self> {
         let pairs: Vec<(f64, f64)> = reference
             .luminance()
@@ -144,7 +144,7 @@ impl Statistics {
         let reference_mean = mean(&|r, _| r);
         if reference_mean.is_nan() || reference_mean <= 0.0 {
             return Err(Error::Compare(
-                "nothing to compare: the reference is black or no pixel is left; give the pictures in the other order or drop --mask".to_owned(),
+                "nothing to compare: the reference is black or the mask is empty; swap the pictures or drop --mask".to_owned(),
             ));
         }
         let mut errors: Vec<f64> = pairs
@@ -162,14 +162,14 @@ impl Statistics {
     }
 }
 
-/// The value below which the share `q` of ascending values lies, interpolated.
+/// The quantile `q` of ascending values, interpolated.
 fn quantile(sorted: &[f64], q: f64) -> f64 {
     let at = (sorted.len() - 1) as f64 * q;
     let (low, high) = (at.floor() as usize, at.ceil() as usize);
     sorted[low] + (sorted[high] - sorted[low]) * at.fract()
 }
 
-/// Exposure that brings the 75th percentile of the luminance to half of white.
+/// Exposure factor that brings the 75th percentile of the luminance to 0.5.
 pub fn exposure_of(reference: &Picture, mask: &[bool]) -> f32 {
     let mut luminance: Vec<f64> = reference
         .luminance()
@@ -191,7 +191,7 @@ pub fn exposure_of(reference: &Picture, mask: &[bool]) -> f32 {
     }
 }
 
-/// Pixels of `mask` whose eight neighbours are of it too: edges, where two renderers' filters differ, are left out.
+/// Erodes `mask` by one pixel: at edges the filters of two renderers differ.
 pub fn eroded(size: [usize; 2], mask: &[bool]) -> Vec<bool> {
     let around = |i: usize, n: usize| i.saturating_sub(1)..=(i + 1).min(n - 1);
     let inside = |i: usize| {

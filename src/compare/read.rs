@@ -1,4 +1,4 @@
-//! Pictures from files: EXR as scene-linear, the others as sRGB.
+//! Reads pictures: EXR as scene-linear, other formats as sRGB.
 
 use std::path::Path;
 
@@ -7,10 +7,10 @@ use exr::prelude::{ReadChannels as _, ReadLayers as _};
 use super::{Picture, Referred};
 use crate::error::{Error, Result};
 
-/// Reads a picture: of an .exr the channels R, G, B (or Y, or a depth, as grey), of any other its sRGB values.
+/// Reads a picture: the channels R, G, B of an .exr (or Y, or the depth, as grey), the sRGB values of other formats.
 ///
 /// # Errors
-/// When the file is missing, no picture, or without colours.
+/// The file is missing, not a picture, or has none of these channels.
 pub fn read(path: &Path) -> Result<Picture> {
     let is_exr = path
         .extension()

@@ -1,4 +1,4 @@
-//! OpenEXR: scene-linear 32-bit floats with the parameters as attributes and further quantities as named layers.
+//! OpenEXR: scene-linear 32-bit floats, the parameters as attributes, further quantities as named layers.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -13,7 +13,7 @@ use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, LayerA
 use super::{Metadata, write_error, write_whole};
 use crate::error::Result;
 
-/// Which channels a layer has.
+/// Channels of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Channels {
     /// R, G, B.
@@ -37,29 +37,29 @@ impl Channels {
     }
 }
 
-/// A quantity: texels from the top left, in file units.
+/// One quantity: texels in rows from the top left, in file units.
 #[derive(Debug, Clone)]
 pub struct Layer {
-    /// Name, before the dot of its channels; empty for the picture itself.
+    /// Name before the dot of its channels; empty for the picture itself.
     pub name: &'static str,
-    /// Its channels.
+    /// Channels.
     pub channels: Channels,
-    /// Texels; the fourth component is ignored.
+    /// Texels; unused components are ignored.
     pub texels: Vec<[f32; 4]>,
 }
 
-/// Writes layers of one size. A channel is called `layer.R`, those of the nameless layer plain `R`.
+/// Writes layers of one size. Channels are named `layer.R`, those of the unnamed layer `R`.
 ///
 /// # Errors
-/// When the file cannot be written; an older one is left alone then.
+/// The file cannot be written; an older one is left alone then.
 pub fn write_exr(path: &Path, size: [u32; 2], layers: &[Layer], metadata: &Metadata) -> Result<()> {
     write_whole(path, &encode_exr(path, size, layers, metadata)?)
 }
 
-/// The bytes of [`write_exr`]; `path` is for the message.
+/// The bytes of [`write_exr`]; `path` is for error messages.
 ///
 /// # Errors
-/// When the picture is not one, for instance empty.
+/// The picture cannot be encoded, for instance because it is empty.
 pub fn encode_exr(
     path: &Path,
     size: [u32; 2],
@@ -69,14 +69,14 @@ pub fn encode_exr(
     encode(size, layers, metadata).map_err(|e| write_error(path, e))
 }
 
-/// The form that every reader knows: ZIP, rows from the top.
+/// The most widely supported encoding: ZIP, scan lines from the top.
 pub(super) const ENCODING: Encoding = Encoding {
     compression: Compression::ZIP16,
     blocks: Blocks::ScanLines,
     line_order: LineOrder::Increasing,
 };
 
-/// The primaries and white of all our colours.
+/// Primaries and white point of BT.709.
 pub(super) const BT709: Chromaticities = Chromaticities {
     red: Vec2(0.64, 0.33),
     green: Vec2(0.30, 0.60),
@@ -123,7 +123,7 @@ pub(super) fn full_name(layer: &str, channel: &str) -> String {
     }
 }
 
-/// The parameters, and what wrote them.
+/// The parameters and the name of the program.
 pub(super) fn attributes(metadata: &Metadata) -> LayerAttributes {
     let mut attributes = LayerAttributes {
         white_luminance: None,
@@ -132,7 +132,7 @@ pub(super) fn attributes(metadata: &Metadata) -> LayerAttributes {
     attributes.software_name = Some(Text::from("skylight"));
     for (key, value) in metadata {
         let value = AttributeValue::Text(Text::new_or_none(value).unwrap_or_default());
-        // Prefixed: some of our names (exposure) are standard attributes of other types.
+        // Prefixed: some option names (exposure) are standard attributes of other types.
         attributes
             .other
             .insert(Text::from(format!("skylight:{key}").as_str()), value);

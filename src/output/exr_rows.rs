@@ -1,4 +1,4 @@
-//! OpenEXR files of pictures that are never whole in memory: the same files as of [`super::write_exr`], band by band.
+//! OpenEXR files written band by band, for pictures larger than memory; the files equal those of [`super::write_exr`].
 
 use std::io::BufWriter;
 use std::path::Path;
@@ -14,20 +14,20 @@ use super::exr::{BT709, ENCODING, attributes, full_name};
 use super::{Channels, Metadata, reason, temporary, write_error};
 use crate::error::{Error, Result};
 
-/// Rows that a block of the file has: those of bands must be a multiple, but for the last.
+/// Rows of a block of the file. The rows of a band must be a multiple of it, except for the last band.
 pub const BLOCK_ROWS: usize = 16;
 
-/// A quantity of a file: its name (empty for the picture itself), and its channels.
+/// A layer: its name (empty for the picture itself) and its channels.
 pub type LayerKind = (&'static str, Channels);
 
-/// A channel: its name in the file, the layer, and the component of its texels.
+/// A channel: its name in the file, its layer, and the component of the texels.
 type Channel = (String, usize, usize);
 
-/// Writes layers of one size. `band` is asked for the next rows until all `size[1]` are there: the texels of each layer, as
-/// many rows as it likes in multiples of 16 (but for the last).
+/// Writes layers of one size. `band` returns the texels of each layer for the next rows, any multiple of [`BLOCK_ROWS`]; it is
+/// called until all `size[1]` rows are written.
 ///
 /// # Errors
-/// What `band` fails with, or when the file cannot be written; an older one is left alone then.
+/// The error of `band`, or the file cannot be written; an older one is left alone then.
 pub fn write_exr_rows(
     path: &Path,
     size: [u32; 2],
@@ -40,7 +40,7 @@ pub fn write_exr_rows(
     let file = temporary(path)?;
     let handle = file.as_file().try_clone();
     let handle = handle.map_err(|e| write_error(path, reason(&e)))?;
-    // The library's errors have no room for ours.
+    // The library's error type cannot hold this error.
     let mut failed: Option<Error> = None;
     let written = exr::block::writer::write_chunks_with(
         BufWriter::new(handle),
@@ -74,7 +74,7 @@ pub fn write_exr_rows(
     Ok(())
 }
 
-/// The channels in the order of the file, which is that of their names.
+/// The channels in file order: sorted by name.
 fn sorted(layers: &[LayerKind]) -> Vec<Channel> {
     let channels = layers.iter().enumerate().flat_map(|(i, (name, kind))| {
         let names = kind.names().iter().enumerate();
@@ -106,7 +106,7 @@ struct Bands<'w, W> {
     compressor: SequentialBlocksCompressor<'w, W>,
     width: usize,
     channels: &'w [Channel],
-    /// Rows that are written.
+    /// Rows written so far.
     row: usize,
 }
 
@@ -134,7 +134,7 @@ impl<W: std::io::Write + std::io::Seek> Bands<'_, ChunkWriter<W>> {
         Ok(())
     }
 
-    /// Row by row, of each channel all values.
+    /// The bytes of a block: for each row, all values of each channel.
     fn block(&self, texels: &[Vec<[f32; 4]>], rows: std::ops::Range<usize>) -> Vec<u8> {
         let mut data = Vec::with_capacity(rows.len() * self.width * self.channels.len() * 4);
         for row in rows {

@@ -1,4 +1,4 @@
-//! Radiance HDR: a shared exponent for the three channels, so that a channel is exact to 1/256 of the largest.
+//! Radiance HDR: the three channels share an exponent, so the error is at most 1/256 of the largest channel.
 
 use std::path::Path;
 
@@ -8,10 +8,10 @@ use image::codecs::hdr::HdrEncoder;
 use super::write_error;
 use crate::error::Result;
 
-/// The bytes of a picture, rows from the top; the fourth component of a texel is ignored. `path` is for the message.
+/// The bytes of a picture, rows from the top; the fourth component of a texel is ignored. `path` is for error messages.
 ///
 /// # Errors
-/// When the picture is not one, for instance empty.
+/// The picture cannot be encoded, for instance because it is empty.
 pub fn encode_hdr(path: &Path, size: [u32; 2], texels: &[[f32; 4]]) -> Result<Vec<u8>> {
     let rgb: Vec<Rgb<f32>> = texels.iter().map(|t| Rgb([t[0], t[1], t[2]])).collect();
     let mut bytes = Vec::new();

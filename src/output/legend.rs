@@ -1,49 +1,59 @@
 //! The legend of a picture in false colours: a bar of the colours with round values beside it.
 
-use std::convert::Infallible;
-
-use embedded_graphics::mono_font::iso_8859_1::FONT_8X13;
-use embedded_graphics::mono_font::{MonoFont, MonoTextStyle};
-use embedded_graphics::pixelcolor::Rgb888;
-use embedded_graphics::prelude::*;
-use embedded_graphics::primitives::{PrimitiveStyle, Rectangle};
-use embedded_graphics::text::{Baseline, Text};
+use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 
 use crate::daylight::colour::srgb_oetf;
 use crate::daylight::false_colour::{Quantity, Range, Tick};
 
-/// Letters of the labels; it has ².
-const FONT: &MonoFont<'_> = &FONT_8X13;
-/// Between the parts, pixels.
+/// Weight of the labels.
+const WEIGHT: FontWeight = FontWeight::Regular;
+/// Height of the labels.
+const HEIGHT: RasterHeight = RasterHeight::Size16;
+/// Width and height of a character, pixels.
+const LETTER: [i32; 2] = [get_raster_width(WEIGHT, HEIGHT) as i32, HEIGHT.val() as i32];
+/// Colour of the panel, sRGB.
+const PANEL: [u8; 3] = [24; 3];
+/// Colour of labels and ticks, sRGB.
+const INK: [u8; 3] = [255; 3];
+/// Space between the parts, pixels.
 const GAP: i32 = 8;
 /// Width of the bar, pixels.
 const BAR: i32 = 18;
 /// Length of a tick, pixels.
 const TICK: i32 = 5;
-/// Height of a picture from which on the legend is drawn twice as large, and so on, pixels.
+/// Picture height at which the legend doubles in size, triples at twice that, and so on, pixels.
 const HEIGHT_OF_ONE: u32 = 900;
-/// Share of the picture's height that the legend takes, in tenths.
+/// Height of the legend, tenths of the picture's height.
 const TENTHS: i32 = 7;
 
 /// Draws the legend of `range` at the right edge of `rgba`: rows from the top, four bytes a pixel, sRGB.
 ///
-/// A picture that is too small for it stays as it is; returns whether there is a legend now.
+/// A picture that is too small is left unchanged. Returns whether the legend was drawn.
 pub fn draw_legend(rgba: &mut [u8], size: [u32; 2], quantity: Quantity, range: Range) -> bool {
     let mut canvas = Canvas::new(rgba, size);
     let layout = Layout::new(&canvas, quantity, &range);
     let fits = layout.is_within_picture();
     if fits {
-        let Ok(()) = layout.draw(&mut canvas, &range);
+        layout.draw(&mut canvas, &range);
     }
     fits
 }
 
-/// A picture to draw on, in units of `zoom` pixels.
+/// A rectangle: left, top, width, height.
+#[derive(Debug, Clone, Copy)]
+struct Rectangle {
+    x: i32,
+    y: i32,
+    width: i32,
+    height: i32,
+}
+
+/// The picture as a canvas in units of `zoom` pixels.
 struct Canvas<'p> {
     rgba: &'p mut [u8],
     width: u32,
     zoom: u32,
-    size: Size,
+    size: [i32; 2],
 }
 
 impl<'p> Canvas<'p> {
@@ -53,44 +63,54 @@ impl<'p> Canvas<'p> {
             rgba,
             width,
             zoom,
-            size: Size::new(width / zoom, height / zoom),
+            size: [width, height].map(|edge| (edge / zoom) as i32),
         }
     }
-}
 
-impl OriginDimensions for Canvas<'_> {
-    fn size(&self) -> Size {
-        self.size
-    }
-}
-
-impl DrawTarget for Canvas<'_> {
-    type Color = Rgb888;
-    type Error = Infallible;
-
-    fn draw_iter<I: IntoIterator<Item = Pixel<Rgb888>>>(
-        &mut self,
-        pixels: I,
-    ) -> Result<(), Infallible> {
-        let area = self.bounding_box();
-        for Pixel(at, colour) in pixels {
-            if !area.contains(at) {
-                continue;
-            }
-            let (x, y) = (at.x as u32 * self.zoom, at.y as u32 * self.zoom);
-            for row in y..y + self.zoom {
-                for column in x..x + self.zoom {
-                    let first = 4 * (row as usize * self.width as usize + column as usize);
-                    let rgb = [colour.r(), colour.g(), colour.b()];
-                    self.rgba[first..first + 3].copy_from_slice(&rgb);
+    /// Blends a colour over a unit: `alpha` 0..=255. Units outside the picture are ignored.
+    fn blend(&mut self, x: i32, y: i32, colour: [u8; 3], alpha: u8) {
+        if !(0..self.size[0]).contains(&x) || !(0..self.size[1]).contains(&y) {
+            return;
+        }
+        let mix = |old: u8, new: u8| {
+            let [old, new, alpha] = [old, new, alpha].map(u32::from);
+            ((old * (255 - alpha) + new * alpha + 127) / 255) as u8
+        };
+        let (x, y) = (x as u32 * self.zoom, y as u32 * self.zoom);
+        for row in y..y + self.zoom {
+            for column in x..x + self.zoom {
+                let first = 4 * (row as usize * self.width as usize + column as usize);
+                for (old, new) in self.rgba[first..first + 3].iter_mut().zip(colour) {
+                    *old = mix(*old, new);
                 }
             }
         }
-        Ok(())
+    }
+
+    fn fill(&mut self, area: Rectangle, colour: [u8; 3]) {
+        for y in area.y..area.y + area.height {
+            for x in area.x..area.x + area.width {
+                self.blend(x, y, colour, 255);
+            }
+        }
+    }
+
+    /// Writes text from an upper left corner. Characters that the font lacks stay blank.
+    fn text(&mut self, x: i32, y: i32, text: &str) {
+        for (character, left) in text.chars().zip((x..).step_by(LETTER[0] as usize)) {
+            let Some(raster) = get_raster(character, WEIGHT, HEIGHT) else {
+                continue;
+            };
+            for (row, alphas) in (y..).zip(raster.rows()) {
+                for (column, alpha) in (left..).zip(alphas) {
+                    self.blend(column, row, INK, *alpha);
+                }
+            }
+        }
     }
 }
 
-/// Where everything goes.
+/// Positions of the parts.
 struct Layout {
     panel: Rectangle,
     bar: Rectangle,
@@ -100,84 +120,83 @@ struct Layout {
 
 impl Layout {
     fn new(canvas: &Canvas<'_>, quantity: Quantity, range: &Range) -> Self {
-        let letter = FONT.character_size;
-        let (width, height) = (canvas.size.width as i32, canvas.size.height as i32);
-        let bar_height = height * TENTHS / 10 - letter.height as i32;
-        let ticks = legible(range.ticks(), bar_height, letter.height as i32);
+        let [width, height] = canvas.size;
+        let bar_height = (height * TENTHS / 10 - LETTER[1]).max(0);
+        let ticks = legible(range.ticks(), bar_height, LETTER[1]);
         let unit = quantity.unit();
         let letters = ticks.iter().map(|t| t.label.len()).max().unwrap_or(0);
-        // ² is one letter and two bytes.
-        let text = letters.max(unit.chars().count()) as i32 * letter.width as i32;
-        let panel = Size::new(
-            (text + BAR + TICK + 4 * GAP) as u32,
-            (bar_height.max(0) + 2 * letter.height as i32 + 3 * GAP) as u32,
-        );
-        let corner = Point::new(
-            width - panel.width as i32 - GAP,
-            (height - panel.height as i32) / 2,
-        );
-        let bar = Point::new(GAP, 2 * GAP + letter.height as i32) + corner;
+        // Characters, not bytes: ² has two bytes.
+        let text = letters.max(unit.chars().count()) as i32 * LETTER[0];
+        let panel = [
+            text + BAR + TICK + 4 * GAP,
+            bar_height + 2 * LETTER[1] + 3 * GAP,
+        ];
+        let (x, y) = (width - panel[0] - GAP, (height - panel[1]) / 2);
         Self {
-            panel: Rectangle::new(corner, panel),
-            bar: Rectangle::new(bar, Size::new(BAR as u32, bar_height.max(0) as u32)),
+            panel: Rectangle {
+                x,
+                y,
+                width: panel[0],
+                height: panel[1],
+            },
+            bar: Rectangle {
+                x: x + GAP,
+                y: y + 2 * GAP + LETTER[1],
+                width: BAR,
+                height: bar_height,
+            },
             unit,
             ticks,
         }
     }
 
-    /// With more of the picture beside it than under it.
+    /// Whether the legend covers less than half of the picture's width.
     fn is_within_picture(&self) -> bool {
-        let top_left = self.panel.top_left;
-        let room = self.panel.size.width as i32;
-        top_left.y >= 0 && top_left.x >= room && self.ticks.len() >= 2
+        self.panel.y >= 0 && self.panel.x >= self.panel.width && self.ticks.len() >= 2
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, range: &Range) -> Result<(), Infallible> {
-        let fill = |colour| PrimitiveStyle::with_fill(colour);
-        self.panel
-            .into_styled(fill(Rgb888::new(24, 24, 24)))
-            .draw(canvas)?;
-        let style = MonoTextStyle::new(FONT, Rgb888::WHITE);
-        let title = self.panel.top_left + Point::new(GAP, GAP);
-        Text::with_baseline(self.unit, title, style, Baseline::Top).draw(canvas)?;
-        self.draw_bar(canvas, range)?;
-        let right = self.bar.top_left.x + BAR;
+    fn draw(&self, canvas: &mut Canvas<'_>, range: &Range) {
+        canvas.fill(self.panel, PANEL);
+        canvas.text(self.panel.x + GAP, self.panel.y + GAP, self.unit);
+        self.draw_bar(canvas, range);
+        let x = self.bar.x + BAR;
         for tick in &self.ticks {
             let y = self.height_of(tick.share);
-            Rectangle::new(Point::new(right, y), Size::new(TICK as u32, 1))
-                .into_styled(fill(Rgb888::WHITE))
-                .draw(canvas)?;
-            let text = Point::new(right + TICK + GAP / 2, y);
-            Text::with_baseline(&tick.label, text, style, Baseline::Middle).draw(canvas)?;
+            let mark = Rectangle {
+                x,
+                y,
+                width: TICK,
+                height: 1,
+            };
+            canvas.fill(mark, INK);
+            canvas.text(x + TICK + GAP / 2, y - LETTER[1] / 2, &tick.label);
         }
-        Ok(())
     }
 
-    /// One row at a time: the value in the middle of each.
-    fn draw_bar(&self, canvas: &mut Canvas<'_>, range: &Range) -> Result<(), Infallible> {
-        let rows = self.bar.size.height;
-        for row in 0..rows {
-            let share = 1.0 - (f64::from(row) + 0.5) / f64::from(rows);
+    /// Fills each row with the colour of the value at its centre.
+    fn draw_bar(&self, canvas: &mut Canvas<'_>, range: &Range) {
+        let rows = f64::from(self.bar.height);
+        for row in 0..self.bar.height {
+            let share = 1.0 - (f64::from(row) + 0.5) / rows;
             let value = range.min * (range.max / range.min).powf(share);
             let byte = |linear: f64| (srgb_oetf(linear) * 255.0).round() as u8;
-            let [r, g, b] = range.colour(value).to_array().map(byte);
-            let at = self.bar.top_left + Point::new(0, row as i32);
-            canvas.fill_solid(
-                &Rectangle::new(at, Size::new(BAR as u32, 1)),
-                Rgb888::new(r, g, b),
-            )?;
+            let line = Rectangle {
+                y: self.bar.y + row,
+                height: 1,
+                ..self.bar
+            };
+            canvas.fill(line, range.colour(value).to_array().map(byte));
         }
-        Ok(())
     }
 
-    /// Row of a share of the range.
+    /// Row of a position 0..1 in the range.
     fn height_of(&self, share: f64) -> i32 {
-        let last = f64::from(self.bar.size.height.saturating_sub(1));
-        self.bar.top_left.y + ((1.0 - share) * last).round() as i32
+        let last = f64::from((self.bar.height - 1).max(0));
+        self.bar.y + ((1.0 - share) * last).round() as i32
     }
 }
 
-/// All ticks where their labels have room, else the whole decades, else the ends.
+/// All ticks if their labels fit, else the decades, else the ends.
 fn legible(ticks: Vec<Tick>, height: i32, letter: i32) -> Vec<Tick> {
     let fit = |ticks: &[Tick]| {
         let mut gaps = ticks.windows(2).map(|pair| pair[1].share - pair[0].share);
@@ -227,7 +246,7 @@ mod tests {
             let canvas = Canvas::new(&mut canvas_pixels, size);
             let layout = Layout::new(&canvas, Quantity::Luminance, &RANGE);
             for tick in &layout.ticks {
-                let (x, y) = (layout.bar.top_left.x + 3, layout.height_of(tick.share));
+                let (x, y) = (layout.bar.x + 3, layout.height_of(tick.share));
                 let at = 4 * (y as u32 * canvas.zoom * size[0] + x as u32 * canvas.zoom) as usize;
                 let expected = turbo(tick.share).map(|c| 255.0 * srgb_oetf(c));
                 for (byte, expected) in rgba[at..at + 3].iter().zip(expected.to_array()) {
@@ -236,6 +255,17 @@ mod tests {
                 }
             }
             assert!(layout.ticks.len() >= 4);
+        }
+    }
+
+    #[test]
+    fn the_font_has_every_character_of_the_labels() {
+        let text = "0123456789.e-,cd/m²lux";
+        for character in text.chars() {
+            assert!(
+                get_raster(character, WEIGHT, HEIGHT).is_some(),
+                "{character}"
+            );
         }
     }
 
@@ -253,10 +283,10 @@ mod tests {
                     max: 130.0,
                 },
             ] {
-                let ticks = legible(range.ticks(), height, 13);
+                let ticks = legible(range.ticks(), height, LETTER[1]);
                 for pair in ticks.windows(2) {
                     let apart = (pair[1].share - pair[0].share) * f64::from(height);
-                    assert!(apart >= 13.0, "{pair:?}");
+                    assert!(apart >= f64::from(LETTER[1]), "{pair:?}");
                 }
                 assert!(height < 100 || ticks.len() >= 2, "{height} {range:?}");
             }

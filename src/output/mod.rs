@@ -1,4 +1,4 @@
-//! Pictures to files: whole or not at all.
+//! Output files, written atomically.
 
 mod exr;
 mod exr_rows;
@@ -19,7 +19,7 @@ pub use self::rows::PngRows;
 
 use crate::error::{Error, Result};
 
-/// Parameters of a picture, by option name: what makes it again.
+/// Parameters of a picture by option name: enough to render it again.
 pub type Metadata = Vec<(String, String)>;
 
 fn write_error(path: &Path, reason: impl ToString) -> Error {
@@ -36,10 +36,10 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Finds out before the work whether a file could be written.
+/// Checks before the work that a file can be written.
 ///
 /// # Errors
-/// When the folder is missing or not writable, or the name is a folder.
+/// The folder is missing or not writable, or `path` is a folder.
 pub fn check_writable(path: &Path) -> Result<()> {
     let folder = folder(path);
     if !folder.is_dir() {
@@ -58,7 +58,7 @@ pub fn check_writable(path: &Path) -> Result<()> {
 fn temporary(path: &Path) -> Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".skylight-");
-    // A temporary file is private by default; a picture is as readable as any file its owner makes.
+    // Temporary files are private by default; the umask decides who may read a picture.
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;
@@ -71,12 +71,12 @@ fn temporary(path: &Path) -> Result<tempfile::NamedTempFile> {
 
 fn reason(error: &std::io::Error) -> String {
     match error.kind() {
-        // The folder is there, as was looked up before: some file systems (/proc) make no files.
+        // The folder exists, but some file systems (/proc) have no new files.
         std::io::ErrorKind::PermissionDenied | std::io::ErrorKind::NotFound => {
-            "no file can be made in its folder; choose another".to_owned()
+            "its folder does not accept new files; choose another".to_owned()
         }
-        std::io::ErrorKind::StorageFull => "there is no space left; free some".to_owned(),
-        // Without the system's number, and the temporary file's name that may follow it.
+        std::io::ErrorKind::StorageFull => "the disk is full; free some space".to_owned(),
+        // Without the error number and the name of the temporary file.
         _ => {
             let text = error.to_string();
             text.split(" (os error").next().unwrap_or(&text).to_owned()
@@ -84,18 +84,18 @@ fn reason(error: &std::io::Error) -> String {
     }
 }
 
-/// Writes beside the target and renames when whole.
+/// Writes a temporary file beside the target, then renames it.
 ///
 /// # Errors
-/// When the folder cannot be written to: an older file is left alone.
+/// The file cannot be written; an older file is left alone.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     write_set(&[(path.to_owned(), bytes.to_vec())])
 }
 
-/// Writes files that belong together: none is renamed to its target before all are whole.
+/// Writes several files: none is renamed to its target before all are written.
 ///
 /// # Errors
-/// When one cannot be written; older ones are left alone then.
+/// One cannot be written; older files are left alone then.
 pub fn write_set(files: &[(PathBuf, Vec<u8>)]) -> Result<()> {
     let whole = files.iter().map(|(path, bytes)| {
         let mut file = temporary(path)?;
@@ -112,10 +112,10 @@ pub fn write_set(files: &[(PathBuf, Vec<u8>)]) -> Result<()> {
     Ok(())
 }
 
-/// Prints a result. That nobody reads on (`| head`) is no error.
+/// Prints to standard output. A closed pipe (`| head`) is not an error.
 ///
 /// # Errors
-/// When standard output takes no more.
+/// Standard output cannot be written.
 pub fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -124,10 +124,10 @@ pub fn print(text: &str) -> Result<()> {
     }
 }
 
-/// Writes text.
+/// Writes a text file.
 ///
 /// # Errors
-/// When the file cannot be written; an older one is left alone then.
+/// The file cannot be written; an older one is left alone then.
 pub fn write_text(path: &Path, text: &str) -> Result<()> {
     write_whole(path, text.as_bytes())
 }

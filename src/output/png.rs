@@ -5,7 +5,7 @@ use std::path::Path;
 use super::{Metadata, write_error, write_whole};
 use crate::error::Result;
 
-/// How the 8 bits are encoded.
+/// Encoding of the 8-bit values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Encoding {
     /// The sRGB curve.
@@ -14,19 +14,19 @@ pub enum Encoding {
     Gamma(f64),
 }
 
-/// What is dearer, time or bytes.
+/// Compression effort.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effort {
-    /// A tenth of the time, for pictures that took no longer to draw than to compress.
+    /// A tenth of the time of [`Effort::Small`], for pictures that are drawn quickly.
     Quick,
-    /// As small as is usual.
+    /// The usual file size.
     Small,
 }
 
 /// Writes `rgba` (rows from the top, four bytes a pixel, alpha ignored) as an RGB picture.
 ///
 /// # Errors
-/// When the file cannot be written; an older one is left alone then.
+/// The file cannot be written; an older one is left alone then.
 pub fn write_png(
     path: &Path,
     size: [u32; 2],
@@ -56,7 +56,7 @@ fn encode(
     Ok(bytes)
 }
 
-/// Begins a file: all that comes before the pixels.
+/// Writes everything before the pixels.
 pub(super) fn head<W: std::io::Write>(
     target: W,
     size: [u32; 2],
@@ -77,7 +77,7 @@ pub(super) fn head<W: std::io::Write>(
         }
     }
     for (key, value) in metadata {
-        // Keys are ours and short; values may hold any language (a path).
+        // Keys are short ASCII; values (paths) may hold any Unicode.
         encoder.add_itxt_chunk(key.clone(), value.clone())?;
     }
     encoder.write_header()

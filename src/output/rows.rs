@@ -1,4 +1,4 @@
-//! PNG files of pictures that are never whole in memory: rows come from the top, and the file appears when the last one did.
+//! PNG files written row by row, for pictures larger than memory.
 
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
@@ -8,7 +8,7 @@ use super::png::head;
 use super::{Effort, Encoding, Metadata, reason, temporary, write_error};
 use crate::error::Result;
 
-/// A PNG that grows row by row in a temporary file beside its target.
+/// A PNG that is written from the top to a temporary file beside its target, and renamed at the end.
 pub struct PngRows {
     path: PathBuf,
     file: tempfile::NamedTempFile,
@@ -17,10 +17,10 @@ pub struct PngRows {
 }
 
 impl PngRows {
-    /// Begins a picture of `size` pixels.
+    /// Starts a picture of `size` pixels.
     ///
     /// # Errors
-    /// When no file can be made beside `path`.
+    /// No file can be created beside `path`.
     pub fn new(
         path: &Path,
         size: [u32; 2],
@@ -46,10 +46,10 @@ impl PngRows {
         })
     }
 
-    /// Adds pixels in reading order: four bytes each, alpha ignored.
+    /// Appends pixels in reading order: four bytes each, alpha ignored.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// The file cannot be written.
     pub fn push(&mut self, rgba: &[u8]) -> Result<()> {
         self.rgb.clear();
         self.rgb
@@ -58,10 +58,10 @@ impl PngRows {
         written.map_err(|e| write_error(&self.path, reason(&e)))
     }
 
-    /// Ends the file, which replaces an older one now.
+    /// Completes the file; it replaces an older one only now.
     ///
     /// # Errors
-    /// When rows are missing or the file cannot be written; an older one is left alone then.
+    /// Rows are missing or the file cannot be written; an older one is left alone then.
     pub fn finish(self) -> Result<()> {
         let path = self.path;
         self.rows.finish().map_err(|e| write_error(&path, e))?;

@@ -212,17 +212,17 @@ fn start_up_is_told_step_by_step_and_the_cache_is_kept() {
         "device",
         "pipelines",
         "first frame",
-        "together",
+        "total",
         "shader modules",
     ];
     for part in parts {
         assert!(told.contains(part), "no {part}: {told}");
     }
-    assert!(told.contains("pipeline cache: none yet"), "{told}");
+    assert!(told.contains("pipeline cache: new"), "{told}");
     let cache = folder.path().join("skylight");
     let files: Vec<_> = fs::read_dir(&cache).expect("a folder").collect();
     assert_eq!(files.len(), 1, "{files:?}");
-    assert!(run().contains("pipeline cache: read"));
+    assert!(run().contains("pipeline cache: loaded"));
     // A folder that cannot be made is no reason to fail.
     fs::remove_dir_all(&cache).expect("gone");
     fs::write(&cache, "a file").expect("written");

@@ -1,4 +1,5 @@
-//! The real window when nothing moves: from ambient occlusion it goes over to the sky's true visibility, without a jump.
+//! The window when nothing moves: it converges from ambient occlusion to the sky's true visibility, and its exposure
+//! adapts, both without a jump.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -35,17 +36,16 @@ fn brightness(picture: &Picture) -> f64 {
         / picture.rgb.len() as f64
 }
 
-/// A picture by `render`.
+/// A picture of [`VIEW`] by `render`.
 fn rendered(words: &[&str]) -> Picture {
+    rendered_with(&[&VIEW, words].concat())
+}
+
+fn rendered_with(words: &[&str]) -> Picture {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("a.png");
     let mut command = program(folder.path());
-    command
-        .arg("render")
-        .args(VIEW)
-        .args(words)
-        .arg("-o")
-        .arg(&file);
+    command.arg("render").args(words).arg("-o").arg(&file);
     let output = command.output().expect("the program starts");
     let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{complaint}");
@@ -138,6 +138,44 @@ fn who_asks_for_ambient_occlusion_keeps_it() {
     let ssao = rendered(&kept);
     let flip = difference(&ssao, &shown);
     println!("FLIP of the window against render with ambient occlusion: {flip:.4}");
+    assert!(flip < 0.01, "{flip}");
+    running.close_well();
+}
+
+#[test]
+fn the_exposure_adapts_smoothly_to_what_a_file_has() {
+    let _machine = quiet_machine();
+    // The sun sets at 18:52.
+    let dusk = |when| {
+        let view = ["--size", "160x90", "--visibility", "ssao", "--samples", "4"];
+        [&view[..], &["--when", when]].concat()
+    };
+    let running = Running::bare(&dusk("2026-09-24T18:20:00+02:00"));
+    let bright = brightness(&running.picture());
+    running.display.typed('h');
+    let (mut seen, mut changed) = (Vec::<Picture>::new(), Instant::now());
+    while changed.elapsed() < Duration::from_secs(3) {
+        let now = running.display.picture(running.window, None);
+        if seen.last() != Some(&now) {
+            seen.push(now);
+            changed = Instant::now();
+        }
+        sleep(Duration::from_millis(5));
+    }
+    let list: Vec<f64> = seen.iter().map(brightness).collect();
+    let last = list[list.len() - 1];
+    let first = list.iter().position(|b| *b < 0.9 * bright).expect("darker");
+    let rising = &list[first..];
+    let file = rendered_with(&dusk("2026-09-24T18:50:00+02:00"));
+    let flip = difference(&file, &seen[seen.len() - 1]);
+    println!(
+        "brightness {bright:.3}, then {:.3} to {last:.3} in {} pictures; FLIP to a file {flip:.4}",
+        rising[0],
+        rising.len()
+    );
+    // Dark at first, since the light went and the exposure had not followed yet; then only brighter.
+    assert!(rising[0] < 0.9 * last, "{list:?}");
+    assert!(rising.windows(2).all(|w| w[1] > 0.98 * w[0]), "{list:?}");
     assert!(flip < 0.01, "{flip}");
     running.close_well();
 }

@@ -13,7 +13,7 @@ use crate::scene::{Loaded, SceneError};
 use super::capture;
 use super::document::Document;
 use super::input::Input;
-use super::interface::{Interface, Wish};
+use super::interface::{Interface, UiRequest};
 use super::keys::Action;
 use super::loader::{Loader, Message};
 use super::stage::Stage;
@@ -139,9 +139,9 @@ impl App {
             self.interface.play(document, seconds);
         }
         self.probe()?;
-        let wishes = self.lay_out_and_draw(event_loop)?;
-        for wish in wishes {
-            self.grant(wish)?;
+        let requests = self.lay_out_and_draw(event_loop)?;
+        for request in requests {
+            self.handle(request)?;
         }
         self.ticked = self.is_busy().then_some(now);
         if self.ticked.is_some() && self.again_at.is_none() {
@@ -163,16 +163,16 @@ impl App {
         moving || self.input.is_flying() || !probed
     }
 
-    fn lay_out_and_draw(&mut self, event_loop: &ActiveEventLoop) -> Result<Vec<Wish>> {
+    fn lay_out_and_draw(&mut self, event_loop: &ActiveEventLoop) -> Result<Vec<UiRequest>> {
         let (Some(stage), interface) = (&mut self.stage, &mut self.interface) else {
             return Ok(Vec::new());
         };
         let mut document = self.document.as_mut();
         let size = window_size(stage);
-        let mut wishes = Vec::new();
+        let mut requests = Vec::new();
         interface.observe(stage);
         let layout = stage.lay_out(event_loop, |ui| {
-            wishes.extend(interface.show(ui, document.as_deref_mut()));
+            requests.extend(interface.show(ui, document.as_deref_mut()));
         })?;
         if let Some(document) = document.as_deref_mut() {
             if size.width > 0 && size.height > 0 {
@@ -199,7 +199,7 @@ impl App {
             }
             after => Instant::now().checked_add(after),
         };
-        Ok(wishes)
+        Ok(requests)
     }
 
     /// The pixel of the picture under the pointer, when the user wants to know about it.
@@ -233,10 +233,10 @@ impl App {
         Ok(())
     }
 
-    fn grant(&mut self, wish: Wish) -> Result<()> {
-        match wish {
-            Wish::Do(action) => self.act(action)?,
-            Wish::Copy(text) => {
+    fn handle(&mut self, request: UiRequest) -> Result<()> {
+        match request {
+            UiRequest::Do(action) => self.perform(action)?,
+            UiRequest::Copy(text) => {
                 if let Some(stage) = &self.stage {
                     stage.ui().copy_text(text);
                 }
@@ -246,7 +246,7 @@ impl App {
         Ok(())
     }
 
-    pub(super) fn act(&mut self, action: Action) -> Result<()> {
+    pub(super) fn perform(&mut self, action: Action) -> Result<()> {
         let (Some(stage), Some(document)) = (&mut self.stage, &mut self.document) else {
             return Ok(());
         };
@@ -270,8 +270,8 @@ impl App {
                 Err(error) => tell(&mut self.interface, &error),
             },
             other => {
-                for wish in self.interface.act(other, document) {
-                    self.grant(wish)?;
+                for request in self.interface.perform(other, document) {
+                    self.handle(request)?;
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! The picture in the window to files: PNG as shown, EXR in cd/m², both with their parameters.
+//! Screenshots: PNG as shown, EXR in cd/m² or lux, both with the parameters of the picture.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use crate::output::{Channels, Effort, Encoding, Layer, Metadata, write_exr, writ
 use super::document::Document;
 use super::stage::Stage;
 
-/// Writes the newest frame beside where the program was started; tells where to.
+/// Writes the newest frame to the working directory; returns a message that names the files.
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -23,7 +23,7 @@ pub(super) fn save(stage: &mut Stage, document: &Document) -> Result<String> {
     Ok(format!("wrote {} and .exr", png.display()))
 }
 
-/// `skylight-SCENE-N`, with the first number that no file has.
+/// `skylight-SCENE-N` with the first free number.
 fn free_name(document: &Document) -> PathBuf {
     let scene = document.job.path.as_deref().and_then(Path::file_stem);
     let scene = scene.map_or("bundled".into(), |s| s.to_string_lossy());

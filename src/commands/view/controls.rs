@@ -1,8 +1,7 @@
-//! The camera in the hand: orbit, pan, dolly, look, fly, frame the model, move to a viewpoint.
+//! Camera control: orbit, pan, dolly, look, fly, frame the scene, move to a viewpoint.
 //!
-//! Plain numbers in, a [`Camera`] out. The camera always stands upright: its pitch stays short of the vertical and
-//! it never rolls. Drags act at once; what moves by itself (flight, the way to a viewpoint) goes on in
-//! [`Controls::advance`], by closed forms of time, so that it does not depend on the rate of frames.
+//! Plain numbers in, a [`Camera`] out. The camera never rolls and its pitch stays short of the vertical. Drags act at once;
+//! flight and travel to a viewpoint advance in [`Controls::advance`] by closed forms of time, independent of the frame rate.
 
 use glam::DVec3;
 
@@ -15,28 +14,28 @@ const MAX_PITCH_DEG: f64 = 89.5;
 const ORBIT_DEG: f64 = 180.0;
 /// Degrees that the eye turns when the mouse moves by the height of the picture.
 const LOOK_DEG: f64 = 90.0;
-/// Share of the distance to the pivot that one step of the wheel leaves.
+/// Distance to the pivot after one wheel step, relative to before.
 const DOLLY_STEP: f64 = 0.85;
-/// Factor on the speed of flight by one step of the wheel.
+/// Factor on the flight speed per wheel step.
 const SPEED_STEP: f64 = 1.25;
-/// Range of the factor that the wheel puts on the speed of flight.
+/// Range of the wheel's factor on the flight speed.
 const SPEED_RANGE: (f64, f64) = (1.0 / 64.0, 64.0);
-/// Speed of flight, sizes of the scene a second.
+/// Flight speed, scene sizes per second.
 const CRUISE: f64 = 0.15;
-/// Factor of the fast key on the speed; the slow key divides by it.
+/// Factor of the fast key; the slow key divides by it.
 const FAST: f64 = 4.0;
-/// Time constant in which flight takes up speed and loses it, seconds.
+/// Time constant of acceleration, seconds.
 const INERTIA_S: f64 = 0.08;
-/// Longest time that one step advances, seconds: after a stall the flight goes on where it was.
+/// Longest time step, seconds: a stalled frame does not move the camera far.
 const LONGEST_STEP_S: f64 = 0.5;
-/// Time to a viewpoint, seconds.
+/// Travel time to a viewpoint, seconds.
 const TRAVEL_S: f64 = 0.35;
-/// Nearest and farthest that the pivot may be to the eye, and farthest from the scene, sizes of the scene.
+/// Smallest and largest distance of the pivot from the eye; the largest also from the scene. In scene sizes.
 const REACH: (f64, f64) = (1e-4, 100.0);
-/// The target of the camera is no nearer than this share of the largest coordinate, or rounding would turn the camera.
+/// Smallest distance of the target, relative to the largest coordinate: rounding would turn the camera.
 const TARGET_SHARE: f64 = 0.01;
 
-/// Movement of the pointer, in heights of the picture: right and down are positive.
+/// Pointer movement, in picture heights.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Drag {
     /// To the right.
@@ -45,10 +44,10 @@ pub struct Drag {
     pub down: f64,
 }
 
-/// Which keys of flight are held.
+/// Held flight keys.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct FlyKeys {
-    /// W: along the line of sight.
+    /// W: in the viewing direction.
     pub forward: bool,
     /// S.
     pub back: bool,
@@ -56,7 +55,7 @@ pub struct FlyKeys {
     pub left: bool,
     /// D.
     pub right: bool,
-    /// E: against gravity, wherever one looks.
+    /// E: up, regardless of the viewing direction.
     pub up: bool,
     /// Q.
     pub down: bool,
@@ -66,18 +65,18 @@ pub struct FlyKeys {
     pub slow: bool,
 }
 
-/// Where the camera is, as one turns it.
+/// Camera pose in orbit coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Pose {
-    /// What one orbits about and dollies to, metres.
+    /// Centre of orbit and dolly, metres.
     pivot: DVec3,
-    /// Heading of the line of sight, degrees clockwise from north.
+    /// Azimuth of the viewing direction, degrees clockwise from north.
     azimuth_deg: f64,
-    /// Its elevation, degrees.
+    /// Elevation of the viewing direction, degrees.
     elevation_deg: f64,
-    /// From the eye to the pivot, metres.
+    /// Distance from the eye to the pivot, metres.
     distance: f64,
-    /// Vertical, degrees.
+    /// Vertical field of view, degrees.
     fov_deg: f64,
 }
 
@@ -103,7 +102,7 @@ impl Pose {
         direction(self.azimuth_deg, self.elevation_deg)
     }
 
-    /// Level, for the camera never rolls.
+    /// Horizontal: the camera never rolls.
     fn right(&self) -> DVec3 {
         direction(self.azimuth_deg + 90.0, 0.0)
     }
@@ -118,7 +117,7 @@ impl Pose {
             (self.elevation_deg + elevation_deg).clamp(-MAX_PITCH_DEG, MAX_PITCH_DEG);
     }
 
-    /// The pose the share `t` (0..1) of the way to `other`.
+    /// Interpolates to `other`, `t` in 0..1.
     fn toward(&self, other: &Self, t: f64) -> Self {
         let turn = (other.azimuth_deg - self.azimuth_deg + 180.0).rem_euclid(360.0) - 180.0;
         let mix = |a: f64, b: f64| a + (b - a) * t;
@@ -132,7 +131,7 @@ impl Pose {
     }
 }
 
-/// A move to another pose.
+/// Travel to another pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Travel {
     from: Pose,
@@ -140,26 +139,26 @@ struct Travel {
     elapsed_s: f64,
 }
 
-/// The camera's state between the events of a window.
+/// Camera controls.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Controls {
     pose: Pose,
     near: f32,
-    /// Size of what there is to see, metres: the measure of speeds and limits.
+    /// Scene size, metres: the scale of speeds and limits.
     size: f64,
-    /// Middle of what there is to see, metres.
+    /// Scene centre, metres.
     centre: DVec3,
-    /// Farthest that the pivot may be from the middle and from the eye, metres.
+    /// Largest distance of the pivot from the centre and from the eye, metres.
     reach: f64,
-    /// Factor that the wheel puts on the speed of flight.
+    /// Wheel factor on the flight speed.
     speed: f64,
-    /// Of flight, metres a second.
+    /// Flight velocity, m/s.
     velocity: DVec3,
     travel: Option<Travel>,
 }
 
 impl Controls {
-    /// Takes up `camera` in a scene within `bounds`: until something moves, [`Controls::camera`] is that camera.
+    /// Starts with `camera` in a scene within `bounds`. Until something moves, [`Controls::camera`] returns it unchanged.
     pub fn new(camera: &Camera, bounds: &Bounds) -> Self {
         let pose = Pose::of(camera);
         let centre = bounds.centre().as_dvec3();
@@ -183,7 +182,7 @@ impl Controls {
         }
     }
 
-    /// The camera of this moment.
+    /// The current camera.
     pub fn camera(&self) -> Camera {
         let eye = self.pose.eye();
         let nearest = TARGET_SHARE * eye.abs().max_element();
@@ -196,29 +195,29 @@ impl Controls {
         }
     }
 
-    /// What the camera orbits about, metres.
+    /// Centre of orbit, metres.
     pub fn pivot(&self) -> DVec3 {
         self.pose.pivot
     }
 
-    /// Speed of flight without fast or slow key, metres a second.
+    /// Flight speed without fast or slow key, m/s.
     pub fn fly_speed(&self) -> f64 {
         CRUISE * self.size * self.speed
     }
 
-    /// Whether something moves without further events.
+    /// Whether the camera moves without further events.
     pub fn is_moving(&self) -> bool {
         self.travel.is_some() || self.velocity != DVec3::ZERO
     }
 
-    /// Turns the model under the hand: the eye moves about the pivot.
+    /// Orbits: the eye moves about the pivot.
     pub fn orbit(&mut self, drag: Drag) {
         self.by_hand(drag, |pose, drag| {
             pose.turn(ORBIT_DEG * drag.right, -ORBIT_DEG * drag.down);
         });
     }
 
-    /// Looks around: the eye stays where it is.
+    /// Looks around: the eye stays in place.
     pub fn look(&mut self, drag: Drag) {
         self.by_hand(drag, |pose, drag| {
             let eye = pose.eye();
@@ -227,7 +226,7 @@ impl Controls {
         });
     }
 
-    /// Shifts the model with the hand: what is at the pivot's distance stays under the pointer.
+    /// Pans: points at the pivot's distance follow the pointer.
     pub fn pan(&mut self, drag: Drag) {
         self.by_hand(drag, |pose, drag| {
             let height = 2.0 * pose.distance * (0.5 * pose.fov_deg).to_radians().tan();
@@ -236,7 +235,7 @@ impl Controls {
         });
     }
 
-    /// Moves toward (`steps` > 0) or away from `about`, metres, or the pivot: each step by the same share of the distance.
+    /// Moves toward (`steps` > 0) or away from `about` (metres; default the pivot), each step by the same factor of distance.
     pub fn dolly(&mut self, steps: f64, about: Option<DVec3>) {
         let about = about.filter(|p| p.is_finite());
         if !steps.is_finite() {
@@ -260,7 +259,7 @@ impl Controls {
         }
     }
 
-    /// Lets `seconds` pass with these keys held. Returns whether the camera has moved.
+    /// Advances flight and travel by `seconds` with these keys held. Returns whether the camera moved.
     pub fn advance(&mut self, seconds: f64, keys: FlyKeys) -> bool {
         let t = if seconds.is_finite() {
             seconds.clamp(0.0, LONGEST_STEP_S)
@@ -277,7 +276,7 @@ impl Controls {
         self.pose != before
     }
 
-    /// dv/dt = (goal − v)/τ, integrated: the same way in the same time, however it is cut into frames.
+    /// dv/dt = (goal − v)/τ in closed form: independent of the frame rate.
     fn fly_on(&mut self, goal: DVec3, t: f64) {
         let left = (-t / INERTIA_S).exp();
         let lag = self.velocity - goal;
@@ -317,7 +316,7 @@ impl Controls {
         }
     }
 
-    /// Travels to where all of `bounds` is in view, looking the way one looks. `aspect` is width / height.
+    /// Travels to where all of `bounds` is in view, in the current viewing direction. `aspect` is width / height.
     pub fn frame_all(&mut self, bounds: &Bounds, aspect: f32) {
         let mut pose = self.pose;
         pose.turn(0.0, 0.0);
@@ -336,7 +335,7 @@ impl Controls {
         self.go(Pose::of(camera));
     }
 
-    /// Turns toward `point`, metres, which becomes the pivot, unless it is out of reach.
+    /// Turns toward `point`, metres, and makes it the pivot, unless it is out of reach.
     pub fn focus(&mut self, point: DVec3) {
         let eye = self.pose.eye();
         let distance = eye.distance(point);
@@ -356,7 +355,7 @@ impl Controls {
         self.go(pose);
     }
 
-    /// Ends a move at once where it leads to.
+    /// Finishes a travel at once.
     pub fn arrive(&mut self) {
         if let Some(travel) = self.travel.take() {
             self.pose = travel.to;
@@ -373,7 +372,7 @@ impl Controls {
         });
     }
 
-    /// A drag: it ends a move, and a pointer that is nowhere does nothing.
+    /// Applies a drag, which ends a travel; ignores non-finite movement.
     fn by_hand(&mut self, drag: Drag, act: impl FnOnce(&mut Pose, Drag)) {
         if drag == Drag::default() || !(drag.right.is_finite() && drag.down.is_finite()) {
             return;
@@ -387,7 +386,7 @@ impl Controls {
         distance.clamp(REACH.0 * self.size, self.reach)
     }
 
-    /// Keeps the pivot where one finds back from.
+    /// Keeps the pivot within reach of the scene.
     fn hold(&mut self) {
         let offset = self.pose.pivot - self.centre;
         self.pose.pivot = self.centre + offset.clamp_length_max(self.reach);

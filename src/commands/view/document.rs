@@ -75,7 +75,7 @@ impl Document {
     }
 
     /// Performs the action of a key on scene and daylight, and reports it in `notes`.
-    pub(super) fn act(&mut self, action: Action, notes: &mut Notes) {
+    pub(super) fn perform(&mut self, action: Action, notes: &mut Notes) {
         match action {
             Action::FrameAll => self.frame_all(),
             Action::SaveViewpoint => {

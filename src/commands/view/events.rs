@@ -21,7 +21,7 @@ impl App {
             let shift = self.input.modifiers.shift_key();
             let control = self.input.modifiers.control_key();
             if let Some(action) = keys::action(&event.logical_key, shift).filter(|_| !control) {
-                self.act(action)?;
+                self.perform(action)?;
             }
         }
         self.request_redraw();

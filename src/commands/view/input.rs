@@ -1,15 +1,15 @@
-//! Events of pointer and keyboard that the user interface leaves, turned into movements of the camera.
+//! Pointer and keyboard events that the user interface does not consume, turned into camera movement.
 
 use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta};
 use winit::keyboard::{KeyCode, ModifiersState, PhysicalKey};
 
 use super::controls::{Controls, Drag, FlyKeys};
 
-/// Pixels of a smooth wheel that count as one step.
+/// Scrolled pixels that count as one wheel step.
 const PIXELS_A_STEP: f64 = 50.0;
-/// Longest time between two clicks of a double click, seconds.
+/// Longest time between the clicks of a double click, seconds.
 const DOUBLE_CLICK_S: f64 = 0.4;
-/// Farthest that the pointer moves between them, pixels.
+/// Largest pointer movement between them, pixels.
 const DOUBLE_CLICK_PIXELS: f64 = 4.0;
 
 /// What a drag does.
@@ -20,10 +20,10 @@ enum Gesture {
     Look,
 }
 
-/// What is held and where the pointer is.
+/// Held keys and buttons, and the pointer position.
 #[derive(Debug, Default)]
 pub(super) struct Input {
-    /// Keys that are held with others.
+    /// Modifier keys.
     pub(super) modifiers: ModifiersState,
     keys: FlyKeys,
     pointer: Option<[f64; 2]>,
@@ -32,7 +32,7 @@ pub(super) struct Input {
 }
 
 impl Input {
-    /// Keys of flight, by the modifiers of this moment.
+    /// Held flight keys with the current modifiers.
     pub(super) fn fly_keys(&self) -> FlyKeys {
         FlyKeys {
             fast: self.modifiers.shift_key(),
@@ -41,28 +41,28 @@ impl Input {
         }
     }
 
-    /// Whether any key of flight is held.
+    /// Whether any flight key is held.
     pub(super) fn is_flying(&self) -> bool {
         self.keys != FlyKeys::default()
     }
 
-    /// Whether the camera is in the hand.
+    /// Whether the user is dragging.
     pub(super) fn is_dragging(&self) -> bool {
         self.gesture.is_some()
     }
 
-    /// Where the pointer is, pixels; none when it is outside.
+    /// Pointer position, pixels; `None` outside the window.
     pub(super) fn pointer(&self) -> Option<[f64; 2]> {
         self.pointer
     }
 
-    /// A key went down or up; `free` when no text is being edited.
+    /// Handles a key press or release; `free` when no text is being edited.
     pub(super) fn key(&mut self, event: &KeyEvent, free: bool) {
         let PhysicalKey::Code(code) = event.physical_key else {
             return;
         };
         let held = event.state == ElementState::Pressed && free;
-        // By their places, so that they lie together on every keyboard.
+        // Physical positions: the same on every keyboard layout.
         match code {
             KeyCode::KeyW => self.keys.forward = held,
             KeyCode::KeyS => self.keys.back = held,
@@ -74,13 +74,13 @@ impl Input {
         }
     }
 
-    /// The window lost the keyboard: what is held now will not be heard to be let go.
+    /// The window lost the focus: releases will not be reported.
     pub(super) fn let_go(&mut self) {
         self.keys = FlyKeys::default();
         self.gesture = None;
     }
 
-    /// The pointer moved to `to`, pixels, in a window `height` pixels high.
+    /// Handles pointer movement to `to`, pixels, in a window `height` pixels high.
     pub(super) fn moved(&mut self, to: [f64; 2], height: f64, controls: Option<&mut Controls>) {
         let from = self.pointer.replace(to).unwrap_or(to);
         let (Some(controls), Some((_, gesture))) = (controls, self.gesture) else {
@@ -102,7 +102,7 @@ impl Input {
         self.pointer = None;
     }
 
-    /// A button went down over the picture. Returns whether that was the second of a double click; `now` in seconds.
+    /// Handles a button press over the picture; `now` in seconds. Returns whether it completes a double click.
     pub(super) fn pressed(&mut self, button: MouseButton, now: f64) -> bool {
         let gesture = match button {
             MouseButton::Left if self.modifiers.shift_key() => Gesture::Pan,
@@ -123,14 +123,14 @@ impl Input {
         is_second
     }
 
-    /// A button came up, wherever.
+    /// Handles a button release anywhere.
     pub(super) fn released(&mut self, button: MouseButton) {
         if self.gesture.is_some_and(|(held, _)| held == button) {
             self.gesture = None;
         }
     }
 
-    /// Steps of the wheel, positive away from the user; while looking around they set the speed of flight.
+    /// Wheel steps, positive away from the user; while looking around they change the flight speed.
     pub(super) fn wheel(&self, delta: MouseScrollDelta) -> Wheel {
         let steps = match delta {
             MouseScrollDelta::LineDelta(_, rows) => f64::from(rows),
@@ -144,12 +144,12 @@ impl Input {
     }
 }
 
-/// What the wheel does.
+/// Effect of the wheel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Wheel {
-    /// Nearer by so many steps.
+    /// Moves closer by this many steps.
     Dolly(f64),
-    /// Faster by so many steps.
+    /// Flies faster by this many steps.
     Speed(f64),
 }
 

@@ -1,5 +1,5 @@
-//! What lies over the picture: the panel, read-outs, overlays, messages. It changes the settings of the document and asks the
-//! event loop for the rest.
+//! The user interface over the picture: panel, read-outs, overlays, messages. It changes the document's settings; everything
+//! else it requests from the event loop.
 
 mod air;
 mod clock;
@@ -35,16 +35,16 @@ use sky_dome::SkyDome;
 use sun::PlaceField;
 use timings::TimingChart;
 
-/// What the user wants that the interface cannot do itself.
+/// A request to the event loop.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Wish {
-    /// As a key would.
+pub(super) enum UiRequest {
+    /// Perform the action of a key.
     Do(Action),
-    /// Text on the clipboard.
+    /// Put text on the clipboard.
     Copy(String),
 }
 
-/// The state of everything over the picture.
+/// State of the user interface.
 pub(super) struct Interface {
     is_visible: bool,
     help: bool,
@@ -58,7 +58,7 @@ pub(super) struct Interface {
 }
 
 impl Interface {
-    /// With everything shut; `quiet` keeps warnings out of the window.
+    /// The panel is open, everything else closed; `quiet` suppresses warnings.
     pub(super) fn new(quiet: bool) -> Self {
         Self {
             is_visible: true,
@@ -73,42 +73,42 @@ impl Interface {
         }
     }
 
-    /// Whether there is anything but the picture.
+    /// Whether the panels are shown.
     pub(super) fn is_visible(&self) -> bool {
         self.is_visible
     }
 
-    /// Tells something for a while.
+    /// Shows a message for some seconds.
     pub(super) fn say(&mut self, text: &str) {
         self.notes.say(text);
     }
 
-    /// Tells of a failure until it is dismissed.
+    /// Shows an error until the user dismisses it.
     pub(super) fn complain(&mut self, text: &str) {
         self.notes.complain(text);
     }
 
-    /// How far a load is, 0..1, and what it does; none when there is none.
+    /// Progress of loading, 0..1, and its current stage; `None` when nothing is loading.
     pub(super) fn loading(&mut self, progress: Option<(f32, &'static str)>) {
         self.notes.loading = progress;
     }
 
-    /// Lets the day pass by `seconds` of the user's time.
+    /// Advances the time of day by `seconds` of real time.
     pub(super) fn play(&mut self, document: &mut Document, seconds: f64) {
         self.clock.advance(&mut document.job.settings.sun, seconds);
     }
 
-    /// Whether the day passes.
+    /// Whether the time of day advances by itself.
     pub(super) fn is_playing(&self, document: &Document) -> bool {
         self.clock.is_running(&document.job.settings.sun)
     }
 
-    /// Whether what is known of the pixel is what the picture shows.
+    /// Whether the read-out is about this pixel of the current picture.
     pub(super) fn is_probed(&self, pixel: Option<[u32; 2]>, document: Option<&Document>) -> bool {
         self.probe.is_fresh(pixel, document)
     }
 
-    /// Takes over what a pixel shows.
+    /// Sets the read-out of a pixel.
     pub(super) fn probed(
         &mut self,
         pixel: Option<[u32; 2]>,
@@ -123,20 +123,20 @@ impl Interface {
         self.probe.point()
     }
 
-    /// Opens the chart of times, or shuts it; returns which.
+    /// Opens or closes the chart of pass times; returns whether it is open.
     pub(super) fn toggle_timings(&mut self) -> bool {
         self.timings.is_open = !self.timings.is_open;
         self.timings.is_open
     }
 
-    /// Looks at what the device tells.
+    /// Takes the pass times and the memory use of the device.
     pub(super) fn observe(&mut self, stage: &Stage) {
         self.timings.observe(stage);
     }
 
-    /// Does what a key asks for.
-    pub(super) fn act(&mut self, action: Action, document: &mut Document) -> Vec<Wish> {
-        let mut wishes = Vec::new();
+    /// Performs the action of a key.
+    pub(super) fn perform(&mut self, action: Action, document: &mut Document) -> Vec<UiRequest> {
+        let mut requests = Vec::new();
         match action {
             Action::ToggleInterface => self.is_visible = !self.is_visible,
             Action::Help => self.help = !self.help,
@@ -152,23 +152,23 @@ impl Interface {
                 match printed {
                     Ok(line) => {
                         self.say("copied the command that renders this picture");
-                        wishes.push(Wish::Copy(line));
+                        requests.push(UiRequest::Copy(line));
                     }
                     Err(error) => self.complain(&error.to_string()),
                 }
             }
-            other => document.act(other, &mut self.notes),
+            other => document.perform(other, &mut self.notes),
         }
-        wishes
+        requests
     }
 
-    /// Lays everything out.
-    pub(super) fn show(&mut self, ui: &mut Ui, document: Option<&mut Document>) -> Vec<Wish> {
-        let mut wishes = Vec::new();
+    /// Lays out the user interface.
+    pub(super) fn show(&mut self, ui: &mut Ui, document: Option<&mut Document>) -> Vec<UiRequest> {
+        let mut requests = Vec::new();
         if self.is_visible {
             if let Some(document) = document {
                 self.sky_dome.show(ui, document);
-                self.panel(ui, document, &mut wishes);
+                self.panel(ui, document, &mut requests);
                 self.probe.show(ui, document);
                 self.timings.show(ui, document);
                 legend::show(ui, &document.job.settings);
@@ -176,10 +176,10 @@ impl Interface {
             help::show(ui, &mut self.help);
         }
         self.notes.show(ui, self.is_visible);
-        wishes
+        requests
     }
 
-    fn panel(&mut self, ui: &mut Ui, document: &mut Document, wishes: &mut Vec<Wish>) {
+    fn panel(&mut self, ui: &mut Ui, document: &mut Document, requests: &mut Vec<UiRequest>) {
         let frame = style::backdrop().corner_radius(0);
         Panel::left("panel")
             .frame(frame)
@@ -187,19 +187,19 @@ impl Interface {
             .size_range(250.0..=420.0)
             .show_separator_line(false)
             .show(ui, |ui| {
-                status::header(ui, document, wishes);
-                ScrollArea::vertical().show(ui, |ui| self.sections(ui, document, wishes));
+                status::header(ui, document, requests);
+                ScrollArea::vertical().show(ui, |ui| self.sections(ui, document, requests));
             });
     }
 
-    fn sections(&mut self, ui: &mut Ui, document: &mut Document, wishes: &mut Vec<Wish>) {
+    fn sections(&mut self, ui: &mut Ui, document: &mut Document, requests: &mut Vec<UiRequest>) {
         section(ui, "Sun", true, |ui| {
             sun::show(ui, document, &mut self.place, &mut self.clock);
             self.sky_dome.switches(ui);
         });
         section(ui, "Air and ground", true, |ui| air::show(ui, document));
         section(ui, "Picture", true, |ui| {
-            picture::show(ui, document, wishes);
+            picture::show(ui, document, requests);
         });
         section(ui, "Light", false, |ui| {
             self.light.show(ui, document);
@@ -208,12 +208,12 @@ impl Interface {
             status::view(ui, document);
         });
         section(ui, "Scene", false, |ui| {
-            status::scene(ui, document, wishes, &self.timings);
+            status::scene(ui, document, requests, &self.timings);
         });
     }
 }
 
-/// A part of the panel that folds.
+/// A collapsible section of the panel.
 fn section(ui: &mut Ui, title: &str, open: bool, content: impl FnOnce(&mut Ui)) {
     let heading = egui::RichText::new(title).heading();
     CollapsingHeader::new(heading)

@@ -1,87 +1,84 @@
-//! What the keys do: one table for the event loop, the help and the README.
+//! Keys, mouse gestures and their actions.
 
 use winit::keyboard::{Key, NamedKey};
 
 use crate::options::Show;
 
-/// What a key or a button asks for.
+/// Action of a key or a button.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Action {
-    /// Hides the user interface, or shows it.
+    /// Hides or shows the user interface.
     ToggleInterface,
-    /// Shows what the keys do.
+    /// Shows or hides the help.
     Help,
-    /// Brings everything into view.
+    /// Frames the whole scene.
     FrameAll,
-    /// Keeps this view.
+    /// Saves the current viewpoint.
     SaveViewpoint,
-    /// Goes to the next view kept.
+    /// Goes to the next saved viewpoint.
     NextViewpoint,
-    /// Moves the time by so many hours.
+    /// Shifts the time by some hours.
     ShiftHours(f64),
-    /// Lets the day pass, or stops it.
+    /// Starts or stops the clock.
     Play,
-    /// Puts the sun where one looks.
+    /// Puts the sun behind the camera.
     LightFromView,
-    /// Shows something else.
+    /// Shows another quantity.
     Show(Show),
-    /// Compass and sun path.
+    /// Shows or hides compass and sun path.
     ToggleSunPath,
-    /// Times of the passes.
+    /// Shows or hides the times of the passes.
     ToggleTimings,
     /// Writes PNG and EXR.
     Screenshot,
-    /// Puts the command that renders this picture on the clipboard.
+    /// Copies the command that renders this picture.
     CopyCommand,
-    /// Compiles the shaders anew.
+    /// Recompiles the shaders.
     ReloadShaders,
-    /// The window over the whole screen, or not.
+    /// Switches full screen on or off.
     FullScreen,
-    /// Closes what is open over the picture.
+    /// Closes the help and all messages.
     Dismiss,
 }
 
-/// A line of the table.
+/// One line of the help.
 pub(super) struct Binding {
-    /// As people call it.
+    /// Keys or gesture.
     pub(super) keys: &'static str,
-    /// What it does.
+    /// Effect.
     pub(super) what: &'static str,
 }
 
 /// Every key and gesture, in the order of the help.
 pub(super) const BINDINGS: &[Binding] = &[
-    binding("drag", "orbit about what is in the middle"),
+    binding("drag", "orbit about the centre of the view"),
     binding("right drag", "look around"),
-    binding("middle drag, Shift + drag", "shift the view"),
+    binding("middle drag, Shift + drag", "pan"),
     binding(
         "wheel",
-        "nearer and farther, toward the pointer; while looking around: speed of flight",
+        "zoom toward the pointer; while looking around: flight speed",
     ),
-    binding(
-        "double click",
-        "turn to what is under the pointer and orbit about it",
-    ),
-    binding("W A S D, Q E", "fly; with Shift faster, with Ctrl slower"),
-    binding("F", "everything into view"),
-    binding("O, Shift + O", "keep this viewpoint, go to the next"),
-    binding("H, Shift + H", "half an hour of solar time later, earlier"),
-    binding("Space", "let the day pass"),
-    binding("L", "sun from where you look from"),
+    binding("double click", "orbit about the point under the pointer"),
+    binding("W A S D, Q E", "fly; Shift: faster, Ctrl: slower"),
+    binding("F", "frame the whole scene"),
+    binding("O, Shift + O", "save this viewpoint; go to the next one"),
+    binding("H, Shift + H", "half an hour later; earlier"),
+    binding("Space", "start or stop the clock"),
+    binding("L", "put the sun behind the camera"),
     binding(
         "1 .. 9",
         "show: beauty, sun, sky, sun-specular, sky-specular, visibility, occlusion, irradiance, normal",
     ),
     binding("X", "compass and sun path"),
-    binding("T", "time of every pass"),
-    binding("P, F12", "write the picture as PNG and EXR"),
+    binding("T", "time of each pass"),
+    binding("P, F12", "save the picture as PNG and EXR"),
     binding("C", "copy the command that renders this picture"),
     binding(
         "R",
         "reload the shaders (builds with the feature hot-reload)",
     ),
     binding("F11", "full screen"),
-    binding("Tab", "hide and show everything but the picture"),
+    binding("Tab", "hide or show the user interface"),
     binding("?", "this list"),
 ];
 
@@ -89,7 +86,7 @@ const fn binding(keys: &'static str, what: &'static str) -> Binding {
     Binding { keys, what }
 }
 
-/// The quantities on the digits, from 1.
+/// The quantities on the keys 1 to 9.
 pub(super) const DIGITS: [Show; 9] = [
     Show::Beauty,
     Show::Sun,
@@ -102,7 +99,7 @@ pub(super) const DIGITS: [Show; 9] = [
     Show::Normal,
 ];
 
-/// What a key asks for, when no text is being edited.
+/// Action of a key while no text is being edited.
 pub(super) fn action(key: &Key, shift: bool) -> Option<Action> {
     match key {
         Key::Named(named) => named_action(*named),

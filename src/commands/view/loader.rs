@@ -1,4 +1,4 @@
-//! Loading off the event loop: a thread reads the scene and tells how far it is; the window goes on.
+//! Background loading: a thread reads the scene and reports progress to the event loop.
 
 use std::path::PathBuf;
 use std::thread;
@@ -9,30 +9,30 @@ use crate::commands::job::load_options;
 use crate::options::Options;
 use crate::scene::{self, Loaded, SceneError};
 
-/// What threads tell the event loop.
+/// Message of a loading thread to the event loop.
 #[derive(Debug)]
 pub(super) enum Message {
-    /// How far a load is.
+    /// Progress of a load.
     Progress {
-        /// Which load.
+        /// Number of the load.
         ticket: u64,
         /// 0..1.
         share: f32,
-        /// What is being done.
+        /// Current stage.
         stage: &'static str,
     },
-    /// The end of a load.
+    /// A load has ended.
     Loaded {
-        /// Which load.
+        /// Number of the load.
         ticket: u64,
-        /// From where.
+        /// File of the scene; `None` for the bundled one.
         path: Option<PathBuf>,
-        /// The scene, or why not.
+        /// The scene or the error.
         result: Box<Result<Loaded, SceneError>>,
     },
 }
 
-/// Starts loads; only the newest counts.
+/// Starts loads; a new one supersedes the others.
 pub(super) struct Loader {
     proxy: EventLoopProxy<Message>,
     newest: u64,
@@ -49,7 +49,7 @@ impl Loader {
         let (ticket, proxy, options) = (self.newest, self.proxy.clone(), load_options(options));
         thread::spawn(move || {
             let tell = |share: f32, stage: &'static str| {
-                // A window that is gone needs to hear nothing.
+                // Fails only when the window is closed.
                 let _ = proxy.send_event(Message::Progress {
                     ticket,
                     share,
@@ -65,7 +65,7 @@ impl Loader {
         });
     }
 
-    /// Whether a message is about the newest load.
+    /// Whether a message belongs to the newest load.
     pub(super) fn is_newest(&self, ticket: u64) -> bool {
         ticket == self.newest
     }

@@ -1,9 +1,10 @@
-//! The window: a walk through daylight.
+//! The interactive window.
 //!
-//! - [`controls`]: from drags, wheel and keys to a camera; no device, no window. [`viewpoints`]: places to come back to.
-//! - `app` and `events`: the event loop; `stage`: the window with its device; `document`: the scene that is open.
-//! - `keys` and `input`: what keys and pointer do. `interface`: what lies over the picture, panel by panel.
-//! - `loader`: scenes in the background. `capture`: pictures to files. `resume`: settings for the next time.
+//! - [`controls`]: camera control by drags, wheel and keys; needs no device and no window. [`viewpoints`]: saved views.
+//! - `app` and `events`: the event loop; `stage`: the window with its device; `document`: the open scene; `adaptation`: its
+//!   exposure over time.
+//! - `keys` and `input`: keyboard and mouse. `interface`: the user interface, panel by panel.
+//! - `loader`: background loading. `capture`: screenshots. `resume`: settings of the last session.
 
 mod adaptation;
 mod app;
@@ -29,8 +30,8 @@ use crate::options::OptionValues;
 
 use app::App;
 
-/// Opens the window on `scene`, or on the bundled scene, and returns when it is closed; `resumes` with the settings that this
-/// scene was left with.
+/// Opens the window on `scene`, or on the bundled scene, and returns when it is closed; `resumes` restores the settings of
+/// the last session with this scene.
 ///
 /// # Errors
 /// No display, no device that presents to it, or a device that is lost. A scene that cannot be loaded is told in the window.

@@ -1,16 +1,15 @@
-//! How the user interface looks: dark, translucent, out of the way of the picture.
+//! Style of the user interface: dark and slightly translucent.
 
 use egui::{Color32, CornerRadius, FontId, Frame, Margin, Stroke, TextStyle};
 
-/// Behind panels: dark enough to read on, open enough to see the picture. (It is blended in linear light, where little
-/// transparency shows much.)
+/// Background of panels. It is blended in linear light, where little transparency shows much.
 const BACKDROP: Color32 = Color32::from_rgba_premultiplied(13, 15, 19, 246);
-/// Of text, and of text that matters less.
+/// Colour of text, and of secondary text.
 const TEXT: Color32 = Color32::from_gray(222);
 const WEAK: Color32 = Color32::from_gray(168);
-/// Of what is chosen: the sun.
+/// Colour of selected and highlighted items.
 pub(super) const ACCENT: Color32 = Color32::from_rgb(255, 196, 87);
-/// Of errors.
+/// Colour of errors.
 pub(super) const ALARM: Color32 = Color32::from_rgb(255, 120, 100);
 
 /// Sets fonts, colours and spacing.

@@ -1,17 +1,17 @@
-//! Viewpoints to come back to: the scene's named cameras and those that the user saves on the way.
+//! Viewpoints: the named cameras of the scene and those that the user saves.
 
 use crate::scene::Camera;
 
-/// A view with a name.
+/// A named view.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Viewpoint {
-    /// Of the scene file's camera, or a number.
+    /// Name of the scene file's camera, or a number.
     pub name: String,
     /// The view.
     pub camera: Camera,
 }
 
-/// The list, and where one is in it.
+/// List of viewpoints with a current one.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Viewpoints {
     list: Vec<Viewpoint>,
@@ -19,7 +19,7 @@ pub struct Viewpoints {
 }
 
 impl Viewpoints {
-    /// The viewpoints that a scene brings along.
+    /// The viewpoints of a scene.
     pub fn new(list: Vec<Viewpoint>) -> Self {
         Self {
             list,
@@ -27,12 +27,12 @@ impl Viewpoints {
         }
     }
 
-    /// All of them, in the order in which they come.
+    /// All viewpoints in order.
     pub fn list(&self) -> &[Viewpoint] {
         &self.list
     }
 
-    /// Keeps `camera` under the next free number and makes it the current one; returns its name.
+    /// Saves `camera` under the next free number and makes it the current one; returns its name.
     pub fn save(&mut self, camera: Camera) -> &str {
         let mut number = self.list.len() + 1;
         while self.list.iter().any(|v| v.name == number.to_string()) {
@@ -44,19 +44,19 @@ impl Viewpoints {
         &self.list[self.list.len() - 1].name
     }
 
-    /// The one after the current, after the last the first again; `None` when there are none.
+    /// Goes to the next viewpoint, cyclically; `None` when there are none.
     pub fn cycle(&mut self) -> Option<&Viewpoint> {
         let next = self.current.map_or(0, |at| at + 1);
         self.choose(next % self.list.len().max(1))
     }
 
-    /// The one before the current; `None` when there are none.
+    /// Goes to the previous viewpoint, cyclically; `None` when there are none.
     pub fn cycle_back(&mut self) -> Option<&Viewpoint> {
         let length = self.list.len().max(1);
         self.choose((self.current.unwrap_or(0) + length - 1) % length)
     }
 
-    /// Makes the viewpoint of this index the current one; `None` when there is none.
+    /// Goes to a viewpoint by index; `None` when there is none.
     pub fn choose(&mut self, index: usize) -> Option<&Viewpoint> {
         let chosen = self.list.get(index)?;
         self.current = Some(index);

@@ -1,4 +1,4 @@
-//! The mean of many frames, in 32-bit floats: anti-aliasing, a soft sun, less noise.
+//! Running mean of frames in 32-bit floats: anti-aliasing, soft shadows, less noise.
 
 use std::sync::Arc;
 
@@ -10,23 +10,23 @@ use crate::gpu_struct;
 use crate::passes::fullscreen;
 
 gpu_struct! {
-    /// How many frames there are.
+    /// Number of frames.
     pub struct Push: push of ACCUMULATE_FRAG {
         count: u32,
     }
 }
 
-/// The pass and its alternating means.
+/// The pass; it alternates between two images.
 pub struct Accumulate {
     pipeline: Pipeline,
     means: [Image; 2],
 }
 
 impl Accumulate {
-    /// For pictures of `size` pixels.
+    /// Creates the pass for pictures of `size` pixels.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// A device error, or no memory left.
     pub fn new(context: &Arc<Context>, size: [u32; 2]) -> Result<Self> {
         let format = Format::R32G32B32A32_SFLOAT;
         let pipeline = fullscreen(
@@ -58,7 +58,7 @@ impl Accumulate {
         new
     }
 
-    /// The newest mean.
+    /// The newest mean, in the unit of the frames.
     pub fn image(&self) -> &Image {
         &self.means[0]
     }

@@ -1,7 +1,7 @@
-//! From the picture of what moved to the one that converges at rest, without a jump.
+//! Cross-fade from the preview that is shown during movement to the converging picture at rest.
 //!
-//! The two differ wherever ambient occlusion is not the sky's true visibility, and in the first frames by the noise of few
-//! directions. So the newest preview is kept beside the means, and gives way to them along a smooth step.
+//! The two differ where ambient occlusion is not the sky's true visibility, and in the first frames by noise. The last preview
+//! is kept and fades along a smooth step.
 
 use std::sync::Arc;
 
@@ -12,11 +12,11 @@ use crate::gpu_struct;
 
 use crate::passes::fullscreen;
 
-/// Most frames that it takes.
+/// Longest fade, frames.
 const LONGEST: u32 = 64;
 
 gpu_struct! {
-    /// What is left of the preview.
+    /// Weight of the preview.
     pub struct Push: push of FADE_FRAG {
         share: f32,
     }
@@ -26,16 +26,16 @@ gpu_struct! {
 pub struct Fade {
     pipeline: Pipeline,
     image: Image,
-    /// Frames that it takes.
+    /// Length of the fade, frames.
     frames: u32,
     has_preview: bool,
 }
 
 impl Fade {
-    /// For pictures of `size` pixels that average `samples` frames: the last of them has nothing left of the preview.
+    /// Creates the pass for pictures of `size` pixels that average `samples` frames; the last one shows nothing of the preview.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// A device error, or no memory left.
     pub fn new(context: &Arc<Context>, size: [u32; 2], samples: u32) -> Result<Self> {
         let format = Format::R32G32B32A32_SFLOAT;
         Ok(Self {
@@ -46,7 +46,7 @@ impl Fade {
         })
     }
 
-    /// Draws the picture of frame number `index` of an average; before the first there may have been a preview.
+    /// Draws frame number `index` of an average. `is_previewed`: whether `preview` was on the screen before frame 0.
     pub fn record(
         &mut self,
         recorder: &mut Recorder,
@@ -79,7 +79,7 @@ impl Fade {
     }
 }
 
-/// What is left of the preview after frame number `index`: a smooth step from 1 before the first to 0 at the last.
+/// Weight of the preview in frame number `index`: a smooth step from 1 before the first frame to 0 in the last.
 fn share(index: u32, frames: u32) -> f32 {
     let t = ((index + 1) as f32 / frames.max(1) as f32).min(1.0);
     1.0 - t * t * (3.0 - 2.0 * t)

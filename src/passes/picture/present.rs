@@ -1,4 +1,4 @@
-//! The picture into the window, with a user interface over it.
+//! Draws the picture and the user interface to the window.
 
 use std::sync::Arc;
 
@@ -20,15 +20,15 @@ gpu_struct! {
 
 /// The pass.
 pub struct Present {
-    /// By whether the picture is encoded already.
+    /// For a linear picture, and for one that is encoded already.
     pipelines: [Pipeline; 2],
 }
 
 impl Present {
-    /// For windows of an sRGB `format`.
+    /// Creates the pass for windows of an sRGB `format`.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// A device error, or no memory left.
     pub fn new(context: &Arc<Context>, format: Format) -> Result<Self> {
         let pipeline = |encoded: u32| {
             let constants = [("ENCODED", encoded)];
@@ -45,10 +45,10 @@ impl Present {
         })
     }
 
-    /// Draws display values and, over them, the user interface.
+    /// Draws the display values and the user interface over them.
     ///
     /// # Errors
-    /// When memory for the interface is out.
+    /// No memory left for the user interface.
     pub fn record(
         &self,
         recorder: &mut Recorder,

@@ -1,7 +1,7 @@
-//! Radiance to display values: exposure, tone curve, and the encoding exactly once.
+//! Radiance to display values: exposure, tone curve, encoding.
 //!
-//! Without a gamma the target has an sRGB format and the device encodes; with one (the lecture's (s R)^(1/γ)) the
-//! shader applies the power and the target is plain.
+//! Without a gamma the target has an sRGB format and the device encodes. With one (the lecture's (s R)^(1/γ)) the shader
+//! applies the power and the target is UNORM.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ use crate::passes::fullscreen;
 use crate::passes::light::lighting::Show;
 
 gpu_struct! {
-    /// Numbers of the mapping.
+    /// Parameters of the tone map.
     pub struct Push: push of TONE_MAP_FRAG {
         exposure: f32,
         offset: f32,
@@ -25,31 +25,31 @@ gpu_struct! {
     }
 }
 
-/// How much light makes the display's white.
+/// Exposure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Scale {
-    /// Display value of 1 cd/m².
+    /// Factor from cd/m² to display values.
     Fixed(f64),
-    /// Display value of the picture's log-average luminance.
+    /// Automatic: the display value of the picture's average luminance, see [`crate::daylight::exposure`].
     Average(f64),
 }
 
-/// How radiance becomes display values.
+/// Settings of the tone map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ToneSettings {
-    /// What is shown: quantities that are no light are shown as they are.
+    /// Quantity shown; quantities other than light are not exposed.
     pub show: Show,
-    /// The curve.
+    /// Tone curve.
     pub curve: ToneCurve,
     /// Exposure.
     pub scale: Scale,
-    /// Luminance that Reinhard's curve maps to white, display units before the curve.
+    /// Luminance that Reinhard's curve maps to white, in display values before the curve.
     pub white: f64,
-    /// Power instead of the sRGB encoding.
+    /// Gamma of a power law instead of the sRGB encoding.
     pub gamma: Option<f64>,
-    /// Metres at which a shown depth is mid-grey.
+    /// Depth that is shown mid-grey, metres.
     pub depth_scale: f64,
-    /// False colours of the luminance, cd/m² (lux of an irradiance), instead of all that: sRGB, whatever the gamma.
+    /// Range of false colours, cd/m² (lux of an irradiance); they replace exposure and tone curve and are always sRGB.
     pub false_colour: Option<Range>,
 }
 
@@ -60,22 +60,22 @@ pub struct ToneMap {
     display: Image,
 }
 
-/// Whether a quantity is light, to be exposed and bent by a curve.
+/// Whether a quantity is light: exposed and tone-mapped.
 fn is_light(show: Show) -> bool {
     show.file_unit() != 1.0
 }
 
-/// Factor and offset of the share of a range, for log2 of thousands of its unit.
+/// Factor and offset from log2 of kcd/m² (klx) to the position 0..1 in a range.
 fn kilo_range(range: Range) -> (f64, f64) {
     let (scale, offset) = range.log2_scale();
     (scale, offset + scale * 1e3f64.log2())
 }
 
 impl ToneMap {
-    /// A picture of `size` pixels.
+    /// Creates the pass for pictures of `size` pixels.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// A device error, or no memory left.
     pub fn new(context: &Arc<Context>, size: [u32; 2], settings: ToneSettings) -> Result<Self> {
         let false_colour = settings.false_colour.is_some();
         let light = is_light(settings.show) && !false_colour;
@@ -116,7 +116,7 @@ impl ToneMap {
         })
     }
 
-    /// Maps a picture. `average_luminance` is one texel, read only for an automatic exposure.
+    /// Maps a picture. `average_luminance` (one texel, kcd/m²) is read only for automatic exposure.
     pub fn record(
         &self,
         recorder: &mut Recorder,
@@ -144,7 +144,7 @@ impl ToneMap {
         }
     }
 
-    /// Factor and offset before the curve.
+    /// Factor (from kcd/m² to display values) and offset before the tone curve.
     fn exposure(&self) -> (f64, f64) {
         let s = &self.settings;
         match s.show {
@@ -152,7 +152,7 @@ impl ToneMap {
             Show::Depth => (0.5 / s.depth_scale, 0.0),
             Show::Visibility | Show::Occlusion | Show::Albedo => (1.0, 0.0),
             shown => {
-                // An irradiance is shown as the radiance of white paper under it.
+                // An irradiance is shown as the radiance of a white diffuser.
                 let paper = if shown == Show::Irradiance {
                     std::f64::consts::FRAC_1_PI
                 } else {
@@ -166,7 +166,7 @@ impl ToneMap {
         }
     }
 
-    /// The picture.
+    /// The picture in display values.
     pub fn image(&self) -> &Image {
         &self.display
     }

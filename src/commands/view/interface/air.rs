@@ -1,4 +1,4 @@
-//! Sky model, turbidity, ground.
+//! Sky model, turbidity, ground albedo, refraction.
 
 use egui::{Slider, Ui};
 
@@ -10,9 +10,9 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
     choice(ui, "sky", &mut settings.sky);
     let (least, most) = settings.sky.turbidity_range();
     ui.add(Slider::new(&mut settings.turbidity, least..=most).text("turbidity"))
-        .on_hover_text("2 very clear, 3 clear, 6 hazy, 10 murky");
+        .on_hover_text("2 very clear, 3 clear, 6 hazy, 10 very hazy");
     ui.add(Slider::new(&mut settings.ground_albedo, 0.0..=1.0).text("ground albedo"))
-        .on_hover_text("reflectance of the ground below the horizon");
+        .on_hover_text("reflectance of the ground below the horizon, 0 to 1");
     choice(ui, "refraction", &mut settings.refraction);
     let light = &document.job.daylight;
     let lux = crate::daylight::colour::luminance;
@@ -20,7 +20,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
     let sun = lux(light.sun_illuminance) * elevation.to_radians().sin().max(0.0);
     let sky = lux(light.sky_irradiance_up);
     ui.label(format!(
-        "on open ground: sun {} + sky {}",
+        "horizontal: sun {} + sky {}",
         illuminance(sun),
         illuminance(sky)
     ));

@@ -32,7 +32,7 @@ impl Default for Clock {
 }
 
 impl Clock {
-    /// Starts or stops it.
+    /// Starts or stops the clock.
     pub(super) fn toggle(&mut self) {
         self.runs = !self.runs;
     }

@@ -1,4 +1,4 @@
-//! What keys and pointer do.
+//! The help overlay: keys and mouse gestures.
 
 use egui::{Align2, Grid, RichText, Ui, Window};
 
@@ -6,7 +6,7 @@ use crate::commands::view::keys::BINDINGS;
 use crate::commands::view::style;
 
 pub(super) fn show(ui: &Ui, open: &mut bool) {
-    Window::new("Keys")
+    Window::new("Keys and mouse")
         .open(open)
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
         .collapsible(false)

@@ -8,7 +8,7 @@ use crate::options::Options;
 
 /// Size of the bar, points.
 const BAR: [f32; 2] = [18.0, 220.0];
-/// Steps of colour in it.
+/// Colour steps in the bar.
 const STEPS: u32 = 48;
 
 /// Of the false colours that are shown, when they are.

@@ -1,4 +1,4 @@
-//! How light is computed: irradiance, occlusion, shadows, samples.
+//! Lighting settings: irradiance, ambient occlusion, shadows, samples.
 
 use egui::{ComboBox, Slider, Ui};
 
@@ -9,10 +9,10 @@ use crate::daylight::irradiance::IrradianceMethod;
 use crate::daylight::sample_count::ErrorEstimate;
 use crate::daylight::sky::Conditions;
 
-/// Edges of the shadow map on offer, texels.
+/// Shadow map resolutions to choose from, texels.
 const SHADOW_SIZES: [u32; 4] = [1024, 2048, 4096, 8192];
 
-/// The estimated error of the sky's irradiance, with what it was estimated for.
+/// Estimated error of the sky irradiance, cached by the conditions that it belongs to.
 #[derive(Default)]
 pub(super) struct Readout {
     estimate: Option<(Conditions, ErrorEstimate)>,
@@ -32,28 +32,28 @@ impl Readout {
         ui.separator();
         let settings = &mut document.job.settings;
         let radius = Slider::new(&mut settings.ao_radius, 0.0..=20.0);
-        ui.add(radius.text("occlusion radius, m"))
-            .on_hover_text("0 turns ambient occlusion off");
-        choice(ui, "occlusion", &mut settings.ao_resolution);
+        ui.add(radius.text("AO radius, m"))
+            .on_hover_text("radius of ambient occlusion; 0 turns it off");
+        choice(ui, "AO resolution", &mut settings.ao_resolution);
         ui.separator();
         shadow_size(ui, &mut settings.shadow_size);
         let samples = Slider::new(&mut settings.samples, 1..=1024);
         ui.add(samples.logarithmic(true).text("frames at rest"))
             .on_hover_text(
-                "frames averaged when nothing moves: smooth edges, and shadows as soft as the sun's disc makes them",
+                "frames averaged when nothing moves: anti-aliasing and soft shadows of the sun's disc",
             );
         ui.add(Slider::new(&mut settings.specular, 0.0..=4.0).text("specular"))
-            .on_hover_text("factor on every specular reflectance");
+            .on_hover_text("scales all specular reflectances");
         ui.checkbox(&mut settings.limb_darkening, "limb darkening");
     }
 
-    /// How far the sky's irradiance is, and how far off.
+    /// Progress and estimated error of the sky irradiance.
     fn irradiance(&mut self, document: &Document) -> String {
         let (done, wanted) = document.frame().irradiance_progress();
         let method = document.job.settings.irradiance;
         let error = match method {
-            IrradianceMethod::Exact => "exact to the sky cube's texels".to_owned(),
-            IrradianceMethod::Sh => "nine harmonics".to_owned(),
+            IrradianceMethod::Exact => "exact sum over the sky cube".to_owned(),
+            IrradianceMethod::Sh => "9 spherical harmonics".to_owned(),
             IrradianceMethod::Quasi | IrradianceMethod::MonteCarlo => {
                 let error = self.error(document, method, done);
                 format!("{done} of {wanted} samples, ± {:.2} %", error * 100.0)
@@ -83,7 +83,7 @@ impl Readout {
 }
 
 fn shadow_size(ui: &mut Ui, size: &mut u32) {
-    ComboBox::new("shadow map", "shadow map")
+    ComboBox::new("shadow map", "shadow map, texels")
         .selected_text(size.to_string())
         .show_ui(ui, |ui| {
             for edge in SHADOW_SIZES {

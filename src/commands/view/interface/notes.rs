@@ -1,4 +1,4 @@
-//! Messages over the picture: what was done, what went wrong, how far a load is.
+//! Messages over the picture: notices, errors, progress of loading.
 
 use std::time::{Duration, Instant};
 
@@ -7,23 +7,23 @@ use egui::{Align2, ProgressBar, RichText, Ui};
 use super::corner;
 use crate::commands::view::style;
 
-/// How long a message stays that nobody needs to act on.
+/// How long a notice is shown.
 const SHOWN: Duration = Duration::from_secs(5);
-/// Most messages at a time: the newest.
+/// Most messages at a time; older ones are dropped.
 const MOST: usize = 6;
 
-/// A line.
+/// One message.
 struct Note {
     text: String,
-    /// None: until it is dismissed.
+    /// When it disappears; `None` for errors, which stay until dismissed.
     until: Option<Instant>,
 }
 
-/// The messages of this moment.
+/// The messages that are shown.
 pub(in crate::commands::view) struct Notes {
     notes: Vec<Note>,
     is_quiet: bool,
-    /// How far a load is, and what it does.
+    /// Progress of loading, 0..1, and its stage.
     pub(super) loading: Option<(f32, &'static str)>,
 }
 
@@ -36,14 +36,14 @@ impl Notes {
         }
     }
 
-    /// Tells something for a while.
+    /// Shows a notice for some seconds.
     pub(in crate::commands::view) fn say(&mut self, text: &str) {
         if !self.is_quiet {
             self.add(text, Some(Instant::now() + SHOWN));
         }
     }
 
-    /// Tells of a failure, here and on stderr.
+    /// Shows an error, in the window and on stderr.
     pub(in crate::commands::view) fn complain(&mut self, text: &str) {
         eprintln!("error: {text}");
         self.add(text, None);
@@ -59,12 +59,12 @@ impl Notes {
         self.notes.drain(..excess);
     }
 
-    /// Closes all.
+    /// Removes all messages.
     pub(super) fn dismiss(&mut self) {
         self.notes.clear();
     }
 
-    /// Shows them; only failures and loads over a bare picture.
+    /// Shows the messages; only errors and progress when `all` is false.
     pub(super) fn show(&mut self, ui: &Ui, all: bool) {
         let now = Instant::now();
         self.notes
@@ -95,7 +95,7 @@ impl Notes {
     }
 }
 
-/// Whether it was closed.
+/// Shows a message; returns whether the user dismissed it.
 fn line(ui: &mut Ui, note: &Note) -> bool {
     let Some(_) = note.until else {
         let mut close = false;

@@ -1,20 +1,20 @@
-//! What is shown, and how it is exposed.
+//! The quantity shown, false colours, tone curve, exposure.
 
 use std::ops::RangeInclusive;
 
 use egui::{ComboBox, DragValue, Slider, Ui};
 
-use super::{Wish, choice};
+use super::{UiRequest, choice};
 use crate::commands::view::document::Document;
 use crate::commands::view::keys::Action;
 use crate::options::{Choice, Options, Quantity, Range, Show};
 
-/// Exposure values on the slider: dusk to snow in the sun.
+/// Range of the exposure slider: dusk to snow in the sun.
 const EV100_RANGE: RangeInclusive<f64> = -4.0..=18.0;
-/// Where the slider starts when the exposure stops to be automatic: a sunny day.
+/// Initial exposure of the slider when automatic exposure is turned off: a sunny day.
 const SUNNY_EV100: f64 = 14.0;
 
-pub(super) fn show(ui: &mut Ui, document: &mut Document, wishes: &mut Vec<Wish>) {
+pub(super) fn show(ui: &mut Ui, document: &mut Document, requests: &mut Vec<UiRequest>) {
     let settings = &mut document.job.settings;
     choice(ui, "show", &mut settings.show);
     false_colours(ui, settings);
@@ -26,7 +26,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, wishes: &mut Vec<Wish>)
             ("copy command", Action::CopyCommand),
         ] {
             if ui.button(text).clicked() {
-                wishes.push(Wish::Do(action));
+                requests.push(UiRequest::Do(action));
             }
         }
     });
@@ -46,7 +46,7 @@ fn false_colours(ui: &mut Ui, settings: &mut Options) {
         });
     if settings.false_colour != before {
         settings.false_colour_range = None;
-        // Each colours its own quantity.
+        // Each colours one quantity.
         settings.show = match settings.false_colour {
             Some(Quantity::Illuminance) => Show::Irradiance,
             _ => Show::Beauty,
@@ -57,7 +57,7 @@ fn false_colours(ui: &mut Ui, settings: &mut Options) {
     }
 }
 
-/// The decades of a range, as powers of ten.
+/// The ends of a range as powers of ten.
 fn range(ui: &mut Ui, range: &mut Option<Range>, quantity: Quantity) {
     let shown = range.unwrap_or(quantity.daytime());
     let (mut min, mut max) = (shown.min.log10(), shown.max.log10());
@@ -74,7 +74,7 @@ fn range(ui: &mut Ui, range: &mut Option<Range>, quantity: Quantity) {
     });
 }
 
-/// Whether a power of ten was changed.
+/// An editable power of ten; returns whether it changed.
 fn power(ui: &mut Ui, value: &mut f64, range: RangeInclusive<f64>) -> bool {
     let power = DragValue::new(value)
         .speed(0.05)

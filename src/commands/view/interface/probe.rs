@@ -1,4 +1,4 @@
-//! Read-out of the pixel under the pointer: its luminance, and the illuminance of its surface.
+//! Read-out under the pointer: luminance of the pixel, illuminance of its surface.
 
 use egui::{Align2, Grid, Ui};
 use glam::{DVec3, Vec2, Vec3};
@@ -10,18 +10,18 @@ use crate::passes::light::probe::{Reading, SurfaceReading};
 use crate::passes::view::View;
 use crate::scene::Scene;
 
-/// The read-out of a pixel, and of which frame.
+/// The read-out of a pixel, and the frame it is of.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Probe {
     pixel: Option<[u32; 2]>,
     frame: u64,
     reading: Option<Reading>,
-    /// The point of the surface, metres.
+    /// Position of the surface, metres.
     point: Option<DVec3>,
 }
 
 impl Probe {
-    /// Whether it is of this pixel, and of the newest picture once that is at rest.
+    /// Whether the read-out is of this pixel and, once the picture is at rest, of the newest frame.
     pub(super) fn is_fresh(&self, pixel: Option<[u32; 2]>, document: Option<&Document>) -> bool {
         let is_newest = document.is_none_or(|d| !d.is_at_rest() || d.frames() == self.frame);
         pixel == self.pixel && (pixel.is_none() || is_newest)
@@ -50,7 +50,7 @@ impl Probe {
                 picture(ui, reading);
                 match &reading.surface {
                     Some(surface) => about(ui, surface, &document.job.scene),
-                    None => row(ui, "surface", "none: sky or ground"),
+                    None => row(ui, "surface", "none (sky or ground plane)"),
                 }
             });
         });
@@ -91,18 +91,14 @@ fn about(ui: &mut Ui, surface: &SurfaceReading, scene: &Scene) {
     );
     let material = scene.materials.get(surface.material as usize);
     let name = material.map_or("", |m| m.name.as_str());
-    let name = if name.is_empty() {
-        "without name"
-    } else {
-        name
-    };
+    let name = if name.is_empty() { "unnamed" } else { name };
     row(ui, "material", name);
     row(ui, "reflectance", rgb(surface.albedo, 3));
     row(ui, "normal", rgb(surface.normal, 3));
     row(ui, "depth", format!("{:.2} m", surface.distance));
 }
 
-/// The point of the surface under a pixel, metres.
+/// Position of the surface of a reading, metres.
 fn point(document: &Document, reading: Reading) -> Option<DVec3> {
     let surface = reading.surface?;
     let size = document.frame().settings().size;

@@ -1,4 +1,4 @@
-//! Compass and sun path over the picture: where the sun goes, as seen from where one stands.
+//! Compass and sun path over the picture, as seen from the camera.
 
 use chrono::{DateTime, FixedOffset, NaiveDate};
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2};
@@ -15,7 +15,7 @@ const EQUINOX: Color32 = Color32::from_rgb(150, 230, 170);
 /// Radius of the compass, points.
 const COMPASS: f32 = 34.0;
 
-/// Which of the two are on, and the path of the day.
+/// Which overlays are shown, and the cached sun path of the day.
 #[derive(Default)]
 pub(super) struct SkyDome {
     compass: bool,
@@ -24,7 +24,7 @@ pub(super) struct SkyDome {
 }
 
 impl SkyDome {
-    /// Both on, or both off.
+    /// Turns both overlays on or off.
     pub(super) fn toggle(&mut self) {
         let on = !(self.compass || self.sun_path);
         (self.compass, self.sun_path) = (on, on);
@@ -53,7 +53,7 @@ impl SkyDome {
         }
     }
 
-    /// The path of the day at the place; a sun without a place has none.
+    /// The sun path at the place; `None` when the sun has no place.
     fn path(&mut self, document: &Document) -> Option<&SunPath> {
         let settings = &document.job.settings;
         let SunInput::Place {
@@ -86,7 +86,7 @@ fn path_of(observer: &Observer, when: DateTime<FixedOffset>) -> Option<SunPath> 
     SunPath::new(observer, when).ok()
 }
 
-/// Directions to points of the window: the camera, at infinity.
+/// Projects directions (points at infinity) to the window.
 struct Lens {
     clip_from_world: Mat4,
     screen: Rect,
@@ -102,7 +102,7 @@ impl Lens {
         }
     }
 
-    /// Where a direction is seen, when it is in front of the eye.
+    /// Position of a direction in the window; `None` behind the camera.
     fn project(&self, direction: Vec3) -> Option<Pos2> {
         let clip = self.clip_from_world * direction.extend(0.0);
         if clip.w <= 1e-3 {
@@ -140,7 +140,7 @@ fn text(painter: &Painter, at: Pos2, text: &str, color: Color32) {
     painter.text(at, Align2::CENTER_CENTER, text, font, color);
 }
 
-/// The horizon with the points of the compass.
+/// The horizon with the compass points.
 fn horizon(painter: &Painter, lens: &Lens) {
     let circle: Line = (0..=72)
         .map(|i| direction(f64::from(i) * 5.0, 0.0))
@@ -193,7 +193,7 @@ fn sun(painter: &Painter, lens: &Lens, toward: DVec3) {
     }
 }
 
-/// A rose at the bottom of the picture: up is where one looks; the dot is the sun.
+/// A compass rose at the bottom of the picture: up is the viewing direction, the dot is the sun.
 fn compass(painter: &Painter, screen: Rect, document: &Document) {
     let centre = pos2(screen.center().x, screen.bottom() - COMPASS - 20.0);
     painter.circle_filled(centre, COMPASS + 12.0, Color32::from_black_alpha(110));

@@ -1,23 +1,27 @@
-//! The scene, the camera, and how far the picture is.
+//! Scene, camera, and progress of the picture.
 
 use egui::{Slider, Ui};
 
-use super::Wish;
+use super::UiRequest;
 use super::timings::TimingChart;
 use crate::commands::view::document::Document;
 use crate::commands::view::keys::Action;
 
-/// The top of the panel: what is open, and how far its picture is.
-pub(super) fn header(ui: &mut Ui, document: &Document, wishes: &mut Vec<Wish>) {
+/// The top of the panel: the name of the scene and the progress of its picture.
+pub(super) fn header(ui: &mut Ui, document: &Document, requests: &mut Vec<UiRequest>) {
     ui.horizontal(|ui| {
         ui.heading(document.title());
-        if ui.small_button("?").on_hover_text("keys").clicked() {
-            wishes.push(Wish::Do(Action::Help));
+        if ui
+            .small_button("?")
+            .on_hover_text("keys and mouse")
+            .clicked()
+        {
+            requests.push(UiRequest::Do(Action::Help));
         }
     });
     let (done, wanted) = document.progress();
     ui.weak(if document.is_at_rest() {
-        format!("{wanted} frames averaged, at rest")
+        format!("{wanted} frames averaged, done")
     } else {
         format!("{done} of {wanted} frames averaged")
     });
@@ -27,7 +31,9 @@ pub(super) fn header(ui: &mut Ui, document: &Document, wishes: &mut Vec<Wish>) {
 /// Field of view and viewpoints.
 pub(super) fn view(ui: &mut Ui, document: &mut Document) {
     let mut camera = document.controls.camera();
-    let slider = Slider::new(&mut camera.fov_deg, 10.0..=110.0).text("field of view");
+    let slider = Slider::new(&mut camera.fov_deg, 10.0..=110.0)
+        .suffix("°")
+        .text("field of view");
     if ui.add(slider).changed() {
         document.set_camera(&camera);
     }
@@ -36,7 +42,7 @@ pub(super) fn view(ui: &mut Ui, document: &mut Document) {
         if ui.button("frame all").clicked() {
             document.frame_all();
         }
-        if ui.button("keep viewpoint").clicked() {
+        if ui.button("save viewpoint").clicked() {
             document.viewpoints.save(camera);
         }
         for (i, viewpoint) in document.viewpoints.list().iter().enumerate() {
@@ -51,21 +57,21 @@ pub(super) fn view(ui: &mut Ui, document: &mut Document) {
     let (eye, forward) = (camera.eye, camera.forward());
     let (azimuth, elevation) = crate::daylight::sun_position::azimuth_elevation(forward.as_dvec3());
     ui.weak(format!(
-        "eye {:.1} {:.1} {:.1} m, toward {azimuth:.0}°, {elevation:+.0}°",
+        "eye {:.1}, {:.1}, {:.1} m; azimuth {azimuth:.0}°, elevation {elevation:+.0}°",
         eye.x, eye.y, eye.z
     ));
 }
 
-/// Numbers of the scene and of the device.
+/// Statistics of the scene and the device.
 pub(super) fn scene(
     ui: &mut Ui,
     document: &Document,
-    wishes: &mut Vec<Wish>,
+    requests: &mut Vec<UiRequest>,
     timings: &TimingChart,
 ) {
     let scene = &document.job.scene;
     let extent = scene.bounds.max - scene.bounds.min;
-    let mega = |bytes: u64| bytes as f64 / (1 << 20) as f64;
+    let mebibytes = |bytes: u64| bytes as f64 / (1 << 20) as f64;
     ui.label(format!(
         "{} triangles, {} materials, {} textures",
         scene.triangles(),
@@ -73,16 +79,16 @@ pub(super) fn scene(
         scene.textures.len()
     ));
     ui.label(format!(
-        "{:.1} x {:.1} x {:.1} m",
+        "{:.1} × {:.1} × {:.1} m",
         extent.x, extent.y, extent.z
     ));
     ui.label(format!(
-        "{:.0} MB of device memory",
-        mega(timings.device_bytes())
+        "{:.0} MiB of device memory",
+        mebibytes(timings.device_bytes())
     ));
     let mut timed = timings.is_open;
-    if ui.checkbox(&mut timed, "time of every pass").changed() {
-        wishes.push(Wish::Do(Action::ToggleTimings));
+    if ui.checkbox(&mut timed, "time of each pass").changed() {
+        requests.push(UiRequest::Do(Action::ToggleTimings));
     }
     ui.weak("drop a model or a scene file on the window to open it");
 }

@@ -1,4 +1,4 @@
-//! Where the sun stands: place and time, the lecture's solar time, or a direction.
+//! Position of the sun: by place and time, by solar time, or as a direction.
 
 use chrono::{DateTime, Datelike, FixedOffset, NaiveDate, NaiveDateTime, NaiveTime, Timelike};
 use egui::{Color32, DragValue, Key, Response, Slider, TextEdit, Ui, pos2, vec2};
@@ -60,7 +60,11 @@ pub(super) fn show(
             hours,
             latitude,
         } => {
-            ui.add(Slider::new(latitude, -90.0..=90.0).text("latitude"));
+            ui.add(
+                Slider::new(latitude, -90.0..=90.0)
+                    .suffix("°")
+                    .text("latitude"),
+            );
             ui.add(Slider::new(day, 1..=365).text("day of the year"));
             ui.add(Slider::new(hours, 0.0..=24.0).text("solar time, h"));
             clock_buttons(ui, clock);
@@ -69,8 +73,16 @@ pub(super) fn show(
             azimuth_deg,
             elevation_deg,
         } => {
-            ui.add(Slider::new(azimuth_deg, 0.0..=360.0).text("azimuth"));
-            ui.add(Slider::new(elevation_deg, -20.0..=90.0).text("elevation"));
+            ui.add(
+                Slider::new(azimuth_deg, 0.0..=360.0)
+                    .suffix("°")
+                    .text("azimuth"),
+            );
+            ui.add(
+                Slider::new(elevation_deg, -20.0..=90.0)
+                    .suffix("°")
+                    .text("elevation"),
+            );
         }
     }
     ui.label(format!(
@@ -165,7 +177,7 @@ impl PlaceField {
         let hint = if km < NEAR_KM {
             format!("{}, {}", city.name, city.country)
         } else {
-            "search a city".to_owned()
+            "search for a city".to_owned()
         };
         let field = ui.add(TextEdit::singleline(&mut self.text).hint_text(hint));
         let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));

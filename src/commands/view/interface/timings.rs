@@ -1,4 +1,4 @@
-//! How long each pass takes, live.
+//! Live chart of the time of each pass.
 
 use egui::{Align2, Color32, Grid, Rect, Sense, Ui, vec2};
 
@@ -8,12 +8,12 @@ use crate::commands::view::stage::Stage;
 use crate::commands::view::style;
 use crate::gpu::PassTime;
 
-/// Weight of the newest frame in the mean that is shown: steady enough to read, quick enough to follow.
+/// Weight of the newest frame in the running mean.
 const NEWEST: f64 = 0.2;
 /// Length of the longest bar, points.
 const BAR: f32 = 150.0;
 
-/// Mean times of the passes that ran lately.
+/// Mean times of the recent passes.
 #[derive(Default)]
 pub(super) struct TimingChart {
     pub(super) is_open: bool,
@@ -64,7 +64,7 @@ impl TimingChart {
             });
             let sum: f64 = self.passes.iter().map(|p| p.ms).sum();
             ui.label(format!("sum {sum:.1} ms"));
-            // Times are of frames that are drawn: keep drawing while they are watched.
+            // Only drawn frames are timed: start a new average.
             if ui.button("measure").clicked() {
                 document.start_over();
             }

@@ -98,9 +98,16 @@ float weight(float c, vec2 n) {
     return 0.5 * ((1.0 - c2) * n.y + (0.5 * PI - c * (1.9836721 - c2 * (0.2379583 + 0.1722095 * c2))) * n.x);
 }
 
+/// 1 / sqrt x within 0.2 %: the initial guess by the exponent and one step of Newton's method (Lomont 2003, "Fast inverse square
+/// root"). A software device computes `inversesqrt` by a root and a division.
+float rsqrt(float x) {
+    float y = uintBitsToFloat(0x5f375a86u - (floatBitsToUint(x) >> 1));
+    return y * (1.5 - 0.5 * x * y * y);
+}
+
 /// Sectors between the view direction and a point q of the slice (along the axis, along the view direction, metres).
 float sectors_to(vec2 q, Side side) {
-    float sectors = weight(q.y * inversesqrt(dot(q, q) + 1e-20), side.n) * side.per_weight;
+    float sectors = weight(q.y * rsqrt(dot(q, q) + 1e-20), side.n) * side.per_weight;
     // Behind the tangent plane everything is blocked by it.
     return dot(q, side.n) > 0.0 ? sectors : side.sectors;
 }

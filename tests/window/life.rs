@@ -152,13 +152,13 @@ fn nth_size(n: u32) -> (u32, u32) {
     }
 }
 
-/// Resizes until memory has settled, resizes after that, and how much more memory the latter may take. Freed memory stays with
-/// the process, which takes up to 3 % more in the first four hundred resizes and hardly 0.5 % in the next eight hundred.
+/// Resizes until memory has settled, resizes after that, and how much more memory the latter may take. The C library returns freed
+/// memory of the driver to the system as it sees fit: resident memory fluctuates by 1 % to 8 % between the resizes 50 and 100.
 fn resizes() -> (u32, u32, f64) {
     if is_soaking() {
         (400, 300, 0.02)
     } else {
-        (50, 50, 0.05)
+        (50, 50, 0.12)
     }
 }
 

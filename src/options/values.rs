@@ -111,21 +111,21 @@ impl Default for Size {
     }
 }
 
-/// As [`size`] reads it.
+/// As the parser of `--size` reads it.
 impl fmt::Display for Size {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}x{}", self.width, self.height)
     }
 }
 
-/// As [`sun`] reads it.
+/// As the parser of `--sun` reads it.
 impl fmt::Display for Direction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{},{}", self.azimuth_deg, self.elevation_deg)
     }
 }
 
-/// As [`solar`] reads it.
+/// As the parser of `--solar` reads it.
 impl fmt::Display for SolarTime {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{},{}", self.day, self.hours)

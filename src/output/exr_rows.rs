@@ -23,8 +23,8 @@ pub type LayerKind = (&'static str, Channels);
 /// A channel: its name in the file, its layer, and the component of the texels.
 type Channel = (String, usize, usize);
 
-/// Writes layers of one size. `band` returns the texels of each layer for the next rows, any multiple of [`BLOCK_ROWS`]; it is
-/// called until all `size[1]` rows are written.
+/// Writes layers of one size. `band` returns the texels of each layer for the next rows, any multiple of the 16 rows of a
+/// compressed block; it is called until all `size[1]` rows are written.
 ///
 /// # Errors
 /// The error of `band`, or the file cannot be written; an older one is left alone then.

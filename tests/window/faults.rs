@@ -142,21 +142,30 @@ fn a_window_lives_on_without_its_surface() {
 #[test]
 fn a_window_whose_device_is_lost_ends_with_one_line_and_is_resumed() {
     let _machine = shared_machine();
-    // While the scene is uploaded, with the first frames, and when all is shown.
-    for (number, is_open) in [(2, false), (6, false), (40, true)] {
-        let state = tempfile::tempdir().expect("a scratch folder");
-        let fault = format!("submit@{number}=device-lost");
-        let variables = [
-            ("SKYLIGHT_FAULT", Path::new(&fault)),
-            ("XDG_STATE_HOME", state.path()),
-        ];
-        let running = Running::with(&["--size", "320x180", "--samples", "64"], &variables);
-        let output = running.ended();
-        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(1), "{fault}: {stderr}");
-        assert_eq!(stderr.lines().count(), 1, "{fault}: {stderr}");
-        assert!(stderr.contains("the device was lost"), "{fault}: {stderr}");
-        let kept = state.path().join("skylight").join("bundled.toml");
-        assert!(kept.is_file() || !is_open, "settings are kept for --resume");
+    // While the scene is uploaded, and with the first frames.
+    for number in [2, 6] {
+        lose_device(number);
     }
+    // When all is shown. On a busy machine the panel is drawn often before the scene is open: then later.
+    assert!(
+        [40, 160, 640].into_iter().any(lose_device),
+        "settings are kept for --resume"
+    );
+}
+
+/// Runs a window whose device is lost at a submission, counted from 1. Returns whether it kept its settings.
+fn lose_device(number: u32) -> bool {
+    let state = tempfile::tempdir().expect("a scratch folder");
+    let fault = format!("submit@{number}=device-lost");
+    let variables = [
+        ("SKYLIGHT_FAULT", Path::new(&fault)),
+        ("XDG_STATE_HOME", state.path()),
+    ];
+    let running = Running::with(&["--size", "320x180", "--samples", "1024"], &variables);
+    let output = running.ended();
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{fault}: {stderr}");
+    assert_eq!(stderr.lines().count(), 1, "{fault}: {stderr}");
+    assert!(stderr.contains("the device was lost"), "{fault}: {stderr}");
+    state.path().join("skylight").join("bundled.toml").is_file()
 }

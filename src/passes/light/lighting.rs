@@ -212,7 +212,7 @@ impl Lighting {
     }
 
     /// For frames whose mean converges: without the diffuse light of the sky (A = 0), which [`crate::passes::dome::gather::Dome`] adds, and
-    /// with hard shadows of the map of [`crate::passes::sun_shadow::map::Shadow::unbiased`].
+    /// with hard shadows of the map of [`crate::passes::sun_shadow::map::Shadow::perspective`].
     ///
     /// # Errors
     /// When the device refuses.

@@ -1,4 +1,4 @@
-//! Comparison with an earlier measurement.
+//! Comparison with an earlier benchmark report.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -7,7 +7,7 @@ use super::report::{Head, Report};
 use super::statistics::Summary;
 use crate::error::{Error, Result};
 
-/// How one time compares with the earlier one.
+/// Change of one timing against the baseline.
 #[derive(Debug, Clone, PartialEq)]
 struct Change {
     name: String,
@@ -15,9 +15,9 @@ struct Change {
     new_ms: f64,
     /// New over old.
     ratio: f64,
-    /// Ratios within 1 ± this are noise.
+    /// Ratios within 1 ± `noise` are not significant.
     noise: f64,
-    /// CPU time, new over old, where both are known.
+    /// CPU time, new over old. `None` unless both reports have it.
     cpu_ratio: Option<f64>,
 }
 
@@ -46,7 +46,7 @@ impl Change {
         }
     }
 
-    /// Whether it is slower by more than the factor, and not by noise alone.
+    /// Whether the slowdown exceeds both `factor` and the noise.
     fn exceeds(&self, factor: f64) -> bool {
         self.ratio > factor && self.verdict() == "slower"
     }
@@ -59,10 +59,10 @@ pub struct Baseline {
 }
 
 impl Baseline {
-    /// Reads the JSON file of an earlier run.
+    /// Reads the JSON report of an earlier run.
     ///
     /// # Errors
-    /// When it cannot be read or is no such file.
+    /// Fails when the file cannot be read or is not a benchmark report.
     pub fn read(path: &Path) -> Result<Self> {
         let error = |reason: String| Error::Read {
             path: path.to_owned(),
@@ -90,7 +90,7 @@ impl Baseline {
         pairs.collect()
     }
 
-    /// A table of ratios.
+    /// The comparison as a text table.
     pub fn table(&self, new: &Report) -> String {
         let mut text = format!(
             "\ncompared with {} ({})\n",
@@ -121,10 +121,10 @@ impl Baseline {
         text
     }
 
-    /// Fails when something takes more than `factor` times as long as before, and not by noise alone.
+    /// Fails when any timing is more than `factor` times the baseline and the change exceeds the noise.
     ///
     /// # Errors
-    /// Names what is slower.
+    /// Lists the slower timings.
     pub fn check(&self, new: &Report, factor: f64) -> Result<()> {
         let slower: Vec<String> = self
             .changes(new)
@@ -143,7 +143,7 @@ impl Baseline {
     }
 }
 
-/// What makes two measurements different before anything is timed.
+/// Differences in device, scene and settings that make the timings hard to compare.
 fn differences(old: &Head, new: &Head) -> Vec<String> {
     let mut list = Vec::new();
     let mut compare = |what: &str, old: String, new: String| {
@@ -201,7 +201,7 @@ mod tests {
             change(summary(10.0, 0.01), summary(8.0, 0.01)).verdict(),
             "faster"
         );
-        // Twice as long, but so restless that it says nothing.
+        // Twice as slow, but too noisy to be significant.
         let restless = change(summary(10.0, 0.9), summary(20.0, 0.9));
         assert!(!restless.exceeds(1.5));
     }

@@ -1,4 +1,4 @@
-//! Scenes of any number of triangles and views of a share of them, for measuring how the cost grows with triangles.
+//! Test scenes with a given triangle count, and views of a given share of them, to measure cost against triangle count.
 
 use std::borrow::Cow;
 
@@ -10,20 +10,20 @@ use crate::scene::{Camera, Scene, hills};
 
 use super::subdivide::subdivided;
 
-/// What is drawn at a step of a sweep.
+/// The scene drawn at one step of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Ground {
-    /// The scene as it is.
+    /// The given scene, unchanged.
     #[default]
     Given,
-    /// The scene with every edge of a triangle cut into so many pieces.
+    /// The given scene with every triangle edge split into this many pieces.
     Finer(u32),
-    /// Hills of about so many triangles.
+    /// Generated hills with about this many triangles.
     Hills(usize),
 }
 
 impl Ground {
-    /// Makes it, where it is not the scene itself.
+    /// The scene to draw; borrowed when it is the given one.
     pub fn scene<'j>(&self, job: &'j Job) -> Cow<'j, Scene> {
         match *self {
             Self::Given | Self::Finer(1) => Cow::Borrowed(&job.scene),
@@ -33,11 +33,11 @@ impl Ground {
     }
 }
 
-/// The same camera with so long a lens that it sees no more than this share of a scene's triangles, by their centroids.
+/// Narrows the field of view until at most `share` of the triangles (by centroid) are in view.
 pub fn narrowed(camera: &Camera, scene: &Scene, size: UVec2, share: f64) -> Camera {
     let with = |fov_deg: f32| Camera { fov_deg, ..*camera };
     let (mut narrow, mut wide) = (0.0, camera.fov_deg);
-    // Halved to a thousandth of the field of view.
+    // Bisection: ten steps resolve a thousandth of the field of view.
     for _ in 0..10 {
         let middle = 0.5 * (narrow + wide);
         if seen(&with(middle), scene, size) <= share {
@@ -49,7 +49,7 @@ pub fn narrowed(camera: &Camera, scene: &Scene, size: UVec2, share: f64) -> Came
     with(if narrow > 0.0 { narrow } else { wide })
 }
 
-/// Share of a scene's triangles whose centroids lie in the picture, in front of others or behind them.
+/// Share of triangles (0..1) whose centroid is within the left, right, top and bottom frustum planes; occlusion is ignored.
 pub fn seen(camera: &Camera, scene: &Scene, size: UVec2) -> f64 {
     let view = View {
         camera: *camera,

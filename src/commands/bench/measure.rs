@@ -1,4 +1,4 @@
-//! The measurement: warm-up, then frame after frame.
+//! The measurement: warm-up frames, then timed frames.
 
 use std::sync::Arc;
 
@@ -12,36 +12,36 @@ use crate::gpu::{Context, DeviceSummary, PassTime, PassWork, Recorder, Stopwatch
 use crate::passes::light::lighting::Precision;
 use crate::scene::{Camera, Scene};
 
-/// Frames that are drawn and forgotten: shaders are compiled at their first use.
+/// Warm-up frames, not counted: shaders are compiled at first use.
 pub const WARM_UP: u32 = 3;
 
-/// Times of whole frames, each one submission.
+/// Times of whole frames, each a single submission.
 #[derive(Debug, Clone, Default)]
 pub struct Whole {
-    /// From the first command to the last result.
+    /// From the start of recording to completion on the device.
     pub frame: Samples,
-    /// Recording alone.
+    /// Command recording on the CPU.
     pub record: Samples,
-    /// From submission to the last result, without recording.
+    /// From submission to completion, without recording.
     pub device: Samples,
 }
 
-/// What was measured.
+/// Results of a measurement.
 #[derive(Debug, Clone, Default)]
 pub struct Measured {
-    /// Every pass with sky, irradiance and shadow map drawn anew each frame, in the order of drawing.
+    /// Each pass in drawing order, with sky, irradiance and shadow map recomputed every frame.
     pub passes: Vec<(&'static str, Samples)>,
-    /// The passes of each frame together.
+    /// Sum of the passes of each frame.
     pub parts: Samples,
-    /// The work of every pass in one frame.
+    /// Work of each pass in one frame.
     pub work: Vec<PassWork>,
-    /// Whole frames with everything drawn anew.
+    /// Whole frames with everything recomputed.
     pub anew: Whole,
-    /// Whole frames in motion; of sky, irradiance and shadow map only what moved was drawn.
+    /// Whole frames in motion: sky, irradiance and shadow map are updated only as the motion requires.
     pub moving: Whole,
 }
 
-/// How a device's passes can be timed: software drivers attribute timestamps to the wrong pass.
+/// Timing method for a device. Software drivers attribute timestamps to the wrong pass, so their passes are timed in isolation.
 pub fn trustworthy(device: &DeviceSummary) -> Timing {
     if device.is_software() {
         Timing::Isolated
@@ -50,20 +50,20 @@ pub fn trustworthy(device: &DeviceSummary) -> Timing {
     }
 }
 
-/// What is drawn.
+/// What to draw.
 pub struct Subject<'j> {
     /// Camera, light and scene.
     pub job: &'j Job,
-    /// How.
+    /// Frame settings.
     pub settings: FrameSettings,
-    /// What of.
+    /// Which scene to draw.
     pub ground: Ground,
-    /// From where.
+    /// Camera before any motion.
     pub camera: Camera,
 }
 
 impl<'j> Subject<'j> {
-    /// As the user wants it.
+    /// The subject given on the command line.
     pub fn new(job: &'j Job) -> Self {
         Self {
             job,
@@ -74,7 +74,7 @@ impl<'j> Subject<'j> {
     }
 }
 
-/// A frame and the recorders that draw it: one that times passes, one that leaves the frame whole.
+/// A frame with two recorders: one times each pass, the other submits the frame as a whole.
 pub struct Bench<'j> {
     job: &'j Job,
     camera: Camera,
@@ -85,10 +85,10 @@ pub struct Bench<'j> {
 }
 
 impl<'j> Bench<'j> {
-    /// Makes everything that is measured.
+    /// Creates the frame and both recorders.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(
         subject: &Subject<'j>,
         scene: &Scene,
@@ -112,15 +112,15 @@ impl<'j> Bench<'j> {
     /// Measures `frames` frames of each kind.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// Fails when the device is lost.
     pub fn run(&mut self, frames: u32) -> Result<Measured> {
         Ok(self.run_beside(frames, None)?.0)
     }
 
-    /// Measures `frames` frames of each kind, and as many times the passes of a frame from another place.
+    /// Measures `frames` frames of each kind, and the passes of as many frames seen from `other`.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// Fails when the device is lost.
     pub fn run_beside(
         &mut self,
         frames: u32,
@@ -134,7 +134,7 @@ impl<'j> Bench<'j> {
             } else {
                 (&mut measured, &mut beside)
             };
-            // Alternating: what disturbs the machine disturbs all alike.
+            // The kinds alternate so that disturbances of the machine affect all of them alike.
             let camera = self.camera;
             self.passes(&camera, 2 * i, into)?;
             if let Some(other) = other {
@@ -156,7 +156,7 @@ impl<'j> Bench<'j> {
         Ok((measured, beside))
     }
 
-    /// Every pass by itself, with everything drawn anew.
+    /// Times each pass with everything recomputed.
     fn passes(&mut self, camera: &Camera, index: u32, into: &mut Measured) -> Result<()> {
         self.frame.invalidate();
         let camera = self.motion.camera(camera, index);
@@ -169,7 +169,7 @@ impl<'j> Bench<'j> {
         Ok(())
     }
 
-    /// The frame as one submission. What the CPU does for a new sun is part of recording.
+    /// Times a frame as one submission. CPU work for a new sun counts as recording.
     fn whole(&mut self, index: u32, into: &mut Whole) -> Result<()> {
         let camera = self.motion.camera(&self.camera, index);
         let recorder = &mut self.whole;
@@ -187,7 +187,7 @@ impl<'j> Bench<'j> {
         Ok(())
     }
 
-    /// What the passes do, counted in a frame that is not timed.
+    /// Work of each pass, counted in a frame that is not timed.
     fn work(&mut self) -> Result<Vec<PassWork>> {
         let mut recorder = Recorder::new(self.whole.context(), Timing::Work)?;
         self.frame.invalidate();
@@ -210,7 +210,7 @@ impl<'j> Bench<'j> {
 }
 
 impl Measured {
-    /// Takes the passes of one frame. What a frame does several times under one name is one time.
+    /// Adds the passes of one frame. Passes with the same name are summed.
     fn push(&mut self, passes: &[PassTime]) {
         let mut totals: Vec<PassTime> = Vec::new();
         for time in passes {

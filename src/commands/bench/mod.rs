@@ -1,7 +1,7 @@
-//! `skylight bench`: milliseconds of each pass and of the whole frame.
+//! `skylight bench`: time of each pass and of the whole frame, milliseconds.
 //!
-//! Passes are timed by GPU timestamps; on software drivers, whose timestamps are attributed to the wrong pass, each pass
-//! is submitted alone and waited for. The whole frame is one submission.
+//! Passes are timed by GPU timestamps. Software drivers attribute timestamps to the wrong pass, so there each pass is
+//! submitted alone and waited for. The whole frame is one submission.
 
 mod baseline;
 mod hills;
@@ -32,10 +32,10 @@ impl BenchArgs {
     }
 }
 
-/// Measures and prints a table.
+/// Runs the benchmark and prints its table.
 ///
 /// # Errors
-/// Whatever keeps frames from being drawn; or something that became slower than it may.
+/// Fails when frames cannot be drawn, or when something is slower than `--fail-above` allows.
 pub fn run(args: &BenchArgs, mut options: OptionValues) -> Result<()> {
     args.files().try_for_each(check_writable)?;
     let baseline = args.compare.as_deref().map(Baseline::read).transpose()?;
@@ -65,7 +65,7 @@ pub fn run(args: &BenchArgs, mut options: OptionValues) -> Result<()> {
         .map_or(Ok(()), |factor| baseline.check(&report, factor))
 }
 
-/// Writes a file that is wanted.
+/// Writes `text` to `path`, if there is one.
 fn write(path: &Option<PathBuf>, text: impl FnOnce() -> String) -> Result<()> {
     match path {
         Some(path) => write_text(path, &text()),

@@ -1,4 +1,4 @@
-//! What a measurement came to, as files keep it.
+//! The benchmark report as written to files.
 
 use std::collections::BTreeMap;
 
@@ -11,92 +11,92 @@ use super::work::Work;
 use crate::commands::job::Job;
 use crate::gpu::{Context, Timing};
 
-/// Share of the whole by which the parts may miss it before the program says so.
+/// Largest relative difference between the sum of the passes and the whole frame that goes unreported.
 pub const SUM_TOLERANCE: f64 = 0.15;
 
-/// A measurement and what was measured.
+/// A measurement and its conditions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Report {
-    /// What was measured.
+    /// Conditions of the measurement.
     #[serde(flatten)]
     pub head: Head,
-    /// Each pass, with everything drawn anew.
+    /// Each pass, with everything recomputed.
     pub passes: Vec<Row>,
-    /// The sum of the passes of a frame.
+    /// Sum of the passes of a frame.
     pub parts: Summary,
-    /// The whole frame; of sky, irradiance and shadow map only what moved was drawn.
+    /// The whole frame: sky, irradiance and shadow map are updated only as the motion requires.
     pub frame: Frame,
-    /// The whole frame with sky, irradiance and shadow map drawn anew.
+    /// The whole frame with sky, irradiance and shadow map recomputed.
     pub frame_anew: Frame,
 }
 
-/// What was measured.
+/// Conditions of a measurement.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Head {
-    /// The device.
+    /// The device measured.
     pub device: Device,
-    /// Version of the program.
+    /// Program version.
     pub version: String,
-    /// Its commit, where known.
+    /// Commit of the build, in words.
     pub commit: String,
-    /// Name of the scene.
+    /// Scene name.
     pub scene: String,
-    /// Width and height of the picture, pixels.
+    /// Width and height of the image, pixels.
     pub size: [u32; 2],
-    /// Triangles of the scene.
+    /// Triangles in the scene.
     pub triangles: usize,
-    /// Frames measured.
+    /// Number of frames measured.
     pub frames: u32,
     /// What moved from frame to frame: `none`, `camera` or `sun`.
     pub motion: String,
-    /// The same in words.
+    /// The motion in words.
     pub frame_name: String,
-    /// How passes were timed: `isolated` or `timestamps`.
+    /// Timing method: `isolated` or `timestamps`.
     pub timing: String,
-    /// Options, by name.
+    /// Options by name.
     pub settings: BTreeMap<String, String>,
 }
 
-/// The device measured.
+/// A device, as reported by its driver.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Device {
-    /// Its name.
+    /// Device name.
     pub name: String,
-    /// `discrete`, `integrated`, `virtual`, `software` or `other`.
+    /// Device type: `discrete`, `integrated`, `virtual`, `software` or `other`.
     pub kind: String,
-    /// Driver and its version.
+    /// Driver name and version.
     pub driver: String,
     /// Vulkan version.
     pub vulkan: String,
 }
 
-/// One pass.
+/// Results for one pass.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// Its name.
+    /// Pass name.
     pub name: String,
-    /// Its time.
+    /// Time per frame.
     #[serde(flatten)]
     pub time: Summary,
-    /// What it does.
+    /// Work per frame.
     #[serde(flatten)]
     pub work: Work,
 }
 
-/// A whole frame.
+/// Times of a whole frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
-    /// From the first command to the last result.
+    /// From the start of recording to completion on the device.
     #[serde(flatten)]
     pub time: Summary,
-    /// Recording alone.
+    /// Command recording on the CPU.
     pub record: Summary,
-    /// From submission to the last result.
+    /// From submission to completion.
     pub device: Summary,
 }
 
 impl Head {
-    /// Of a measurement that is about to begin.
+    /// Conditions of a measurement that is about to start.
     pub fn new(job: &Job, context: &Context, args: &BenchArgs) -> Self {
         let device = context.summary();
         let timing = match trustworthy(device) {
@@ -127,7 +127,7 @@ impl Head {
 
 fn commit() -> String {
     if cfg!(debug_assertions) {
-        // Its figures are not worth to be kept.
+        // Timings of a debug build are not worth keeping.
         "a debug build".to_owned()
     } else {
         format!("commit {}", env!("SKYLIGHT_COMMIT"))
@@ -135,7 +135,7 @@ fn commit() -> String {
 }
 
 impl Report {
-    /// Sums up.
+    /// Summarises a measurement.
     pub fn new(head: Head, measured: &Measured) -> Self {
         let rows = measured.passes.iter().map(|(name, samples)| {
             let time = samples.summary();
@@ -154,12 +154,12 @@ impl Report {
         }
     }
 
-    /// The sum of the parts over the whole that they make up.
+    /// Ratio of the sum of the passes to the whole frame, medians.
     pub fn parts_to_whole(&self) -> f64 {
         self.parts.median_ms / self.frame_anew.device.median_ms
     }
 
-    /// Every time that one report can be compared by with another.
+    /// All times that can be compared between reports, by name.
     pub fn times(&self) -> Vec<(&str, &Summary)> {
         let passes = self.passes.iter().map(|row| (row.name.as_str(), &row.time));
         let frames = [
@@ -169,7 +169,7 @@ impl Report {
         passes.chain(frames).collect()
     }
 
-    /// As a JSON file.
+    /// The report as JSON.
     pub fn json(&self) -> String {
         let mut value = serde_json::json!(self);
         let ratio = self.parts_to_whole();
@@ -191,7 +191,7 @@ impl Frame {
     }
 }
 
-/// Whether the parts sum to the whole.
+/// Whether the sum of the passes matches the whole frame.
 pub fn is_whole(ratio: f64) -> bool {
     (ratio - 1.0).abs() <= SUM_TOLERANCE
 }

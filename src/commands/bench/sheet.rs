@@ -1,4 +1,4 @@
-//! The CSV file: one row for each pass and each whole frame, every row complete, so that files can be put together.
+//! CSV output: one row per pass and per whole frame. Each row is self-contained, so files can be concatenated.
 
 use serde::Serialize;
 
@@ -90,11 +90,11 @@ pub fn csv(report: &Report) -> String {
     written(lines.chain(whole))
 }
 
-/// Records as CSV with a header line.
+/// Serialises records as CSV with a header line.
 pub fn written(lines: impl Iterator<Item = impl Serialize>) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for line in lines {
-        // A flat struct of text and numbers, written to memory: nothing of it can fail.
+        // Flat records of text and numbers written to memory cannot fail.
         writer.serialize(line).expect("a flat record");
     }
     let bytes = writer.into_inner().expect("memory");

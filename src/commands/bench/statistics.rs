@@ -1,4 +1,4 @@
-//! Times of repeated work: medians, percentiles, noise.
+//! Statistics of repeated timings: median, percentiles, spread.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,21 +9,21 @@ pub struct Samples {
     cpu: Vec<f64>,
 }
 
-/// What [`Samples`] come to.
+/// Summary of [`Samples`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
-    /// Half of the samples lie below, milliseconds.
+    /// Median wall time, milliseconds.
     pub median_ms: f64,
-    /// 5 % of the samples lie below, milliseconds.
+    /// 5th percentile of the wall time, milliseconds.
     pub p5_ms: f64,
-    /// 95 % of the samples lie below, milliseconds.
+    /// 95th percentile of the wall time, milliseconds.
     pub p95_ms: f64,
-    /// Median of the CPU time of all threads, milliseconds. Timestamps of the device know nothing of it.
+    /// Median CPU time of all threads, milliseconds. `None` when unknown: device timestamps do not include it.
     pub cpu_median_ms: Option<f64>,
 }
 
 impl Samples {
-    /// Takes one time; a CPU time that is not known is NaN.
+    /// Adds a sample, milliseconds. An unknown CPU time is NaN.
     pub fn push(&mut self, wall: f64, cpu: f64) {
         self.wall.push(wall);
         if cpu.is_finite() {
@@ -31,7 +31,7 @@ impl Samples {
         }
     }
 
-    /// Times of two pieces of work one after the other, sample by sample.
+    /// Adds two sets of times sample by sample.
     pub fn with(&self, other: &Self) -> Self {
         let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + b).collect();
         Self {
@@ -53,13 +53,13 @@ impl Samples {
 }
 
 impl Summary {
-    /// Half of the range that holds 90 % of the samples, over the median: how restless single samples are.
+    /// Relative spread: half of the 5–95 % range over the median.
     pub fn spread(&self) -> f64 {
         0.5 * (self.p95_ms - self.p5_ms) / self.median_ms
     }
 }
 
-/// The value below which the share `q` of the samples lies (nearest rank). NaN without samples.
+/// The `q` quantile (0..1) by nearest rank. NaN without samples.
 pub fn quantile(samples: &[f64], q: f64) -> f64 {
     let mut sorted = samples.to_vec();
     sorted.sort_by(f64::total_cmp);

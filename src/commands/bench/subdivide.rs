@@ -1,4 +1,4 @@
-//! Subdivision: more triangles for the same surfaces, to measure the cost of triangles alone.
+//! Subdivision: more triangles on the same surfaces, to measure the cost of triangles alone.
 
 use std::collections::HashMap;
 
@@ -6,8 +6,8 @@ use glam::{Vec2, Vec3};
 
 use crate::scene::Scene;
 
-/// The same surfaces with every triangle split into `k`² similar ones (`k` at least 1). Neighbours still share the vertices
-/// of their edge; normals are interpolated and normalised.
+/// Splits every triangle into `k`² similar ones (`k` at least 1). Neighbours still share the vertices of their edge;
+/// normals are interpolated and normalised.
 pub fn subdivided(scene: &Scene, k: u32) -> Scene {
     let mut splitter = Splitter {
         fine: Scene {
@@ -31,14 +31,14 @@ pub fn subdivided(scene: &Scene, k: u32) -> Scene {
 struct Splitter {
     fine: Scene,
     k: u32,
-    /// The vertex at a step along an edge, from its vertex of lower index to the other one.
+    /// Vertices on edges, by lower index, higher index and step from the lower.
     edges: HashMap<(u32, u32, u32), u32>,
 }
 
 impl Splitter {
     fn split(&mut self, corners: [u32; 3]) {
         let k = self.k;
-        // Row by row from the first edge to the third corner.
+        // Row by row, from the first edge to the third corner.
         let mut below: Vec<u32> = (0..=k).map(|i| self.vertex(corners, i, 0)).collect();
         for j in 1..=k {
             let above: Vec<u32> = (0..=k - j).map(|i| self.vertex(corners, i, j)).collect();
@@ -53,7 +53,7 @@ impl Splitter {
         }
     }
 
-    /// The vertex `i` steps toward the second and `j` steps toward the third corner.
+    /// The vertex `i` steps toward the second corner and `j` steps toward the third.
     fn vertex(&mut self, [a, b, c]: [u32; 3], i: u32, j: u32) -> u32 {
         match (i, j, self.k - i - j) {
             (_, _, 0) if i == 0 || j == 0 => {
@@ -85,7 +85,7 @@ impl Splitter {
         made
     }
 
-    /// Adds the weighted mean of three vertices.
+    /// Adds a vertex: the weighted mean of three.
     fn blend(&mut self, corners: [(u32, u32); 3]) -> u32 {
         let scene = &mut self.fine;
         let weighted = |of: &dyn Fn(usize) -> Vec3| -> Vec3 {
@@ -96,7 +96,7 @@ impl Splitter {
         let normal = weighted(&|v| Vec3::from(scene.normals[v]));
         let texcoord = weighted(&|v| Vec2::from(scene.texcoords[v]).extend(0.0));
         scene.positions.push(position.into());
-        // Opposite normals cancel out: then the first one.
+        // Opposite normals cancel out; use the first one then.
         let fallback = Vec3::from(scene.normals[corners[0].0 as usize]);
         let unit = normal.try_normalize().unwrap_or(fallback);
         scene.normals.push(unit.into());
@@ -110,7 +110,7 @@ impl Splitter {
             scene.colours.push(std::array::from_fn(mix));
         }
         if !scene.tangents.is_empty() {
-            // An interpolated tangent would cost the same.
+            // Tangents are copied, not interpolated; the cost of drawing is the same.
             scene.tangents.push(scene.tangents[corners[0].0 as usize]);
         }
         (scene.positions.len() - 1) as u32
@@ -142,7 +142,7 @@ mod tests {
         assert!((new / old - 1.0).abs() < 1e-4, "{old} m² became {new}");
         let parts: u32 = fine.parts.iter().map(|p| p.index_count).sum();
         assert_eq!(parts as usize, fine.indices.len());
-        // Two more vertices on each edge, shared by the triangles that share it, and one inside.
+        // Two new vertices on each edge, shared between its triangles, and one inside each triangle.
         let edges: std::collections::HashSet<(u32, u32)> = scene
             .indices
             .chunks_exact(3)
@@ -169,7 +169,7 @@ mod tests {
     #[test]
     fn one_piece_changes_nothing() {
         let mut scene = bundled(&LoadOptions::default()).expect("a scene").scene;
-        // It would hold for other indices.
+        // The layout is valid only for the original indices.
         scene.layout = None;
         assert_eq!(subdivided(&scene, 1), scene);
     }

@@ -1,4 +1,4 @@
-//! Cost against size: the same frame with more and more of one thing.
+//! Sweeps: cost against the size of one parameter.
 
 use std::fmt::{self, Display, Formatter};
 use std::sync::Arc;
@@ -17,13 +17,13 @@ use crate::daylight::convergence::power;
 use crate::error::Result;
 use crate::gpu::Context;
 
-/// Most triangles that a sweep makes of a scene.
+/// Largest triangle count that a sweep subdivides a scene to.
 const MOST_TRIANGLES: usize = 2_000_000;
-/// Triangles of the hills.
+/// Triangle counts of the generated hills.
 const HILLS: [usize; 6] = [10_000, 30_000, 100_000, 300_000, 1_000_000, 2_000_000];
-/// Share of the triangles that a second view sees.
+/// Share of triangles in view of the second, narrow camera.
 const NARROW: f64 = 0.05;
-/// The passes that draw triangles.
+/// Passes that draw triangles.
 const GEOMETRY: [&str; 4] = [
     "G-buffer",
     "G-buffer, details",
@@ -32,7 +32,7 @@ const GEOMETRY: [&str; 4] = [
 ];
 
 impl Sweep {
-    /// What the sizes count.
+    /// Unit of the sizes.
     fn unit(self) -> &'static str {
         match self {
             Self::Resolution => "pixels",
@@ -43,7 +43,7 @@ impl Sweep {
         }
     }
 
-    /// What is drawn at each step: its size, in words, and how.
+    /// Steps of the sweep: size, label and what to draw.
     fn steps<'j>(self, job: &'j Job, limit: u32) -> Vec<(f64, String, Subject<'j>)> {
         let base = || Subject::new(job);
         let step = |size: f64, label: String, change: &dyn Fn(&mut Subject<'j>)| {
@@ -65,7 +65,7 @@ impl Sweep {
             Self::Triangles => grounds(job)
                 .into_iter()
                 .map(|(triangles, ground)| {
-                    // Made when its turn comes: all of them together would not fit into memory.
+                    // The scene is built when its step runs: all of them at once would not fit into memory.
                     step(triangles as f64, triangles.to_string(), &|s| {
                         s.ground = ground
                     })
@@ -101,7 +101,7 @@ impl Sweep {
     }
 }
 
-/// Grounds of more and more triangles: of the scene, or of hills in place of the bundled scene.
+/// Scenes of increasing triangle count: the given scene subdivided, or hills instead of the bundled scene.
 fn grounds(job: &Job) -> Vec<(usize, Ground)> {
     if job.path.is_none() {
         return HILLS.map(|n| (n, Ground::Hills(n))).to_vec();
@@ -113,34 +113,34 @@ fn grounds(job: &Job) -> Vec<(usize, Ground)> {
     finer.filter(is_sound).collect()
 }
 
-/// What a sweep came to.
+/// Results of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SweepReport {
-    /// What was measured; size and triangles are those without the sweep.
+    /// Conditions of the measurement; size and triangle count are those before the sweep.
     #[serde(flatten)]
     pub head: Head,
-    /// Name of the sweep.
+    /// Sweep name.
     pub sweep: String,
-    /// What the sizes count.
+    /// Unit of the sizes.
     pub unit: String,
-    /// Size of each step.
+    /// Size at each step.
     pub sizes: Vec<f64>,
-    /// The same in words.
+    /// Label of each step.
     pub labels: Vec<String>,
-    /// A row for each pass and whole frame.
+    /// One row per pass and per whole frame.
     pub rows: Vec<Curve>,
 }
 
-/// Cost of one piece of work against size.
+/// Cost of one pass or frame against size.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Curve {
-    /// Name of the pass or frame.
+    /// Pass or frame name.
     pub name: String,
-    /// Its time at each size.
+    /// Time at each size.
     pub times: Vec<Summary>,
-    /// Exponent of wall time ∝ size^p.
+    /// Exponent p of wall time ∝ size^p.
     pub exponent: f64,
-    /// Exponent of CPU time, where it is known.
+    /// Exponent of the CPU time, if known.
     pub cpu_exponent: Option<f64>,
 }
 
@@ -160,10 +160,10 @@ impl Curve {
     }
 }
 
-/// Measures step by step.
+/// Runs all steps of a sweep.
 ///
 /// # Errors
-/// Whatever keeps a frame from being drawn.
+/// Fails when a frame cannot be drawn.
 pub fn run(
     sweep: Sweep,
     job: &Job,
@@ -213,7 +213,7 @@ pub fn run(
     })
 }
 
-/// Time of the passes that draw triangles, together.
+/// Summed time of the passes that draw triangles.
 fn geometry(measured: &Measured) -> Option<Summary> {
     let passes = measured.passes.iter();
     let drawing = passes.filter(|(name, _)| GEOMETRY.contains(name));
@@ -277,12 +277,12 @@ struct Line<'r> {
 }
 
 impl SweepReport {
-    /// As a JSON file.
+    /// The report as JSON.
     pub fn json(&self) -> String {
         format!("{:#}\n", serde_json::json!(self))
     }
 
-    /// As a CSV file: one row for each size of each pass and frame.
+    /// The report as CSV: one row per size and per pass or frame.
     pub fn csv(&self) -> String {
         let line = |row: &'_ Curve, i: usize| -> Option<(usize, Summary)> {
             row.times.get(i).map(|time| (i, *time))

@@ -1,4 +1,4 @@
-//! The tables for people.
+//! Reports as text tables.
 
 use std::fmt::{self, Display, Formatter};
 

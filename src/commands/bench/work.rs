@@ -1,44 +1,44 @@
-//! What a pass does for its time: bytes and counters, for each pixel of its target.
+//! Work of a pass: draws, bytes per pixel of its render targets, and pipeline statistics.
 
 use serde::{Deserialize, Serialize};
 
 use crate::gpu::{PassWork, PipelineStatistics, Traffic};
 
-/// The work of all passes of one name in a frame.
+/// Work of all passes of one name in a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Work {
-    /// Draws, dispatches or copies.
+    /// Number of draws, dispatches and copies.
     #[serde(default)]
     pub draws: u64,
-    /// Pixels of the targets, all layers.
+    /// Pixels of the render targets, all layers.
     pub pixels: u64,
-    /// Bytes that must be read (see [`Traffic`]), for each pixel.
+    /// Least number of bytes read (see [`Traffic`]), per pixel.
     pub bytes_read_per_pixel: f64,
-    /// Bytes that must be written, for each pixel.
+    /// Least number of bytes written, per pixel.
     pub bytes_written_per_pixel: f64,
-    /// Both together over the median time, 10⁹ bytes a second. None where the time is too short to be seen.
+    /// Bytes read and written over the median time, 10⁹ bytes/s. `None` when the time rounds to zero.
     pub gb_per_s: Option<f64>,
-    /// Counters, where the device has them.
+    /// Pipeline statistics, if the device supports them.
     pub statistics: Option<Statistics>,
 }
 
-/// Counters of the device.
+/// Pipeline statistics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Statistics {
-    /// Vertices read.
+    /// Vertices read by input assembly.
     pub vertices: u64,
-    /// Runs of the vertex shader.
+    /// Vertex shader invocations.
     pub vertex_invocations: u64,
-    /// Triangles left after clipping.
+    /// Primitives left after clipping.
     pub clipped_primitives: u64,
-    /// Runs of the fragment shader.
+    /// Fragment shader invocations.
     pub fragment_invocations: u64,
-    /// Runs of the compute shader.
+    /// Compute shader invocations.
     pub compute_invocations: u64,
 }
 
 impl Work {
-    /// The work of the passes called `name`, done in `ms` milliseconds.
+    /// Work of the passes named `name`, which take `ms` milliseconds together.
     pub fn of(name: &str, passes: &[PassWork], ms: f64) -> Self {
         let mut total = Traffic::default();
         let mut draws = 0;

@@ -1,23 +1,23 @@
-//! How the window's exposure follows the picture over time.
+//! Adaptation of the window's exposure over time.
 
 use crate::daylight::exposure;
 
-/// Seconds after the last change of the picture when the exposure takes the last step at once: 1 % of the way is left.
+/// Settling time, seconds: once the image has been unchanged this long, the last step is taken at once. 1 % is left by then.
 const SETTLED_S: f64 = 1.0;
 
-/// Adaptation of an automatic exposure: exponential while the picture changes, complete at rest.
+/// Adaptation of automatic exposure: exponential while the image changes, complete at rest.
 #[derive(Debug)]
 pub(super) struct Adaptation {
-    /// Seconds since the picture changed, while the exposure has not arrived.
+    /// Seconds since the image changed; `None` once the exposure has adapted.
     since_change: Option<f64>,
     /// Seconds by which the next frame adapts.
     pending: f64,
-    /// Whether the next frame takes its exposure at once.
+    /// Whether the next frame is exposed without adaptation.
     is_cut: bool,
 }
 
 impl Default for Adaptation {
-    /// The first picture is exposed at once.
+    /// The first image is exposed without adaptation.
     fn default() -> Self {
         Self {
             since_change: None,
@@ -28,17 +28,17 @@ impl Default for Adaptation {
 }
 
 impl Adaptation {
-    /// The picture changed: another view, other light.
+    /// Restarts adaptation after a change of view or light.
     pub(super) fn restart(&mut self) {
         self.since_change = Some(0.0);
     }
 
-    /// Exposes the next frame at once: it shows another quantity.
+    /// Exposes the next frame without adaptation, for example after a change of the displayed quantity.
     pub(super) fn cut(&mut self) {
         self.is_cut = true;
     }
 
-    /// Lets time pass.
+    /// Advances time by `seconds`.
     pub(super) fn advance(&mut self, seconds: f64) {
         self.pending += seconds;
         if let Some(since) = &mut self.since_change {
@@ -46,8 +46,8 @@ impl Adaptation {
         }
     }
 
-    /// Share of the way to the picture's own exposure that the next frame makes. `is_last` for frames after which the
-    /// picture itself does not change any more.
+    /// Fraction (0..1) of the way to the target exposure for the next frame. `is_last`: the image itself will not change
+    /// after this frame.
     pub(super) fn share(&mut self, is_last: bool) -> f64 {
         let seconds = std::mem::take(&mut self.pending);
         let is_settled = self.since_change.is_some_and(|since| since >= SETTLED_S);
@@ -60,7 +60,7 @@ impl Adaptation {
         }
     }
 
-    /// Whether the exposure is that of the picture.
+    /// Whether the exposure has reached its target.
     pub(super) fn is_done(&self) -> bool {
         self.since_change.is_none()
     }
@@ -70,7 +70,7 @@ impl Adaptation {
 mod tests {
     use super::*;
 
-    /// What is left of a change, and how many frames were drawn until the exposure arrived.
+    /// Remaining fraction of a change, and number of frames until the exposure has adapted.
     fn left(frame_s: f64, frames_of_average: u32) -> (f64, u32) {
         let mut adaptation = Adaptation::default();
         adaptation.restart();

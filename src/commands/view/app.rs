@@ -1,4 +1,4 @@
-//! The event loop: events to changes, changes to frames, nothing in between.
+//! The event loop: turns events into changes and changes into frames.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -18,36 +18,36 @@ use super::keys::Action;
 use super::loader::{Loader, Message};
 use super::stage::Stage;
 
-/// How soon a window that could not be drawn to is tried again.
+/// Retry interval when the window cannot be drawn to.
 const RETRY: Duration = Duration::from_millis(100);
 
-/// What came of a load.
+/// Result of loading a scene.
 type Opened = Box<std::result::Result<Loaded, SceneError>>;
 
-/// The program behind the window.
+/// Application state.
 pub(super) struct App {
-    /// The options of the command line.
+    /// Options from the command line.
     pub(super) user: OptionValues,
-    /// The same over the defaults, whatever the scene.
+    /// The command-line options over the defaults, without those of a scene.
     pub(super) options: Options,
     pub(super) loader: Loader,
-    /// Loaded before there was a window.
+    /// A scene that was loaded before the window existed.
     pub(super) waiting: Option<(Option<PathBuf>, Opened)>,
-    // Before the stage, whose device they use.
+    // Declared before the stage so that it is dropped first: it uses the stage's device.
     pub(super) document: Option<Document>,
     pub(super) stage: Option<Stage>,
     pub(super) interface: Interface,
     pub(super) input: Input,
     pub(super) started: Instant,
-    /// When the newest frame was begun, while something moves.
+    /// Start of the newest frame, while something is moving.
     ticked: Option<Instant>,
-    /// When to draw again without an event.
+    /// Time of the next redraw without an event.
     pub(super) again_at: Option<Instant>,
     error: Option<Error>,
 }
 
 impl App {
-    /// Starts to load `scene`; the window comes with the event loop.
+    /// Starts loading `scene`. The window is created by the event loop.
     pub(super) fn new(
         proxy: EventLoopProxy<Message>,
         scene: Option<PathBuf>,
@@ -72,7 +72,7 @@ impl App {
         }
     }
 
-    /// What the window ended with.
+    /// Result of the program, once the event loop has ended.
     pub(super) fn into_result(mut self) -> Result<()> {
         self.document = None;
         match (self.error.take(), &self.stage) {
@@ -93,7 +93,7 @@ impl App {
         }
     }
 
-    /// Shows a scene that is loaded, or why it is not.
+    /// Shows a loaded scene, or the error that prevented loading.
     pub(super) fn opened(&mut self, path: Option<PathBuf>, result: Opened) {
         let Some(stage) = &mut self.stage else {
             self.waiting = Some((path, result));
@@ -120,10 +120,10 @@ impl App {
         stage.window.request_redraw();
     }
 
-    /// Opens another file, in the background.
+    /// Opens another file in the background.
     pub(super) fn open_file(&mut self, path: PathBuf) {
         self.interface.loading(Some((0.0, "opening")));
-        // The command line's camera and such were meant for its own scene.
+        // These options refer to the scene of the command line.
         self.user.remove(&["camera", "eye", "target"]);
         self.loader.start(Some(path), &self.options);
         self.request_redraw();
@@ -150,7 +150,7 @@ impl App {
         Ok(())
     }
 
-    /// Whether the next frame differs from this one without any event.
+    /// Whether another frame is needed without any event.
     fn is_busy(&self) -> bool {
         let moving = self.document.as_ref().is_some_and(|document| {
             !document.is_at_rest()
@@ -187,12 +187,12 @@ impl App {
         let rested = document.as_deref().is_none_or(Document::is_at_rest);
         let drawn = stage.draw(&layout.frame, document.as_deref_mut())?;
         if !rested && document.is_some_and(|d| d.is_at_rest()) {
-            // The user interface was laid out before the last frame: it has yet to tell of it.
+            // The interface was laid out before this frame and still shows the previous state.
             stage.window.request_redraw();
         }
         self.again_at = match layout.again_after {
             _ if !drawn => Some(Instant::now() + RETRY),
-            // At once is the business of the next request.
+            // Requested for the next frame; no timer needed.
             after if after.is_zero() => {
                 stage.window.request_redraw();
                 None
@@ -202,7 +202,7 @@ impl App {
         Ok(requests)
     }
 
-    /// The pixel of the picture under the pointer, when the user wants to know about it.
+    /// The image pixel under the pointer, if it is to be probed.
     fn probed_pixel(&self) -> Option<[u32; 2]> {
         let (Some(stage), Some([x, y])) = (&self.stage, self.input.pointer()) else {
             return None;
@@ -280,7 +280,7 @@ impl App {
     }
 }
 
-/// Draws with the shaders as they are on disk from now on; tells what changed.
+/// Reloads the shaders from disk; returns a message with the number that changed.
 #[cfg(feature = "hot-reload")]
 fn reload(stage: &mut Stage, document: &mut Document) -> Result<String> {
     let changed = stage.context.reload_shaders()?;
@@ -293,7 +293,7 @@ fn reload(_: &mut Stage, _: &mut Document) -> Result<String> {
     Ok("this build does not reload shaders; build with --features hot-reload".to_owned())
 }
 
-/// Shows an error; but for a lost device, with which the next frame ends the program.
+/// Shows an error, except for a lost device: the next frame ends the program then.
 fn tell(interface: &mut Interface, error: &Error) {
     if !error.is_device_lost() {
         interface.complain(&error.to_string());

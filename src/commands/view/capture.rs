@@ -1,4 +1,4 @@
-//! Screenshots: PNG as shown, EXR in cd/m² or lux, both with the parameters of the picture.
+//! Screenshots: PNG as shown and EXR in cd/m² or lux, both with the parameters of the image.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ use super::stage::Stage;
 /// Writes the newest frame to the working directory; returns a message that names the files.
 ///
 /// # Errors
-/// When a file cannot be written.
+/// Fails when a file cannot be written.
 pub(super) fn save(stage: &mut Stage, document: &Document) -> Result<String> {
     let stem = free_name(document);
     let (png, exr) = (stem.with_extension("png"), stem.with_extension("exr"));
@@ -23,7 +23,7 @@ pub(super) fn save(stage: &mut Stage, document: &Document) -> Result<String> {
     Ok(format!("wrote {} and .exr", png.display()))
 }
 
-/// `skylight-SCENE-N` with the first free number.
+/// First unused name of the form `skylight-SCENE-N`.
 fn free_name(document: &Document) -> PathBuf {
     let scene = document.job.path.as_deref().and_then(Path::file_stem);
     let scene = scene.map_or("bundled".into(), |s| s.to_string_lossy());

@@ -1,41 +1,41 @@
-//! Camera control: orbit, pan, dolly, look, fly, frame the scene, move to a viewpoint.
+//! Camera control: orbit, pan, dolly, look, fly, frame the scene, travel to a viewpoint.
 //!
-//! Plain numbers in, a [`Camera`] out. The camera never rolls and its pitch stays short of the vertical. Drags act at once;
-//! flight and travel to a viewpoint advance in [`Controls::advance`] by closed forms of time, independent of the frame rate.
+//! Takes plain numbers and yields a [`Camera`]. The camera never rolls, and drags keep its pitch short of the vertical. Drags
+//! act at once; flight and travel advance in [`Controls::advance`] in closed form, independent of the frame rate.
 
 use glam::DVec3;
 
 use crate::daylight::sun_position::{azimuth_elevation, direction};
 use crate::scene::{Bounds, Camera};
 
-/// Steepest pitch that a drag reaches, degrees: nearer to the vertical the heading gets lost in rounding.
+/// Steepest pitch reachable by dragging, degrees. Closer to the vertical, the heading is lost to rounding.
 const MAX_PITCH_DEG: f64 = 89.5;
-/// Degrees that the model turns when dragged over the height of the picture.
+/// Orbit angle for a drag over the full image height, degrees.
 const ORBIT_DEG: f64 = 180.0;
-/// Degrees that the eye turns when the mouse moves by the height of the picture.
+/// Look angle for a drag over the full image height, degrees.
 const LOOK_DEG: f64 = 90.0;
-/// Distance to the pivot after one wheel step, relative to before.
+/// Factor on the distance to the pivot per wheel step.
 const DOLLY_STEP: f64 = 0.85;
 /// Factor on the flight speed per wheel step.
 const SPEED_STEP: f64 = 1.25;
-/// Range of the wheel's factor on the flight speed.
+/// Range of the wheel factor on the flight speed.
 const SPEED_RANGE: (f64, f64) = (1.0 / 64.0, 64.0);
 /// Flight speed, scene sizes per second.
 const CRUISE: f64 = 0.15;
-/// Factor of the fast key; the slow key divides by it.
+/// Speed factor of the fast key; the slow key divides by it.
 const FAST: f64 = 4.0;
 /// Time constant of acceleration, seconds.
 const INERTIA_S: f64 = 0.08;
-/// Longest time step, seconds: a stalled frame does not move the camera far.
+/// Longest time step, seconds. Limits the motion after a stalled frame.
 const LONGEST_STEP_S: f64 = 0.5;
 /// Travel time to a viewpoint, seconds.
 const TRAVEL_S: f64 = 0.35;
-/// Smallest and largest distance of the pivot from the eye; the largest also from the scene. In scene sizes.
+/// Smallest and largest distance from eye to pivot, in scene sizes. The largest also bounds the pivot's distance from the scene.
 const REACH: (f64, f64) = (1e-4, 100.0);
-/// Smallest distance of the target, relative to the largest coordinate: rounding would turn the camera.
+/// Smallest distance to the target, relative to the largest coordinate. Any closer, rounding would turn the camera.
 const TARGET_SHARE: f64 = 0.01;
 
-/// Pointer movement, in picture heights.
+/// Pointer movement, in image heights.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Drag {
     /// To the right.
@@ -87,7 +87,7 @@ impl Pose {
             .try_normalize()
             .unwrap_or(camera.forward().as_dvec3());
         let (azimuth, elevation_deg) = azimuth_elevation(sight);
-        // North is at the top of a camera that looks straight up: it has bent over backward from looking south.
+        // A camera that looks straight up has north at the top of the image, as if it had tilted up and over from facing south.
         let zenith = elevation_deg >= 90.0;
         Self {
             pivot: target,
@@ -102,7 +102,7 @@ impl Pose {
         direction(self.azimuth_deg, self.elevation_deg)
     }
 
-    /// Horizontal: the camera never rolls.
+    /// Right vector; horizontal, since the camera never rolls.
     fn right(&self) -> DVec3 {
         direction(self.azimuth_deg + 90.0, 0.0)
     }
@@ -117,7 +117,7 @@ impl Pose {
             (self.elevation_deg + elevation_deg).clamp(-MAX_PITCH_DEG, MAX_PITCH_DEG);
     }
 
-    /// Interpolates to `other`, `t` in 0..1.
+    /// Interpolates to `other`; `t` in 0..1.
     fn toward(&self, other: &Self, t: f64) -> Self {
         let turn = (other.azimuth_deg - self.azimuth_deg + 180.0).rem_euclid(360.0) - 180.0;
         let mix = |a: f64, b: f64| a + (b - a) * t;
@@ -131,7 +131,7 @@ impl Pose {
     }
 }
 
-/// Travel to another pose.
+/// Travel from one pose to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Travel {
     from: Pose,
@@ -144,11 +144,11 @@ struct Travel {
 pub struct Controls {
     pose: Pose,
     near: f32,
-    /// Scene size, metres: the scale of speeds and limits.
+    /// Scene size, metres; scales speeds and limits.
     size: f64,
     /// Scene centre, metres.
     centre: DVec3,
-    /// Largest distance of the pivot from the centre and from the eye, metres.
+    /// Largest distance of the pivot from the scene centre and from the eye, metres.
     reach: f64,
     /// Wheel factor on the flight speed.
     speed: f64,
@@ -158,7 +158,7 @@ pub struct Controls {
 }
 
 impl Controls {
-    /// Starts with `camera` in a scene within `bounds`. Until something moves, [`Controls::camera`] returns it unchanged.
+    /// Starts with `camera` in a scene within `bounds`. [`Controls::camera`] returns it unchanged until something moves.
     pub fn new(camera: &Camera, bounds: &Bounds) -> Self {
         let pose = Pose::of(camera);
         let centre = bounds.centre().as_dvec3();
@@ -168,7 +168,7 @@ impl Controls {
         } else {
             pose.distance
         };
-        // Whoever starts farther off than that may stay there.
+        // A camera that starts farther away may stay there.
         let start = pose.distance.max(pose.pivot.distance(centre));
         Self {
             pose,
@@ -195,29 +195,29 @@ impl Controls {
         }
     }
 
-    /// Centre of orbit, metres.
+    /// Orbit centre, metres.
     pub fn pivot(&self) -> DVec3 {
         self.pose.pivot
     }
 
-    /// Flight speed without fast or slow key, m/s.
+    /// Flight speed without the fast or slow key, m/s.
     pub fn fly_speed(&self) -> f64 {
         CRUISE * self.size * self.speed
     }
 
-    /// Whether the camera moves without further events.
+    /// Whether the camera keeps moving without further events.
     pub fn is_moving(&self) -> bool {
         self.travel.is_some() || self.velocity != DVec3::ZERO
     }
 
-    /// Orbits: the eye moves about the pivot.
+    /// Orbits the eye about the pivot.
     pub fn orbit(&mut self, drag: Drag) {
         self.by_hand(drag, |pose, drag| {
             pose.turn(ORBIT_DEG * drag.right, -ORBIT_DEG * drag.down);
         });
     }
 
-    /// Looks around: the eye stays in place.
+    /// Looks around; the eye stays in place.
     pub fn look(&mut self, drag: Drag) {
         self.by_hand(drag, |pose, drag| {
             let eye = pose.eye();
@@ -235,7 +235,7 @@ impl Controls {
         });
     }
 
-    /// Moves toward (`steps` > 0) or away from `about` (metres; default the pivot), each step by the same factor of distance.
+    /// Moves toward (`steps` > 0) or away from `about` (metres; default: the pivot). Each step scales the distance equally.
     pub fn dolly(&mut self, steps: f64, about: Option<DVec3>) {
         let about = about.filter(|p| p.is_finite());
         if !steps.is_finite() {
@@ -245,13 +245,13 @@ impl Controls {
         let wanted = self.pose.distance * DOLLY_STEP.powf(steps);
         let distance = self.within_reach(wanted);
         let centre = about.unwrap_or(self.pose.pivot);
-        // The whole view shrinks toward the point, which so stays where it is in the picture.
+        // The pose is scaled about this point, so the point stays where it is in the image.
         self.pose.pivot = centre + (self.pose.pivot - centre) * (distance / self.pose.distance);
         self.pose.distance = distance;
         self.hold();
     }
 
-    /// Makes flight faster (`steps` > 0) or slower.
+    /// Increases (`steps` > 0) or decreases the flight speed.
     pub fn change_speed(&mut self, steps: f64) {
         if steps.is_finite() {
             let speed = self.speed * SPEED_STEP.powf(steps);
@@ -259,7 +259,7 @@ impl Controls {
         }
     }
 
-    /// Advances flight and travel by `seconds` with these keys held. Returns whether the camera moved.
+    /// Advances flight and travel by `seconds` with these keys held; returns whether the camera moved.
     pub fn advance(&mut self, seconds: f64, keys: FlyKeys) -> bool {
         let t = if seconds.is_finite() {
             seconds.clamp(0.0, LONGEST_STEP_S)
@@ -276,7 +276,7 @@ impl Controls {
         self.pose != before
     }
 
-    /// dv/dt = (goal − v)/τ in closed form: independent of the frame rate.
+    /// Integrates dv/dt = (goal − v)/τ in closed form, independent of the frame rate.
     fn fly_on(&mut self, goal: DVec3, t: f64) {
         let left = (-t / INERTIA_S).exp();
         let lag = self.velocity - goal;
@@ -304,7 +304,7 @@ impl Controls {
         travel.elapsed_s += t;
         let share = travel.elapsed_s / TRAVEL_S;
         self.pose = if share < 1.0 {
-            // Starts and ends at rest.
+            // Ease in and out.
             travel
                 .from
                 .toward(&travel.to, share * share * (3.0 - 2.0 * share))
@@ -316,7 +316,7 @@ impl Controls {
         }
     }
 
-    /// Travels to where all of `bounds` is in view, in the current viewing direction. `aspect` is width / height.
+    /// Travels to a pose that has all of `bounds` in view, in the current viewing direction. `aspect` is width / height.
     pub fn frame_all(&mut self, bounds: &Bounds, aspect: f32) {
         let mut pose = self.pose;
         pose.turn(0.0, 0.0);
@@ -335,7 +335,7 @@ impl Controls {
         self.go(Pose::of(camera));
     }
 
-    /// Turns toward `point`, metres, and makes it the pivot, unless it is out of reach.
+    /// Turns toward `point` (metres) and makes it the pivot. Does nothing when it is out of reach.
     pub fn focus(&mut self, point: DVec3) {
         let eye = self.pose.eye();
         let distance = eye.distance(point);
@@ -355,7 +355,7 @@ impl Controls {
         self.go(pose);
     }
 
-    /// Finishes a travel at once.
+    /// Completes a travel and stops flight at once.
     pub fn arrive(&mut self) {
         if let Some(travel) = self.travel.take() {
             self.pose = travel.to;
@@ -372,7 +372,7 @@ impl Controls {
         });
     }
 
-    /// Applies a drag, which ends a travel; ignores non-finite movement.
+    /// Applies a drag and cancels any travel. Ignores zero and non-finite movement.
     fn by_hand(&mut self, drag: Drag, act: impl FnOnce(&mut Pose, Drag)) {
         if drag == Drag::default() || !(drag.right.is_finite() && drag.down.is_finite()) {
             return;
@@ -386,7 +386,7 @@ impl Controls {
         distance.clamp(REACH.0 * self.size, self.reach)
     }
 
-    /// Keeps the pivot within reach of the scene.
+    /// Clamps the pivot to within reach of the scene.
     fn hold(&mut self) {
         let offset = self.pose.pivot - self.centre;
         self.pose.pivot = self.centre + offset.clamp_length_max(self.reach);

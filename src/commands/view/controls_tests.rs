@@ -16,7 +16,7 @@ fn start() -> Controls {
 struct Random(u32);
 
 impl Random {
-    /// 0..1.
+    /// Next number in 0..1.
     fn next(&mut self) -> f64 {
         rnd(&mut self.0)
     }
@@ -122,7 +122,7 @@ fn untouched_it_is_the_camera_it_was_given() {
             down: 0.0,
         });
         let touched = controls.camera().view_from_world();
-        // Half a degree, not half a turn.
+        // Turned by half a degree, not by half a turn.
         assert!(touched.abs_diff_eq(untouched, 0.02), "{target}");
     }
 }
@@ -147,7 +147,7 @@ fn orbit_keeps_the_distance_and_look_the_eye() {
 
 #[test]
 fn dragging_right_brings_the_left_side_of_the_model_to_view() {
-    // From the south, the left side is the west: there the eye goes.
+    // Seen from the south, left is west, so the eye moves west.
     let south = Camera {
         eye: Vec3::new(0.0, 4.0, 30.0),
         target: Vec3::new(0.0, 4.0, 0.0),
@@ -189,7 +189,7 @@ fn pan_holds_what_is_under_the_pointer() {
         down: -0.1,
     });
     let moved = project(&controls.camera(), point) - before;
-    // Clip space is two units high and 2 / aspect picture heights to a unit across.
+    // Clip space is two units high; one image height across is 2 / aspect units.
     assert!((moved.x - 0.25 * 2.0 / aspect).abs() < 1e-4, "{moved}");
     assert!((moved.y + 0.1 * 2.0).abs() < 1e-4, "{moved}");
 }
@@ -255,7 +255,7 @@ fn flight_does_not_depend_on_the_rate_of_frames() {
         assert!(apart < tolerance * way, "{apart}");
     }
     let end = flight(60, &phases);
-    // A second at cruise and one at four times that.
+    // One second at cruise speed and one at four times that.
     let way = end.pivot().distance(start().pivot());
     assert!((way / (5.0 * start().fly_speed()) - 1.0).abs() < 1e-3);
     assert!(!end.is_moving(), "it comes to rest");
@@ -318,7 +318,7 @@ fn a_journey_ends_at_the_viewpoint_in_time() {
     }
     assert_eq!(controls.camera(), goal);
     assert!((30..40).contains(&frames), "{frames} frames of 10 ms");
-    // A hand on the camera ends it.
+    // A drag cancels the travel.
     controls.frame_all(&house(), 1.5);
     controls.orbit(Drag {
         right: 0.1,

@@ -1,4 +1,4 @@
-//! The open scene: its options and daylight, the camera that the user moves, and the progress of its picture.
+//! The open scene: its options, daylight and camera, and the progress of its image.
 
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ use super::interface::{Notes, shift};
 use super::keys::Action;
 use super::viewpoints::{Viewpoint, Viewpoints};
 
-/// Default of `--samples` in the window: frames averaged at rest.
+/// Default of `--samples` in the window: number of frames averaged at rest.
 pub(super) const REST_SAMPLES: u32 = 64;
 
 /// Default of `--dome-directions` in the window.
@@ -27,29 +27,29 @@ const REST_DIRECTIONS: u32 = 4;
 
 /// An open scene.
 pub(super) struct Document {
-    /// Scene, options, daylight. After a change of the options [`Document::follow`] must be called.
+    /// Scene, options and daylight. Call [`Document::follow`] after changing the options.
     pub(super) job: Job,
-    /// The camera that the user moves.
+    /// Camera controls.
     pub(super) controls: Controls,
-    /// Saved cameras.
+    /// Viewpoints: named and saved cameras.
     pub(super) viewpoints: Viewpoints,
     frame: Frame,
-    /// The options that daylight and frame are made with.
+    /// Options that daylight and frame were last updated to.
     followed: Options,
-    /// Camera of the newest frame.
+    /// Camera of the newest frame; `None` restarts the average.
     drawn: Option<Camera>,
-    /// Frames in the average.
+    /// Number of frames in the average.
     averaged: u32,
     adaptation: Adaptation,
-    /// Frames drawn since it was opened.
+    /// Number of frames drawn since the scene was opened.
     frames: u64,
 }
 
 impl Document {
-    /// Opens a loaded scene; `recorder` must be recording, with no frame in flight.
+    /// Opens a loaded scene. `recorder` must be recording, with no frame in flight.
     ///
     /// # Errors
-    /// Invalid options, or too little device memory for the scene.
+    /// Invalid options, or not enough device memory for the scene.
     pub(super) fn open(
         recorder: &mut Recorder,
         path: Option<PathBuf>,
@@ -74,7 +74,7 @@ impl Document {
         })
     }
 
-    /// Performs the action of a key on scene and daylight, and reports it in `notes`.
+    /// Performs a key's action on scene and daylight, and reports it in `notes`.
     pub(super) fn perform(&mut self, action: Action, notes: &mut Notes) {
         match action {
             Action::FrameAll => self.frame_all(),
@@ -105,14 +105,14 @@ impl Document {
         }
     }
 
-    /// Moves the camera to where everything is in view.
+    /// Moves the camera so that the whole scene is in view.
     pub(super) fn frame_all(&mut self) {
         let size = self.job.settings.size;
         let aspect = size.width as f32 / size.height.max(1) as f32;
         self.controls.frame_all(&self.job.scene.bounds, aspect);
     }
 
-    /// Jumps to another camera.
+    /// Jumps to `camera`.
     pub(super) fn set_camera(&mut self, camera: &Camera) {
         self.controls.go_to(camera);
         self.controls.arrive();
@@ -125,7 +125,7 @@ impl Document {
         self.job.camera = self.controls.camera();
     }
 
-    /// Whether the options have changed since daylight and frame were made.
+    /// Whether the options have changed since the last update of daylight and frame.
     pub(super) fn is_behind(&self) -> bool {
         self.job.settings != self.followed
     }
@@ -133,12 +133,12 @@ impl Document {
     /// Updates daylight and frame to the options. `recorder` must be recording, with no frame in flight.
     ///
     /// # Errors
-    /// Options that cannot be applied; the old ones are restored then.
+    /// Options that cannot be applied; the previous ones are restored.
     pub(super) fn follow(&mut self, recorder: &mut Recorder) -> Result<()> {
         let followed = self.try_follow(recorder);
         if followed.is_err() {
             self.job.settings = self.followed.clone();
-            // It succeeded before with the same options.
+            // Succeeds: it did before, with the same options.
             self.job.relight()?;
         }
         self.followed = self.job.settings.clone();
@@ -160,10 +160,10 @@ impl Document {
         Ok(())
     }
 
-    /// Makes the frame anew after its shaders changed. `recorder` must be recording.
+    /// Rebuilds the frame after its shaders changed. `recorder` must be recording.
     ///
     /// # Errors
-    /// When the device refuses; the old frame stays.
+    /// Fails when the device cannot create the resources; the previous frame is kept.
     #[cfg(feature = "hot-reload")]
     pub(super) fn rebuild(&mut self, recorder: &mut Recorder) -> Result<()> {
         self.frame = Frame::new(recorder, &self.job.scene, frame_settings(&self.job))?;
@@ -176,12 +176,12 @@ impl Document {
         self.drawn = None;
     }
 
-    /// Whether the picture has all its samples and the exposure has adapted to it.
+    /// Whether all samples are drawn and the exposure has adapted.
     pub(super) fn is_at_rest(&self) -> bool {
         self.is_averaged() && self.adaptation.is_done()
     }
 
-    /// Whether the average has all its frames.
+    /// Whether the average is complete.
     fn is_averaged(&self) -> bool {
         !self.is_behind() && !self.has_moved() && self.averaged >= self.job.settings.samples
     }
@@ -190,13 +190,13 @@ impl Document {
         self.drawn != Some(self.job.camera)
     }
 
-    /// Frames in the average, and in all.
+    /// Number of frames in the average, and its target.
     pub(super) fn progress(&self) -> (u32, u32) {
         (self.averaged, self.job.settings.samples)
     }
 
-    /// Records the next frame: a preview while the camera moves or the irradiance is refined, then the samples of the average,
-    /// then only the exposure until it has adapted, then nothing.
+    /// Records the next frame: a preview while the camera moves or the irradiance is being refined, then the samples of the
+    /// average, then only the exposure until it has adapted, then nothing.
     pub(super) fn record(&mut self, recorder: &mut Recorder) {
         if self.is_at_rest() {
             return;
@@ -226,40 +226,40 @@ impl Document {
         self.frames += 1;
     }
 
-    /// Frames drawn since the scene was opened.
+    /// Number of frames drawn since the scene was opened.
     pub(super) fn frames(&self) -> u64 {
         self.frames
     }
 
-    /// The picture in display values.
+    /// The image in display values.
     pub(super) fn display(&self) -> &Image {
         self.frame.display()
     }
 
-    /// The frame, to read its images.
+    /// The frame, for reading back its images.
     pub(super) fn frame(&self) -> &Frame {
         &self.frame
     }
 
-    /// Records the read-out of a pixel of the newest picture.
+    /// Records the read-back of one pixel of the newest image.
     pub(super) fn pick(&mut self, recorder: &mut Recorder, pixel: [u32; 2]) {
         self.frame.pick(recorder, pixel);
     }
 
-    /// The pixel that was picked, when the work is done.
+    /// The pixel read back, once the device has finished.
     pub(super) fn picked(&mut self) -> Option<Reading> {
         self.frame.picked()
     }
 
-    /// The command line that renders this picture.
+    /// The command line that renders this image.
     ///
     /// # Errors
-    /// As [`Job::command_line`].
+    /// See [`Job::command_line`].
     pub(super) fn command(&self) -> Result<String> {
         self.job.command_line()
     }
 
-    /// Name of the scene, without its folder.
+    /// File name of the scene.
     pub(super) fn title(&self) -> String {
         let name = self.job.path.as_deref().and_then(|p| p.file_name());
         name.map_or("bundled scene".to_owned(), |n| {
@@ -268,8 +268,8 @@ impl Document {
     }
 }
 
-/// The user's options with the window's size and its defaults: enough samples at rest for the sky's true visibility (not with
-/// the lecture's preset), and fewer directions a frame than for a file, so that a frame is short when something moves again.
+/// The user's options with the window's size and defaults: enough samples at rest for the true visibility of the sky (except with
+/// the lecture preset), and fewer directions per frame than for a file, which keeps frames short when motion resumes.
 fn at_rest(user: &OptionValues, size: Size) -> OptionValues {
     let mut options = user.clone();
     options.set("size", size);
@@ -281,20 +281,20 @@ fn at_rest(user: &OptionValues, size: Size) -> OptionValues {
     options
 }
 
-/// The settings of a frame on the screen. The number of irradiance samples does not depend on the light, so that the sun can be
-/// dragged without making a new cube.
+/// Frame settings for the screen. The number of irradiance samples does not depend on the light, so the sun can be dragged
+/// without recreating the cube.
 fn frame_settings(job: &Job) -> FrameSettings {
     let mut settings = job.frame_settings(job.settings.show, Precision::Half);
     settings.irradiance.samples = job.settings.irradiance_samples;
     settings.sampling.dome.illuminance = true;
-    // While something moves ambient occlusion is drawn; at rest the picture fades over from that.
+    // Ambient occlusion while something moves; at rest the image fades over to the true visibility.
     if settings.sampling.visibility == Visibility::Dome {
         settings.sampling.visibility = Visibility::Progressive;
     }
     settings
 }
 
-/// The cameras that the scene file names, as viewpoints.
+/// Viewpoints of the cameras named in the scene file.
 fn named_cameras(loaded: &Loaded, user: &OptionValues) -> Viewpoints {
     let camera = |name: &str| -> Option<Camera> {
         let mut user = user.clone();

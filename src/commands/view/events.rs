@@ -1,4 +1,4 @@
-//! What the event loop tells the program.
+//! Handling of window and loader events.
 
 use winit::application::ApplicationHandler;
 use winit::event::{ElementState, KeyEvent, StartCause, WindowEvent};
@@ -32,7 +32,7 @@ impl App {
         let Some(stage) = &mut self.stage else {
             return Ok(());
         };
-        // Tab is ours, not a way from field to field; and egui answers every redraw with the wish for another.
+        // Tab is a shortcut here, not focus navigation. And egui answers every redraw event with another repaint request.
         let is_tab = is_tab(&event);
         let (consumed, repaint) = if is_tab || event == WindowEvent::RedrawRequested {
             (false, false)
@@ -97,7 +97,7 @@ impl App {
         self.request_redraw();
     }
 
-    /// Turns to what is under the pointer.
+    /// Turns the camera toward the point under the pointer.
     fn focus(&mut self) {
         if let (Some(document), Some(point)) =
             (&mut self.document, self.interface.point_under_pointer())
@@ -151,7 +151,7 @@ impl ApplicationHandler<Message> for App {
                 path,
                 result,
             } if self.loader.is_newest(ticket) => self.opened(path, result),
-            // Of a load that nobody waits for any more.
+            // A load that has been superseded.
             _ => {}
         }
     }
@@ -170,7 +170,7 @@ impl ApplicationHandler<Message> for App {
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
-        // What is in flight still uses the document. A lost device has nothing in flight.
+        // Frames in flight still use the document. A lost device has none in flight.
         if let Some(stage) = &mut self.stage {
             let _ = stage.idle();
         }

@@ -1,18 +1,18 @@
-//! Pointer and keyboard events that the user interface does not consume, turned into camera movement.
+//! Camera movement from pointer and keyboard events that the user interface does not consume.
 
 use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta};
 use winit::keyboard::{KeyCode, ModifiersState, PhysicalKey};
 
 use super::controls::{Controls, Drag, FlyKeys};
 
-/// Scrolled pixels that count as one wheel step.
+/// Scroll distance of one wheel step, pixels.
 const PIXELS_A_STEP: f64 = 50.0;
-/// Longest time between the clicks of a double click, seconds.
+/// Longest interval between the clicks of a double click, seconds.
 const DOUBLE_CLICK_S: f64 = 0.4;
-/// Largest pointer movement between them, pixels.
+/// Largest pointer movement between the clicks of a double click, pixels.
 const DOUBLE_CLICK_PIXELS: f64 = 4.0;
 
-/// What a drag does.
+/// Effect of a drag.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Gesture {
     Orbit,
@@ -56,13 +56,13 @@ impl Input {
         self.pointer
     }
 
-    /// Handles a key press or release; `free` when no text is being edited.
+    /// Handles a key press or release. `free`: no text is being edited.
     pub(super) fn key(&mut self, event: &KeyEvent, free: bool) {
         let PhysicalKey::Code(code) = event.physical_key else {
             return;
         };
         let held = event.state == ElementState::Pressed && free;
-        // Physical positions: the same on every keyboard layout.
+        // Physical key codes: the same position on every keyboard layout.
         match code {
             KeyCode::KeyW => self.keys.forward = held,
             KeyCode::KeyS => self.keys.back = held,
@@ -74,7 +74,7 @@ impl Input {
         }
     }
 
-    /// The window lost the focus: releases will not be reported.
+    /// Releases all keys and buttons after the window lost focus: their release events will not arrive.
     pub(super) fn let_go(&mut self) {
         self.keys = FlyKeys::default();
         self.gesture = None;
@@ -97,12 +97,12 @@ impl Input {
         }
     }
 
-    /// The pointer left the window.
+    /// Handles the pointer leaving the window.
     pub(super) fn left(&mut self) {
         self.pointer = None;
     }
 
-    /// Handles a button press over the picture; `now` in seconds. Returns whether it completes a double click.
+    /// Handles a button press over the image at `now`, seconds. Returns whether it completes a double click.
     pub(super) fn pressed(&mut self, button: MouseButton, now: f64) -> bool {
         let gesture = match button {
             MouseButton::Left if self.modifiers.shift_key() => Gesture::Pan,
@@ -130,7 +130,7 @@ impl Input {
         }
     }
 
-    /// Wheel steps, positive away from the user; while looking around they change the flight speed.
+    /// Wheel steps, positive away from the user. They change the flight speed while looking around.
     pub(super) fn wheel(&self, delta: MouseScrollDelta) -> Wheel {
         let steps = match delta {
             MouseScrollDelta::LineDelta(_, rows) => f64::from(rows),
@@ -147,9 +147,9 @@ impl Input {
 /// Effect of the wheel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Wheel {
-    /// Moves closer by this many steps.
+    /// Dolly in by this many steps.
     Dolly(f64),
-    /// Flies faster by this many steps.
+    /// Increase the flight speed by this many steps.
     Speed(f64),
 }
 
@@ -189,7 +189,7 @@ mod tests {
         input.moved([10.0, 10.0], 100.0, None);
         assert!(!input.pressed(MouseButton::Left, 1.0));
         assert!(input.pressed(MouseButton::Left, 1.2));
-        // The third begins anew, a slow second is a first, and so is one elsewhere.
+        // A third click starts over; a late or distant second click counts as a first one.
         assert!(!input.pressed(MouseButton::Left, 1.3));
         assert!(!input.pressed(MouseButton::Left, 2.0));
         input.moved([30.0, 10.0], 100.0, None);

@@ -74,7 +74,7 @@ impl Input {
         }
     }
 
-    /// Releases all keys and buttons after the window lost focus: their release events will not arrive.
+    /// Releases the flight keys and ends the drag when the window loses focus: their release events will not arrive.
     pub(super) fn let_go(&mut self) {
         self.keys = FlyKeys::default();
         self.gesture = None;

@@ -1,5 +1,5 @@
-//! The user interface over the picture: panel, read-outs, overlays, messages. It changes the document's settings; everything
-//! else it requests from the event loop.
+//! The user interface over the image: panel, read-outs, overlays, messages. It changes the document's settings; everything
+//! else is requested from the event loop.
 
 mod air;
 mod clock;
@@ -38,9 +38,9 @@ use timings::TimingChart;
 /// A request to the event loop.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum UiRequest {
-    /// Perform the action of a key.
+    /// Perform a key's action.
     Do(Action),
-    /// Put text on the clipboard.
+    /// Copy text to the clipboard.
     Copy(String),
 }
 
@@ -58,7 +58,7 @@ pub(super) struct Interface {
 }
 
 impl Interface {
-    /// The panel is open, everything else closed; `quiet` suppresses warnings.
+    /// Starts with the panel open and everything else closed. `quiet` suppresses warnings.
     pub(super) fn new(quiet: bool) -> Self {
         Self {
             is_visible: true,
@@ -78,7 +78,7 @@ impl Interface {
         self.is_visible
     }
 
-    /// Shows a message for some seconds.
+    /// Shows a notice for a few seconds.
     pub(super) fn say(&mut self, text: &str) {
         self.notes.say(text);
     }
@@ -88,7 +88,7 @@ impl Interface {
         self.notes.complain(text);
     }
 
-    /// Progress of loading, 0..1, and its current stage; `None` when nothing is loading.
+    /// Sets the loading progress (0..1) and stage; `None` when nothing is loading.
     pub(super) fn loading(&mut self, progress: Option<(f32, &'static str)>) {
         self.notes.loading = progress;
     }
@@ -98,12 +98,12 @@ impl Interface {
         self.clock.advance(&mut document.job.settings.sun, seconds);
     }
 
-    /// Whether the time of day advances by itself.
+    /// Whether the time of day is advancing.
     pub(super) fn is_playing(&self, document: &Document) -> bool {
         self.clock.is_running(&document.job.settings.sun)
     }
 
-    /// Whether the read-out is about this pixel of the current picture.
+    /// Whether the read-out belongs to this pixel of the current image.
     pub(super) fn is_probed(&self, pixel: Option<[u32; 2]>, document: Option<&Document>) -> bool {
         self.probe.is_fresh(pixel, document)
     }
@@ -118,23 +118,23 @@ impl Interface {
         self.probe.set(pixel, reading, document);
     }
 
-    /// The point of the scene under the pointer, metres.
+    /// The scene point under the pointer, metres.
     pub(super) fn point_under_pointer(&self) -> Option<DVec3> {
         self.probe.point()
     }
 
-    /// Opens or closes the chart of pass times; returns whether it is open.
+    /// Toggles the chart of pass times; returns whether it is open.
     pub(super) fn toggle_timings(&mut self) -> bool {
         self.timings.is_open = !self.timings.is_open;
         self.timings.is_open
     }
 
-    /// Takes the pass times and the memory use of the device.
+    /// Updates the pass times and the device memory use.
     pub(super) fn observe(&mut self, stage: &Stage) {
         self.timings.observe(stage);
     }
 
-    /// Performs the action of a key.
+    /// Performs a key's action; returns requests to the event loop.
     pub(super) fn perform(&mut self, action: Action, document: &mut Document) -> Vec<UiRequest> {
         let mut requests = Vec::new();
         match action {
@@ -162,7 +162,7 @@ impl Interface {
         requests
     }
 
-    /// Lays out the user interface.
+    /// Lays out the user interface; returns requests to the event loop.
     pub(super) fn show(&mut self, ui: &mut Ui, document: Option<&mut Document>) -> Vec<UiRequest> {
         let mut requests = Vec::new();
         if self.is_visible {
@@ -225,7 +225,7 @@ fn section(ui: &mut Ui, title: &str, open: bool, content: impl FnOnce(&mut Ui)) 
         });
 }
 
-/// A labelled line with one of the values of an option, named as on the command line. Returns whether it changed.
+/// A labelled row with a drop-down of an option's values, named as on the command line. Returns whether the value changed.
 fn choice<T: Choice>(ui: &mut Ui, label: &str, value: &mut T) -> bool {
     let mut changed = false;
     egui::ComboBox::new(label, label)
@@ -239,7 +239,7 @@ fn choice<T: Choice>(ui: &mut Ui, label: &str, value: &mut T) -> bool {
     changed
 }
 
-/// A box anchored to a corner of the picture.
+/// A box anchored to a corner of the image.
 fn corner(
     ui: &Ui,
     id: &str,

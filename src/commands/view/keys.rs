@@ -1,55 +1,55 @@
-//! Keys, mouse gestures and their actions.
+//! Keyboard and mouse bindings, and their actions.
 
 use winit::keyboard::{Key, NamedKey};
 
 use crate::options::Show;
 
-/// Action of a key or a button.
+/// Action of a key or button.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Action {
-    /// Hides or shows the user interface.
+    /// Toggle the user interface.
     ToggleInterface,
-    /// Shows or hides the help.
+    /// Toggle the help.
     Help,
-    /// Frames the whole scene.
+    /// Frame the whole scene.
     FrameAll,
-    /// Saves the current viewpoint.
+    /// Save the current viewpoint.
     SaveViewpoint,
-    /// Goes to the next saved viewpoint.
+    /// Go to the next viewpoint.
     NextViewpoint,
-    /// Shifts the time by some hours.
+    /// Shift the time by this many hours.
     ShiftHours(f64),
-    /// Starts or stops the clock.
+    /// Start or stop the clock.
     Play,
-    /// Puts the sun behind the camera.
+    /// Put the sun behind the camera.
     LightFromView,
-    /// Shows another quantity.
+    /// Show another quantity.
     Show(Show),
-    /// Shows or hides compass and sun path.
+    /// Toggle compass and sun path.
     ToggleSunPath,
-    /// Shows or hides the times of the passes.
+    /// Toggle the pass times.
     ToggleTimings,
-    /// Writes PNG and EXR.
+    /// Save the image as PNG and EXR.
     Screenshot,
-    /// Copies the command that renders this picture.
+    /// Copy the command that renders this image.
     CopyCommand,
-    /// Recompiles the shaders.
+    /// Reload the shaders.
     ReloadShaders,
-    /// Switches full screen on or off.
+    /// Toggle full screen.
     FullScreen,
-    /// Closes the help and all messages.
+    /// Close the help and all messages.
     Dismiss,
 }
 
-/// One line of the help.
+/// One line in the help.
 pub(super) struct Binding {
-    /// Keys or gesture.
+    /// Keys or mouse gesture.
     pub(super) keys: &'static str,
-    /// Effect.
+    /// What it does.
     pub(super) what: &'static str,
 }
 
-/// Every key and gesture, in the order of the help.
+/// All keys and gestures, in help order.
 pub(super) const BINDINGS: &[Binding] = &[
     binding("drag", "orbit about the centre of the view"),
     binding("right drag", "look around"),
@@ -86,7 +86,7 @@ const fn binding(keys: &'static str, what: &'static str) -> Binding {
     Binding { keys, what }
 }
 
-/// The quantities on the keys 1 to 9.
+/// Quantities on the keys 1 to 9.
 pub(super) const DIGITS: [Show; 9] = [
     Show::Beauty,
     Show::Sun,

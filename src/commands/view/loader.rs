@@ -1,4 +1,4 @@
-//! Background loading: a thread reads the scene and reports progress to the event loop.
+//! Background loading: a thread reads the scene and reports its progress to the event loop.
 
 use std::path::PathBuf;
 use std::thread;
@@ -9,30 +9,30 @@ use crate::commands::job::load_options;
 use crate::options::Options;
 use crate::scene::{self, Loaded, SceneError};
 
-/// Message of a loading thread to the event loop.
+/// Message from a loading thread to the event loop.
 #[derive(Debug)]
 pub(super) enum Message {
     /// Progress of a load.
     Progress {
-        /// Number of the load.
+        /// Number of the load; the newest is highest.
         ticket: u64,
-        /// 0..1.
+        /// Progress, 0..1.
         share: f32,
         /// Current stage.
         stage: &'static str,
     },
-    /// A load has ended.
+    /// End of a load.
     Loaded {
         /// Number of the load.
         ticket: u64,
-        /// File of the scene; `None` for the bundled one.
+        /// Scene file; `None` for the bundled scene.
         path: Option<PathBuf>,
-        /// The scene or the error.
+        /// The loaded scene, or an error.
         result: Box<Result<Loaded, SceneError>>,
     },
 }
 
-/// Starts loads; a new one supersedes the others.
+/// Starts loading threads. A new load supersedes earlier ones.
 pub(super) struct Loader {
     proxy: EventLoopProxy<Message>,
     newest: u64,
@@ -43,13 +43,13 @@ impl Loader {
         Self { proxy, newest: 0 }
     }
 
-    /// Loads a scene (or the bundled one) in the background.
+    /// Loads a scene in the background; the bundled one without `path`.
     pub(super) fn start(&mut self, path: Option<PathBuf>, options: &Options) {
         self.newest += 1;
         let (ticket, proxy, options) = (self.newest, self.proxy.clone(), load_options(options));
         thread::spawn(move || {
             let tell = |share: f32, stage: &'static str| {
-                // Fails only when the window is closed.
+                // Fails only when the event loop has ended.
                 let _ = proxy.send_event(Message::Progress {
                     ticket,
                     share,
@@ -65,7 +65,7 @@ impl Loader {
         });
     }
 
-    /// Whether a message belongs to the newest load.
+    /// Whether `ticket` belongs to the newest load.
     pub(super) fn is_newest(&self, ticket: u64) -> bool {
         ticket == self.newest
     }

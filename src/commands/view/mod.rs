@@ -1,7 +1,7 @@
 //! The interactive window.
 //!
-//! - [`controls`]: camera control by drags, wheel and keys; needs no device and no window. [`viewpoints`]: saved views.
-//! - `app` and `events`: the event loop; `stage`: the window with its device; `document`: the open scene; `adaptation`: its
+//! - [`controls`]: camera control by drags, wheel and keys; needs neither device nor window. [`viewpoints`]: saved views.
+//! - `app` and `events`: the event loop. `stage`: the window and its device. `document`: the open scene. `adaptation`: its
 //!   exposure over time.
 //! - `keys` and `input`: keyboard and mouse. `interface`: the user interface, panel by panel.
 //! - `loader`: background loading. `capture`: screenshots. `resume`: settings of the last session.
@@ -30,11 +30,11 @@ use crate::options::OptionValues;
 
 use app::App;
 
-/// Opens the window on `scene`, or on the bundled scene, and returns when it is closed; `resumes` restores the settings of
+/// Opens the window on `scene`, or on the bundled scene, and returns when it is closed. `resumes` restores the settings of
 /// the last session with this scene.
 ///
 /// # Errors
-/// No display, no device that presents to it, or a device that is lost. A scene that cannot be loaded is told in the window.
+/// No display, no device that can present to it, or a lost device. A scene that fails to load is reported in the window.
 pub fn run(scene: Option<&Path>, resumes: bool, user: OptionValues) -> Result<()> {
     let user = if resumes {
         resume::recall(scene, user)?
@@ -57,7 +57,7 @@ pub fn run(scene: Option<&Path>, resumes: bool, user: OptionValues) -> Result<()
     app.into_result()
 }
 
-/// The message of an error of winit, less the place in winit's source that it begins with: `os error at FILE:LINE: `.
+/// The message of a winit error without its prefix `os error at FILE:LINE: `.
 fn reason(error: &impl std::fmt::Display) -> String {
     let text = error.to_string();
     let after_line = |rest: &str| {

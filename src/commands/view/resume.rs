@@ -1,4 +1,4 @@
-//! The options of each scene when its window was last closed, kept in the user's state folder.
+//! Options of each scene from when its window was last closed, kept in the user's state folder.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use crate::scene::{BUNDLED, bundled_name};
 
 use super::document::Document;
 
-/// The file of a scene: its name, and a hash of its absolute path, since scenes of one name may lie in different folders.
+/// The state file of a scene. Its name includes a hash of the absolute path, since scenes in different folders may share a name.
 fn file_of(scene: Option<&Path>) -> Option<PathBuf> {
     let folder = dirs::state_dir().or_else(dirs::data_local_dir)?;
     let bundled = scene.map_or(Some(BUNDLED[0]), bundled_name);
@@ -30,7 +30,7 @@ fn file_of(scene: Option<&Path>) -> Option<PathBuf> {
 /// Saves the options of a document.
 ///
 /// # Errors
-/// When the state folder cannot be written to.
+/// Fails when the state folder cannot be written to.
 pub(super) fn keep(document: &Document) -> Result<()> {
     let Some(file) = file_of(document.job.path.as_deref()) else {
         return Ok(());
@@ -48,13 +48,13 @@ pub(super) fn keep(document: &Document) -> Result<()> {
     write_whole(&file, text.as_bytes())
 }
 
-/// Options as a TOML file of names and texts.
+/// Options as TOML text: a table of strings by name.
 fn to_text(options: &Options) -> std::result::Result<String, String> {
     let pairs: BTreeMap<String, String> = options.values().into_pairs().into_iter().collect();
     toml::to_string(&pairs).map_err(|e| e.to_string())
 }
 
-/// The reverse of [`to_text`], or what is wrong.
+/// The inverse of [`to_text`]. The error says what is wrong.
 fn from_text(text: &str) -> std::result::Result<OptionValues, String> {
     let kept: BTreeMap<String, String> =
         toml::from_str(text).map_err(|e| e.message().to_owned())?;
@@ -63,10 +63,10 @@ fn from_text(text: &str) -> std::result::Result<OptionValues, String> {
     Ok(kept)
 }
 
-/// The user's options over those that were saved for the scene, if any were.
+/// The user's options over those saved for the scene, if any.
 ///
 /// # Errors
-/// A file that is damaged: it names the file to delete.
+/// A damaged file; the message names the file to delete.
 pub(super) fn recall(scene: Option<&Path>, user: OptionValues) -> Result<OptionValues> {
     let Some(file) = file_of(scene).filter(|file| file.exists()) else {
         return Ok(user);

@@ -1,4 +1,4 @@
-//! The window with its device: where frames and the user interface are put together.
+//! The window and its device: combines frames and the user interface.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -19,30 +19,30 @@ use crate::passes::picture::present::Present;
 
 use super::document::Document;
 
-/// The window, its device, and what draws to it.
+/// The window, its device, and what draws to the swapchain.
 pub(super) struct Stage {
     overlay: Overlay,
     present: Present,
     presenter: Presenter,
-    /// Stands for a picture before the first.
+    /// Shown until there is a first image.
     blank: Image,
     egui: egui_winit::State,
     pub(super) context: Arc<Context>,
     pub(super) window: Arc<Window>,
 }
 
-/// A user interface, laid out.
+/// A laid-out user interface.
 pub(super) struct Layout {
     pub(super) frame: UiFrame,
-    /// When it wants to be laid out again.
+    /// Delay until the interface needs another layout.
     pub(super) again_after: Duration,
 }
 
 impl Stage {
-    /// Opens the window and a device that presents to it.
+    /// Opens the window and a device that can present to it.
     ///
     /// # Errors
-    /// When the window system or every device refuses.
+    /// Fails when the window cannot be created or no device is usable.
     pub(super) fn new(event_loop: &ActiveEventLoop, options: &Options) -> Result<Self> {
         let attributes = Window::default_attributes()
             .with_title("skylight")
@@ -69,19 +69,19 @@ impl Stage {
         })
     }
 
-    /// Shows an event to the user interface. Returns whether it keeps the event to itself, and whether it wants to be
-    /// laid out again.
+    /// Passes an event to the user interface. Returns whether the interface consumed it, and whether it needs another
+    /// layout.
     pub(super) fn on_event(&mut self, event: &WindowEvent) -> (bool, bool) {
         let response = self.egui.on_window_event(&self.window, event);
         (response.consumed, response.repaint)
     }
 
-    /// The user interface's own state.
+    /// The egui context.
     pub(super) fn ui(&self) -> &egui::Context {
         self.egui.egui_ctx()
     }
 
-    /// The window has another size, or none.
+    /// Follows a change of the window's size, which may be zero.
     pub(super) fn resize(&mut self) {
         self.presenter.resize(self.window.inner_size().into());
     }
@@ -89,7 +89,7 @@ impl Stage {
     /// Lays out the user interface.
     ///
     /// # Errors
-    /// When memory for its textures is out.
+    /// Fails when there is no memory for the interface's textures.
     pub(super) fn lay_out(
         &mut self,
         event_loop: &ActiveEventLoop,
@@ -118,11 +118,11 @@ impl Stage {
         })
     }
 
-    /// Draws a frame: the document when it wants to be, and the user interface over it. False when the window cannot be
-    /// drawn to now.
+    /// Draws a frame: the document if it needs drawing, with the user interface on top. Returns false when the window cannot
+    /// be drawn to at the moment.
     ///
     /// # Errors
-    /// A lost device, or memory that is out.
+    /// A lost device, or not enough memory.
     pub(super) fn draw(
         &mut self,
         ui: &UiFrame,
@@ -144,10 +144,10 @@ impl Stage {
         })
     }
 
-    /// Does work outside of frames, when nothing is in flight, and waits for it. Work that fails is not submitted.
+    /// Does work outside of frames, with nothing in flight, and waits for it. Work that fails is not submitted.
     ///
     /// # Errors
-    /// Whatever `work` returns, or a lost device.
+    /// Any error of `work`, or a lost device.
     pub(super) fn work<T>(&mut self, work: impl FnOnce(&mut Recorder) -> Result<T>) -> Result<T> {
         let recorder = self.presenter.idle()?;
         recorder.begin()?;
@@ -159,15 +159,15 @@ impl Stage {
         result
     }
 
-    /// A recorder that is not recording, when nothing is in flight.
+    /// The recorder, not recording and with nothing in flight.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// Fails when the device is lost.
     pub(super) fn idle(&mut self) -> Result<&mut Recorder> {
         Ok(self.presenter.idle()?)
     }
 
-    /// Times passes from the next frame on, or stops it. Timestamps of software drivers mean little: there each pass is
+    /// Turns pass timing on or off from the next frame. On software drivers, whose timestamps are unreliable, each pass is
     /// submitted alone.
     pub(super) fn set_timed(&mut self, timed: bool) {
         let software = self.context.summary().is_software();
@@ -178,13 +178,13 @@ impl Stage {
         });
     }
 
-    /// Times of the newest frame that is done.
+    /// Pass times of the newest completed frame.
     pub(super) fn timings(&self) -> &Timings {
         self.presenter.timings()
     }
 }
 
-/// One dark texel.
+/// A dark image of one texel.
 fn blank(recorder: &mut Recorder) -> Result<Image> {
     let context = recorder.context().clone();
     let format = Format::R8G8B8A8_SRGB;

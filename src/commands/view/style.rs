@@ -2,7 +2,7 @@
 
 use egui::{Color32, CornerRadius, FontId, Frame, Margin, Stroke, TextStyle};
 
-/// Background of panels. It is blended in linear light, where little transparency shows much.
+/// Background of panels. Blending is in linear light, where even slight transparency is conspicuous.
 const BACKDROP: Color32 = Color32::from_rgba_premultiplied(13, 15, 19, 246);
 /// Colour of text, and of secondary text.
 const TEXT: Color32 = Color32::from_gray(222);

@@ -1,4 +1,4 @@
-//! Viewpoints: the named cameras of the scene and those that the user saves.
+//! Viewpoints: the scene's named cameras and those saved by the user.
 
 use crate::scene::Camera;
 
@@ -7,11 +7,11 @@ use crate::scene::Camera;
 pub struct Viewpoint {
     /// Name of the scene file's camera, or a number.
     pub name: String,
-    /// The view.
+    /// The camera.
     pub camera: Camera,
 }
 
-/// List of viewpoints with a current one.
+/// A list of viewpoints, one of which may be current.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Viewpoints {
     list: Vec<Viewpoint>,
@@ -19,7 +19,7 @@ pub struct Viewpoints {
 }
 
 impl Viewpoints {
-    /// The viewpoints of a scene.
+    /// Creates the list with no current viewpoint.
     pub fn new(list: Vec<Viewpoint>) -> Self {
         Self {
             list,
@@ -32,7 +32,7 @@ impl Viewpoints {
         &self.list
     }
 
-    /// Saves `camera` under the next free number and makes it the current one; returns its name.
+    /// Saves `camera` under the next free number and makes it current; returns its name.
     pub fn save(&mut self, camera: Camera) -> &str {
         let mut number = self.list.len() + 1;
         while self.list.iter().any(|v| v.name == number.to_string()) {
@@ -56,7 +56,7 @@ impl Viewpoints {
         self.choose((self.current.unwrap_or(0) + length - 1) % length)
     }
 
-    /// Goes to a viewpoint by index; `None` when there is none.
+    /// Goes to the viewpoint at `index`; `None` if there is none.
     pub fn choose(&mut self, index: usize) -> Option<&Viewpoint> {
         let chosen = self.list.get(index)?;
         self.current = Some(index);
@@ -107,7 +107,7 @@ mod tests {
         assert_eq!(views.save(camera(50.0)), "1");
         let mut views = Viewpoints::new(vec![named("2")]);
         assert_eq!(views.save(camera(50.0)), "3");
-        // Saving makes it the current one: the next is the first again.
+        // The saved viewpoint is current, so the next one is the first again.
         assert_eq!(views.cycle().map(|v| v.name.as_str()), Some("2"));
         assert_eq!(views.cycle().map(|v| v.camera), Some(camera(50.0)));
     }

@@ -26,7 +26,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
     ));
 }
 
-/// `12.3 klx`, `0.25 lx`.
+/// Formats an illuminance, lux: `12.3 klx`, `0.25 lx`.
 pub(super) fn illuminance(lux: f64) -> String {
     if lux >= 1000.0 {
         format!("{:.1} klx", lux * 1e-3)

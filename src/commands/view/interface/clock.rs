@@ -1,4 +1,4 @@
-//! The clock of the window: time that passes while one looks.
+//! The clock of the window: advances the time of the sun.
 
 use chrono::{Datelike, TimeDelta};
 
@@ -6,7 +6,7 @@ use crate::daylight::place::Place;
 use crate::daylight::sun_position::YEARS;
 use crate::options::SunInput;
 
-/// Speeds to choose from: seconds of the sun's time per second of the user's.
+/// Selectable speeds, and their labels: seconds of sun time per second of real time.
 pub(super) const SPEEDS: [(f64, &str); 4] = [
     (60.0, "1 min/s"),
     (600.0, "10 min/s"),
@@ -14,11 +14,11 @@ pub(super) const SPEEDS: [(f64, &str); 4] = [
     (86_400.0, "1 day/s"),
 ];
 
-/// Whether time passes, and how fast.
+/// State of the clock.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Clock {
     runs: bool,
-    /// Seconds of the sun's time per second of the user's.
+    /// Speed, seconds of sun time per second of real time.
     pub(super) speed: f64,
 }
 
@@ -42,12 +42,12 @@ impl Clock {
         self.runs
     }
 
-    /// Whether it runs and moves this sun: a direction has no time.
+    /// Whether it runs and moves this sun. A sun given as a direction has no time.
     pub(super) fn is_running(&self, sun: &SunInput) -> bool {
         self.runs && !matches!(sun, SunInput::Direction { .. })
     }
 
-    /// Moves the sun by `seconds` of the user's time.
+    /// Advances the sun by `seconds` of real time.
     pub(super) fn advance(&self, sun: &mut SunInput, seconds: f64) {
         if self.is_running(sun) {
             shift(sun, seconds * self.speed);
@@ -55,8 +55,8 @@ impl Clock {
     }
 }
 
-/// Moves the sun's time by `seconds`, within [`YEARS`]; a direction stays. A clock that shows the time of the place changes to
-/// and from summer time.
+/// Shifts the time of the sun by `seconds`, within [`YEARS`]; a sun given as a direction is unchanged. If the UTC offset is that
+/// of the place, it follows daylight saving time.
 pub(in crate::commands::view) fn shift(sun: &mut SunInput, seconds: f64) {
     match sun {
         SunInput::Place {
@@ -133,7 +133,7 @@ mod tests {
             shifted("2026-10-24T15:00:00+02:00", day),
             "2026-10-25T14:00:00+01:00"
         );
-        // Another clock goes on as it is.
+        // Any other UTC offset is kept.
         assert_eq!(
             shifted("2026-10-24T15:00:00+05:00", day),
             "2026-10-25T15:00:00+05:00"

@@ -1,4 +1,4 @@
-//! The legend of false colours.
+//! The false-colour legend.
 
 use egui::{Align2, Color32, FontId, Mesh, Rect, Sense, Ui, pos2, vec2};
 
@@ -8,10 +8,10 @@ use crate::options::Options;
 
 /// Size of the bar, points.
 const BAR: [f32; 2] = [18.0, 220.0];
-/// Colour steps in the bar.
+/// Number of colour steps in the bar.
 const STEPS: u32 = 48;
 
-/// Of the false colours that are shown, when they are.
+/// Shows the legend if false colours are on.
 pub(super) fn show(ui: &Ui, settings: &Options) {
     let Some(quantity) = settings.false_colour.filter(|q| settings.show.holds(*q)) else {
         return;
@@ -36,12 +36,12 @@ pub(super) fn show(ui: &Ui, settings: &Options) {
     });
 }
 
-/// Height of a share of the range: the largest value is on top.
+/// Window y coordinate of a fraction of the range. The largest value is at the top.
 fn at(bar: Rect, share: f64) -> f32 {
     bar.bottom() - bar.height() * share as f32
 }
 
-/// The colours from the bottom to the top.
+/// The colour bar, from bottom to top.
 fn colours(bar: Rect, range: Range) -> Mesh {
     let mut mesh = Mesh::default();
     for step in 0..=STEPS {

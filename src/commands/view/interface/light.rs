@@ -12,7 +12,7 @@ use crate::daylight::sky::Conditions;
 /// Shadow map resolutions to choose from, texels.
 const SHADOW_SIZES: [u32; 4] = [1024, 2048, 4096, 8192];
 
-/// Estimated error of the sky irradiance, cached by the conditions that it belongs to.
+/// Estimated error of the sky irradiance, cached with the conditions it was computed for.
 #[derive(Default)]
 pub(super) struct Readout {
     estimate: Option<(Conditions, ErrorEstimate)>,

@@ -1,4 +1,4 @@
-//! Messages over the picture: notices, errors, progress of loading.
+//! Messages over the image: notices, errors, loading progress.
 
 use std::time::{Duration, Instant};
 
@@ -7,23 +7,23 @@ use egui::{Align2, ProgressBar, RichText, Ui};
 use super::corner;
 use crate::commands::view::style;
 
-/// How long a notice is shown.
+/// Display time of a notice.
 const SHOWN: Duration = Duration::from_secs(5);
-/// Most messages at a time; older ones are dropped.
+/// Largest number of messages; older ones are dropped.
 const MOST: usize = 6;
 
-/// One message.
+/// A message.
 struct Note {
     text: String,
-    /// When it disappears; `None` for errors, which stay until dismissed.
+    /// When it disappears. `None` for errors, which stay until dismissed.
     until: Option<Instant>,
 }
 
-/// The messages that are shown.
+/// The messages on screen.
 pub(in crate::commands::view) struct Notes {
     notes: Vec<Note>,
     is_quiet: bool,
-    /// Progress of loading, 0..1, and its stage.
+    /// Loading progress, 0..1, and stage.
     pub(super) loading: Option<(f32, &'static str)>,
 }
 
@@ -36,7 +36,7 @@ impl Notes {
         }
     }
 
-    /// Shows a notice for some seconds.
+    /// Shows a notice for a few seconds.
     pub(in crate::commands::view) fn say(&mut self, text: &str) {
         if !self.is_quiet {
             self.add(text, Some(Instant::now() + SHOWN));
@@ -64,7 +64,7 @@ impl Notes {
         self.notes.clear();
     }
 
-    /// Shows the messages; only errors and progress when `all` is false.
+    /// Shows the messages, or only errors and progress if `all` is false.
     pub(super) fn show(&mut self, ui: &Ui, all: bool) {
         let now = Instant::now();
         self.notes

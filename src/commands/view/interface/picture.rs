@@ -1,4 +1,4 @@
-//! The quantity shown, false colours, tone curve, exposure.
+//! Image settings: displayed quantity, false colours, tone curve, exposure.
 
 use std::ops::RangeInclusive;
 
@@ -9,9 +9,9 @@ use crate::commands::view::document::Document;
 use crate::commands::view::keys::Action;
 use crate::options::{Choice, Options, Quantity, Range, Show};
 
-/// Range of the exposure slider: dusk to snow in the sun.
+/// Range of the exposure slider, EV100: from dusk to sunlit snow.
 const EV100_RANGE: RangeInclusive<f64> = -4.0..=18.0;
-/// Initial exposure of the slider when automatic exposure is turned off: a sunny day.
+/// Exposure when automatic exposure is turned off, EV100: a sunny day.
 const SUNNY_EV100: f64 = 14.0;
 
 pub(super) fn show(ui: &mut Ui, document: &mut Document, requests: &mut Vec<UiRequest>) {
@@ -32,7 +32,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, requests: &mut Vec<UiRe
     });
 }
 
-/// Off, or of which quantity and over which range.
+/// False-colour selection: off, or a quantity and a range.
 fn false_colours(ui: &mut Ui, settings: &mut Options) {
     let before = settings.false_colour;
     let name = |q: Option<Quantity>| q.map_or("off", crate::options::name);
@@ -46,7 +46,7 @@ fn false_colours(ui: &mut Ui, settings: &mut Options) {
         });
     if settings.false_colour != before {
         settings.false_colour_range = None;
-        // Each colours one quantity.
+        // Each kind of false colour implies the displayed quantity.
         settings.show = match settings.false_colour {
             Some(Quantity::Illuminance) => Show::Irradiance,
             _ => Show::Beauty,
@@ -57,7 +57,7 @@ fn false_colours(ui: &mut Ui, settings: &mut Options) {
     }
 }
 
-/// The ends of a range as powers of ten.
+/// Edits the ends of a range as powers of ten.
 fn range(ui: &mut Ui, range: &mut Option<Range>, quantity: Quantity) {
     let shown = range.unwrap_or(quantity.daytime());
     let (mut min, mut max) = (shown.min.log10(), shown.max.log10());
@@ -74,7 +74,7 @@ fn range(ui: &mut Ui, range: &mut Option<Range>, quantity: Quantity) {
     });
 }
 
-/// An editable power of ten; returns whether it changed.
+/// Edits a value as a power of ten; returns whether it changed.
 fn power(ui: &mut Ui, value: &mut f64, range: RangeInclusive<f64>) -> bool {
     let power = DragValue::new(value)
         .speed(0.05)

@@ -1,4 +1,4 @@
-//! Read-out under the pointer: luminance of the pixel, illuminance of its surface.
+//! Read-out of the pixel under the pointer: its luminance, and the illuminance of its surface.
 
 use egui::{Align2, Grid, Ui};
 use glam::{DVec3, Vec2, Vec3};
@@ -10,18 +10,18 @@ use crate::passes::light::probe::{Reading, SurfaceReading};
 use crate::passes::view::View;
 use crate::scene::Scene;
 
-/// The read-out of a pixel, and the frame it is of.
+/// The read-out of a pixel, and the frame it was taken from.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Probe {
     pixel: Option<[u32; 2]>,
     frame: u64,
     reading: Option<Reading>,
-    /// Position of the surface, metres.
+    /// Surface position, metres.
     point: Option<DVec3>,
 }
 
 impl Probe {
-    /// Whether the read-out is of this pixel and, once the picture is at rest, of the newest frame.
+    /// Whether the read-out is of this pixel and, once the image is at rest, of the newest frame.
     pub(super) fn is_fresh(&self, pixel: Option<[u32; 2]>, document: Option<&Document>) -> bool {
         let is_newest = document.is_none_or(|d| !d.is_at_rest() || d.frames() == self.frame);
         pixel == self.pixel && (pixel.is_none() || is_newest)
@@ -98,7 +98,7 @@ fn about(ui: &mut Ui, surface: &SurfaceReading, scene: &Scene) {
     row(ui, "depth", format!("{:.2} m", surface.distance));
 }
 
-/// Position of the surface of a reading, metres.
+/// Surface position of a reading, metres.
 fn point(document: &Document, reading: Reading) -> Option<DVec3> {
     let surface = reading.surface?;
     let size = document.frame().settings().size;

@@ -1,4 +1,4 @@
-//! Compass and sun path over the picture, as seen from the camera.
+//! Compass and sun path over the image, seen from the camera.
 
 use chrono::{DateTime, FixedOffset, NaiveDate};
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2};
@@ -24,7 +24,7 @@ pub(super) struct SkyDome {
 }
 
 impl SkyDome {
-    /// Turns both overlays on or off.
+    /// Toggles both overlays.
     pub(super) fn toggle(&mut self) {
         let on = !(self.compass || self.sun_path);
         (self.compass, self.sun_path) = (on, on);
@@ -53,7 +53,7 @@ impl SkyDome {
         }
     }
 
-    /// The sun path at the place; `None` when the sun has no place.
+    /// The sun path at the place; `None` when the sun is given without one.
     fn path(&mut self, document: &Document) -> Option<&SunPath> {
         let settings = &document.job.settings;
         let SunInput::Place {
@@ -86,7 +86,7 @@ fn path_of(observer: &Observer, when: DateTime<FixedOffset>) -> Option<SunPath> 
     SunPath::new(observer, when).ok()
 }
 
-/// Projects directions (points at infinity) to the window.
+/// Projects directions (points at infinity) onto the window.
 struct Lens {
     clip_from_world: Mat4,
     screen: Rect,
@@ -102,7 +102,7 @@ impl Lens {
         }
     }
 
-    /// Position of a direction in the window; `None` behind the camera.
+    /// Window position of a direction; `None` behind the camera.
     fn project(&self, direction: Vec3) -> Option<Pos2> {
         let clip = self.clip_from_world * direction.extend(0.0);
         if clip.w <= 1e-3 {
@@ -119,7 +119,7 @@ impl Lens {
                 self.project(pair[1].as_vec3()),
             );
             if let (Some(from), Some(to)) = ends {
-                // A dark edge keeps the line readable on a bright sky.
+                // A dark outline keeps the line readable on a bright sky.
                 let edge = Stroke::new(stroke.width + 1.5, Color32::from_black_alpha(60));
                 painter.line_segment([from, to], edge);
                 painter.line_segment([from, to], stroke);
@@ -140,7 +140,7 @@ fn text(painter: &Painter, at: Pos2, text: &str, color: Color32) {
     painter.text(at, Align2::CENTER_CENTER, text, font, color);
 }
 
-/// The horizon with the compass points.
+/// Draws the horizon with the compass points.
 fn horizon(painter: &Painter, lens: &Lens) {
     let circle: Line = (0..=72)
         .map(|i| direction(f64::from(i) * 5.0, 0.0))
@@ -193,7 +193,7 @@ fn sun(painter: &Painter, lens: &Lens, toward: DVec3) {
     }
 }
 
-/// A compass rose at the bottom of the picture: up is the viewing direction, the dot is the sun.
+/// Draws a compass rose at the bottom of the image. Up is the viewing direction; the dot is the sun.
 fn compass(painter: &Painter, screen: Rect, document: &Document) {
     let centre = pos2(screen.center().x, screen.bottom() - COMPASS - 20.0);
     painter.circle_filled(centre, COMPASS + 12.0, Color32::from_black_alpha(110));
@@ -217,7 +217,7 @@ fn compass(painter: &Painter, screen: Rect, document: &Document) {
         text(painter, at(azimuth, COMPASS), name, color);
     }
     let sun = &document.job.sun;
-    // The zenith is in the middle, the horizon on the ring.
+    // The zenith is at the centre, the horizon on the ring.
     let down = (1.0 - sun.apparent_elevation_deg / 90.0).clamp(0.0, 1.0) as f32;
     let up = sun.apparent_elevation_deg > 0.0;
     let color = if up { style::ACCENT } else { Color32::GRAY };

@@ -1,4 +1,4 @@
-//! Scene, camera, and progress of the picture.
+//! Panel sections for scene, camera and progress.
 
 use egui::{Slider, Ui};
 
@@ -7,7 +7,7 @@ use super::timings::TimingChart;
 use crate::commands::view::document::Document;
 use crate::commands::view::keys::Action;
 
-/// The top of the panel: the name of the scene and the progress of its picture.
+/// Top of the panel: scene name and progress.
 pub(super) fn header(ui: &mut Ui, document: &Document, requests: &mut Vec<UiRequest>) {
     ui.horizontal(|ui| {
         ui.heading(document.title());

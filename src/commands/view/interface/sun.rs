@@ -11,20 +11,20 @@ use crate::daylight::place::{Axis, Place, Zone};
 use crate::daylight::sun_position::{SunEvents, SunPosition, YEARS, sun_events};
 use crate::options::{Options, SunInput};
 
-/// Most cities that a search lists.
+/// Largest number of search results.
 const MAX_FOUND: usize = 8;
-/// A place within this distance of a city is named after it, km.
+/// Distance within which a place is named after a city, km.
 const NEAR_KM: f64 = 30.0;
 
-/// The field in which a place is searched.
+/// The place search field.
 #[derive(Debug, Default)]
 pub(super) struct PlaceField {
     text: String,
-    /// Sunrise, noon and sunset of the day for which they were computed last.
+    /// Sunrise, noon and sunset, cached with the day they were computed for.
     events: Option<(Day, SunEvents)>,
 }
 
-/// A calendar day somewhere: date, UTC offset (s), latitude and longitude (bits).
+/// A calendar day at a place: date, UTC offset (s), latitude and longitude (bits).
 type Day = (NaiveDate, i32, [u64; 2]);
 
 pub(super) fn show(
@@ -91,7 +91,7 @@ pub(super) fn show(
     ));
 }
 
-/// Switches between the three kinds of input, keeping what they share.
+/// Switches between the three kinds of input, keeping what they have in common.
 fn kind(ui: &mut Ui, settings: &mut Options, sun: &SunPosition) {
     let now = std::mem::discriminant(&settings.sun);
     let place = SunInput::default();
@@ -114,7 +114,7 @@ fn kind(ui: &mut Ui, settings: &mut Options, sun: &SunPosition) {
     });
 }
 
-/// The same day, time and latitude in solar time.
+/// Converts to solar time with the same day, time and latitude.
 fn solar_of(sun: &SunInput) -> SunInput {
     match *sun {
         SunInput::Place {
@@ -137,7 +137,7 @@ fn solar_of(sun: &SunInput) -> SunInput {
     }
 }
 
-/// What a text in the field may mean: the coordinates that it holds, the cities that it finds, or the one spelled most like it.
+/// Interpretations of the text in the field: its coordinates, the matching cities, or else the city with the closest spelling.
 fn suggestions(text: &str) -> Vec<(String, Place)> {
     if text.trim().is_empty() {
         return Vec::new();
@@ -165,7 +165,7 @@ fn suggestions(text: &str) -> Vec<(String, Place)> {
 }
 
 impl PlaceField {
-    /// The field with its suggestions, of which Enter takes the first, and the coordinates.
+    /// The search field with its suggestions (Enter accepts the first), and the coordinates.
     fn show(
         &mut self,
         ui: &mut Ui,
@@ -190,7 +190,7 @@ impl PlaceField {
         }
         if let Some(place) = chosen {
             (*latitude, *longitude) = (place.latitude, place.longitude);
-            // The clock shows the same time, there.
+            // Keeps the clock time and takes the new place's time zone.
             *when = place.zone().nearest_moment(when.naive_local());
             self.text.clear();
         }
@@ -200,7 +200,7 @@ impl PlaceField {
         });
     }
 
-    /// Sunrise, noon and sunset of the day; computed once a day.
+    /// Sunrise, noon and sunset of the day, computed once per day.
     fn events(&mut self, when: DateTime<FixedOffset>, place: Place) -> Option<SunEvents> {
         let Place {
             latitude,
@@ -229,7 +229,7 @@ fn coordinate(ui: &mut Ui, degrees: &mut f64, limit: f64, axis: Axis) {
     ui.add(value);
 }
 
-/// The day of the year on a slider, and the year.
+/// Sliders for day of the year and year.
 fn date(ui: &mut Ui, when: &mut DateTime<FixedOffset>, zone: Zone) {
     let local = when.naive_local();
     let (mut ordinal, mut year) = (local.ordinal(), local.year());
@@ -242,14 +242,14 @@ fn date(ui: &mut Ui, when: &mut DateTime<FixedOffset>, zone: Zone) {
         changed |= ui.add(DragValue::new(&mut year).range(YEARS)).changed();
         ui.weak(format!("year, UTC{}", when.offset()));
     });
-    // The last day of a leap year is the last of another.
+    // Day 366 exists only in leap years; otherwise use day 365.
     let date = NaiveDate::from_yo_opt(year, ordinal).or(NaiveDate::from_yo_opt(year, 365));
     if changed && let Some(date) = date {
         set_local(when, date.and_time(local.time()), zone);
     }
 }
 
-/// Sets date and time. A clock that shows the time of the place changes to and from summer time; another keeps its offset.
+/// Sets date and time. If the UTC offset is that of the place, it follows daylight saving time; otherwise it is kept.
 fn set_local(when: &mut DateTime<FixedOffset>, local: NaiveDateTime, zone: Zone) {
     let offset = *when.offset();
     *when = if zone.has_offset_of(*when) {
@@ -259,7 +259,7 @@ fn set_local(when: &mut DateTime<FixedOffset>, local: NaiveDateTime, zone: Zone)
     };
 }
 
-/// The time of day on a slider with marks at sunrise and sunset.
+/// The time-of-day slider, with marks at sunrise and sunset.
 fn time_of_day(
     ui: &mut Ui,
     when: &mut DateTime<FixedOffset>,
@@ -289,9 +289,9 @@ fn time_of_day(
     }
 }
 
-/// A tick under the slider's rail at a time of the day.
+/// Draws a tick below the slider's rail at a time of day.
 fn mark(ui: &Ui, response: &Response, seconds: u32) {
-    // The centre of the handle stays its radius away from both ends of the rail.
+    // The centre of the handle stays one radius away from both ends of the rail.
     let radius = response.rect.height() / 2.5;
     let width = ui.spacing().slider_width;
     let x = response.rect.left() + radius + (width - 2.0 * radius) * seconds as f32 / 86_400.0;
@@ -304,7 +304,7 @@ fn mark(ui: &Ui, response: &Response, seconds: u32) {
     ));
 }
 
-/// Starts and stops the clock, and sets its speed.
+/// Buttons that start, stop and set the speed of the clock.
 fn clock_buttons(ui: &mut Ui, clock: &mut Clock) {
     ui.horizontal(|ui| {
         let text = if clock.is_on() { "stop" } else { "play" };
@@ -352,7 +352,7 @@ mod tests {
         assert_eq!(names("a").len(), MAX_FOUND);
     }
 
-    /// The place and the moment after `text` and Enter were typed into the field.
+    /// Place and time after typing `text` and Enter into the field.
     fn entered(text: &str) -> (String, String) {
         let context = egui::Context::default();
         let (mut field, mut place) = (PlaceField::default(), Place::default());

@@ -1,4 +1,4 @@
-//! Live chart of the time of each pass.
+//! Live chart of pass times.
 
 use egui::{Align2, Color32, Grid, Rect, Sense, Ui, vec2};
 
@@ -13,12 +13,12 @@ const NEWEST: f64 = 0.2;
 /// Length of the longest bar, points.
 const BAR: f32 = 150.0;
 
-/// Mean times of the recent passes.
+/// Running means of the pass times.
 #[derive(Default)]
 pub(super) struct TimingChart {
     pub(super) is_open: bool,
     passes: Vec<PassTime>,
-    /// Bytes of device memory in use.
+    /// Device memory in use, bytes.
     device_bytes: u64,
 }
 
@@ -64,7 +64,7 @@ impl TimingChart {
             });
             let sum: f64 = self.passes.iter().map(|p| p.ms).sum();
             ui.label(format!("sum {sum:.1} ms"));
-            // Only drawn frames are timed: start a new average.
+            // Only drawn frames are timed, so restart the average.
             if ui.button("measure").clicked() {
                 document.start_over();
             }

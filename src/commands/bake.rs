@@ -26,10 +26,10 @@ impl Map {
     }
 }
 
-/// Computes and writes.
+/// Computes the map and writes it with its description.
 ///
 /// # Errors
-/// Options that make no sense, or files that cannot be written; older ones are left alone then.
+/// Invalid options, or files that cannot be written; existing files are then left unchanged.
 pub fn run(args: &BakeArgs, mut options: OptionValues) -> Result<()> {
     exact_by_default(&mut options);
     let light = Light::new(&options)?;

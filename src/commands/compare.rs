@@ -1,4 +1,4 @@
-//! `skylight compare`: the difference of two pictures in numbers and as a picture.
+//! `skylight compare`: the difference between two images, as figures and as an image.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -10,10 +10,10 @@ use crate::compare::{
 use crate::error::{Error, Result};
 use crate::output::{Effort, Encoding, check_writable, print, write_png};
 
-/// Compares and prints.
+/// Compares two images and prints the figures.
 ///
 /// # Errors
-/// A picture that cannot be read, or two that do not belong together.
+/// An image that cannot be read, or two that cannot be compared.
 pub fn run(args: &CompareArgs) -> Result<()> {
     if let Some(path) = &args.diff {
         check_writable(path)?;
@@ -53,7 +53,7 @@ fn report(s: &Statistics) -> String {
     )
 }
 
-/// FLIP where the mask holds, in words; gives the map for the difference picture.
+/// Appends FLIP within the mask to `text`, and returns the map for the difference image.
 fn flip_map(
     args: &CompareArgs,
     [reference, test]: [&Picture; 2],

@@ -7,7 +7,7 @@ use crate::output::print;
 /// Prints one block per device.
 ///
 /// # Errors
-/// When there is no Vulkan, or no device.
+/// Fails without Vulkan or without any device.
 pub fn run(without: &[Optional]) -> Result<()> {
     let devices = devices(without)?;
     if devices.is_empty() {

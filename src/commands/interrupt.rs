@@ -1,13 +1,13 @@
-//! Ctrl-C while samples are drawn: the first writes the picture so far, the second ends the program.
+//! Ctrl-C while samples are drawn: the first press writes the image so far, the second ends the program.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static IS_INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// Exit code after an interrupt, by the convention of shells.
+/// Exit code after an interrupt, by shell convention.
 const EXIT_INTERRUPTED: i32 = 130;
 
-/// Installs the handler. Where that fails, Ctrl-C ends the program as before.
+/// Installs the handler. If that fails, Ctrl-C ends the program at once.
 pub(super) fn listen() {
     let listening = ctrlc::set_handler(|| {
         if IS_INTERRUPTED.swap(true, Ordering::Relaxed) {

@@ -1,4 +1,4 @@
-//! What render, view and bench share: from options to a scene, a daylight and the settings of a frame.
+//! Shared by render, view and bench: resolves options into a scene, a daylight and frame settings.
 
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
@@ -26,10 +26,10 @@ use crate::passes::sky::irradiance::IrradianceSettings;
 use crate::passes::sky::route::CubeRoute;
 use crate::scene::{self, Camera, LoadOptions, Loaded, Scene};
 
-/// Edge of a face of the sky cube with `--preset lecture`, texels.
+/// Edge of a sky cube face with `--preset lecture`, texels.
 const LECTURE_SKY_EDGE: u32 = 512;
 
-/// How a scene is to be loaded: as the options say, by way of the cache.
+/// Load options of a scene, with the cache folder unless `--no-cache` is set.
 pub fn load_options(options: &Options) -> LoadOptions {
     let cache = cache_folder().filter(|_| !options.no_cache);
     LoadOptions {
@@ -38,12 +38,12 @@ pub fn load_options(options: &Options) -> LoadOptions {
     }
 }
 
-/// Where processed scenes and pipelines are kept: the user's folder for files that may be deleted at any time.
+/// Folder of processed scenes and pipeline caches, in the user's cache folder.
 fn cache_folder() -> Option<PathBuf> {
     Some(dirs::cache_dir()?.join("skylight"))
 }
 
-/// How a device is to be opened.
+/// Options for opening a device.
 pub fn context_options(options: &Options) -> ContextOptions {
     ContextOptions {
         device: options.device.clone(),
@@ -55,7 +55,7 @@ pub fn context_options(options: &Options) -> ContextOptions {
     }
 }
 
-/// Reports on stderr which fallbacks a device needs.
+/// Reports on stderr which fallbacks the device needs.
 pub fn notice(context: &Context) {
     let device = context.summary();
     if CubeRoute::of(context) == CubeRoute::Compute {
@@ -66,9 +66,9 @@ pub fn notice(context: &Context) {
     }
 }
 
-/// A scene in a daylight, and how it is drawn.
+/// A scene in a daylight, with its camera and options.
 pub struct Job {
-    /// The options of the picture.
+    /// The options of the image.
     pub settings: Options,
     /// The model.
     pub scene: Scene,
@@ -82,12 +82,12 @@ pub struct Job {
     pub name: String,
     /// Path of the scene; `None` for the default bundled scene.
     pub path: Option<PathBuf>,
-    /// The options of its file; its model is in `scene`.
+    /// The options of the scene file. Its model has been moved to `scene`.
     pub loaded: Loaded,
 }
 
 impl Job {
-    /// Loads the scene and resolves the options. Warnings go to stderr unless `--quiet` is set.
+    /// Loads the scene and resolves the options. Prints warnings to stderr unless `--quiet` is set.
     ///
     /// # Errors
     /// A scene that cannot be read, or invalid options.
@@ -102,7 +102,7 @@ impl Job {
         Ok(job)
     }
 
-    /// Resolves the options over those of a loaded scene.
+    /// Resolves the user's options over those of a loaded scene.
     ///
     /// # Errors
     /// Invalid options.
@@ -125,7 +125,7 @@ impl Job {
         })
     }
 
-    /// Warnings about the scene and its light, a line each.
+    /// Warnings about the scene and its light, one line each.
     pub fn warnings(&self) -> impl Iterator<Item = &String> {
         self.scene.warnings.iter().chain(&self.daylight.warnings)
     }
@@ -133,23 +133,23 @@ impl Job {
     /// Updates sun and daylight after a change of the options.
     ///
     /// # Errors
-    /// A moment that the ephemeris does not cover; the light is unchanged then.
+    /// A moment that the ephemeris does not cover; the light is then unchanged.
     pub fn relight(&mut self) -> Result<()> {
         self.sun = sun_position(&self.settings)?;
         self.daylight = Daylight::new(&conditions(&self.settings, &self.sun));
         Ok(())
     }
 
-    /// As [`Job::new`], while another thread opens the device.
+    /// Like [`Job::new`], while another thread opens the device.
     ///
     /// # Errors
-    /// As [`Job::new`], or no such device.
+    /// See [`Job::new`]; also fails when there is no such device.
     pub fn on_device(path: Option<&Path>, user: &OptionValues) -> Result<(Self, Arc<Context>)> {
         let wanted = context_options(&user.alone()?);
         let (job, context) = thread::scope(|scope| {
             let context = scope.spawn(|| Context::new(&wanted));
             let job = Self::new(path, user);
-            // A panic there is one here.
+            // A panic of the other thread is propagated.
             (
                 job,
                 context.join().unwrap_or_else(|fault| resume_unwind(fault)),
@@ -162,7 +162,7 @@ impl Job {
         Ok((job, context))
     }
 
-    /// The settings of the frame.
+    /// The frame settings for displaying `show`.
     pub fn frame_settings(&self, show: Show, precision: Precision) -> FrameSettings {
         let s = &self.settings;
         let mut set = FrameSettings {
@@ -218,7 +218,7 @@ impl Job {
     fn irradiance_settings(&self) -> IrradianceSettings {
         let s = &self.settings;
         let default = IrradianceSettings::default();
-        // The course framework takes five samples a frame.
+        // The course framework takes five samples per frame.
         let lecture = s.preset == Some(Preset::Lecture);
         let samples_per_pass = if lecture { 5 } else { default.samples_per_pass };
         let method = s.irradiance;
@@ -250,18 +250,18 @@ impl Job {
     /// The command line that renders this view with these options.
     ///
     /// # Errors
-    /// As [`Options::command_line`].
+    /// See [`Options::command_line`].
     pub fn command_line(&self) -> Result<String> {
         let options = self.options_in_view();
         Ok(options.command_line(self.path.as_deref(), &self.loaded)?)
     }
 
-    /// The options, with the camera that is in use.
+    /// The options with the current camera.
     pub fn options_in_view(&self) -> Options {
         self.settings.with_camera(&self.camera)
     }
 
-    /// Metadata of the picture's file: the options that render it again, and figures of its light.
+    /// Metadata for the image file: the options that reproduce the image, and figures of its light.
     pub fn metadata(&self) -> Vec<(String, String)> {
         let rgb = |v: glam::DVec3| format!("{},{},{}", v.x, v.y, v.z);
         let mut list: Vec<(String, String)> = vec![
@@ -287,7 +287,7 @@ impl Job {
                 format!("{} lux (RGB)", rgb(self.daylight.sky_irradiance_up)),
             ),
         ];
-        // There is none where the scene sets an option that cannot be unset.
+        // There is no command line when the scene sets an option that cannot be unset.
         list.extend(
             self.command_line()
                 .ok()

@@ -1,4 +1,4 @@
-//! From options to a sun and a daylight: what every command begins with. `sky` and `bake` need nothing else.
+//! Resolves options into a sun position and a daylight, as every command needs. `sky` and `bake` need nothing else.
 
 use crate::daylight::sky::{Conditions, Daylight};
 use crate::daylight::sun_position::{SunPosition, lecture};
@@ -8,7 +8,7 @@ use crate::scene::{Loaded, Scene};
 
 /// A daylight without a scene.
 pub struct Light {
-    /// The options; those of pictures have no effect here.
+    /// The options; those that concern images have no effect here.
     pub settings: Options,
     /// Position of the sun.
     pub sun: SunPosition,
@@ -43,7 +43,7 @@ impl Light {
     }
 }
 
-/// Position of the sun by the options; pictures use its apparent elevation.
+/// Position of the sun according to the options. Images use its apparent elevation.
 pub fn sun_position(settings: &Options) -> Result<SunPosition> {
     let mut sun = match settings.sun {
         SunInput::Place {
@@ -56,7 +56,7 @@ pub fn sun_position(settings: &Options) -> Result<SunPosition> {
             hours,
             latitude,
         } => lecture(day, hours, latitude),
-        // The user names the apparent direction: no refraction on top.
+        // A sun direction given by the user is apparent: no refraction is added.
         SunInput::Direction {
             azimuth_deg,
             elevation_deg,

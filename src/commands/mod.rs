@@ -1,4 +1,4 @@
-//! The commands of the program: drivers of the same [`Frame`](crate::frame::Frame).
+//! The program's commands. Those that draw all use the same [`Frame`](crate::frame::Frame).
 
 mod bake;
 mod bench;
@@ -59,13 +59,13 @@ pub fn run(command: Command) -> Result<()> {
     }
 }
 
-/// A bar on a terminal, nothing in a pipe or when there is but one step.
+/// A progress bar; hidden in a pipe, when `quiet`, or with fewer than two steps.
 fn progress(steps: u64, unit: &'static str, quiet: bool) -> ProgressBar {
     if quiet || steps < 2 {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(steps);
-    // The template is constant; were it wrong, the default style would do.
+    // The template is constant and valid; a fault in it would only leave the default style.
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} {msg}, {eta} left") {
         bar.set_style(style);
     }

@@ -1,4 +1,4 @@
-//! Motion of camera and sun while frames are timed.
+//! Camera and sun motion during benchmarks.
 
 use std::borrow::Cow;
 
@@ -10,20 +10,20 @@ use crate::cli::Motion;
 use crate::daylight::sky::Daylight;
 use crate::scene::Camera;
 
-/// Turn of the camera about its target between two frames, radians: a slow walk around.
+/// Camera rotation about its target per frame, radians: the speed of a slow walk.
 const CAMERA_STEP: f32 = 0.002;
-/// Frames after which the camera turns back, so that it stays near the requested view.
+/// Number of frames after which the rotation reverses, so that the camera stays near the requested view.
 const CAMERA_SWING: u32 = 64;
-/// Movement of the sun per frame, degrees of azimuth: about that of a minute.
+/// Change of the sun's azimuth per frame, degrees: about one minute of time.
 const SUN_STEP_DEG: f64 = 0.25;
 
 impl Motion {
-    /// The camera of frame number `index`.
+    /// The camera at frame `index`.
     pub fn camera(self, camera: &Camera, index: u32) -> Camera {
         if self == Self::None {
             return *camera;
         }
-        // There and back again: 0 1 2 .. 63 64 63 .. 1 0.
+        // Back and forth: 0 1 2 .. 63 64 63 .. 1 0.
         let phase = index % (2 * CAMERA_SWING);
         let step = phase.min(2 * CAMERA_SWING - phase);
         let turn = Quat::from_rotation_y(CAMERA_STEP * step as f32);
@@ -33,7 +33,7 @@ impl Motion {
         }
     }
 
-    /// The daylight of frame number `index`.
+    /// The daylight at frame `index`.
     pub fn daylight(self, job: &Job, index: u32) -> Cow<'_, Daylight> {
         if self != Self::Sun {
             return Cow::Borrowed(&job.daylight);
@@ -43,7 +43,7 @@ impl Motion {
         Cow::Owned(Daylight::new(&conditions(&job.settings, &sun)))
     }
 
-    /// Name of the row of whole frames.
+    /// Row name of the whole frame in reports.
     pub fn frame_name(self) -> &'static str {
         match self {
             Self::None => "whole frame, nothing moves",

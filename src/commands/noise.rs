@@ -1,31 +1,31 @@
-//! Estimate of the standard error of the mean of frames, from the frames themselves.
+//! Estimates the standard error of the mean of frames from the frames themselves.
 //!
 //! Batch means (Conway 1963, "Some Tactical Problems in Digital Simulation"): the frames so far are split into a few consecutive
 //! batches of equal size; the variance of the batch means gives the standard error of the overall mean. The variance of single
-//! frames would overestimate it: a low-discrepancy sequence converges faster than random samples. A batch is a stretch of the
-//! same sequence, so most of that gain is counted; the gain between batches is not. All pixels share the directions of the sky,
-//! so with few frames the estimate is itself noisy.
+//! frames would overestimate it, since a low-discrepancy sequence converges faster than random samples. Each batch is a stretch of
+//! the same sequence, so most of that gain is accounted for; the gain between batches is not. All pixels share the directions of the
+//! sky, so with few frames the estimate is itself noisy.
 
 /// Number of batches at which pairs are merged.
 const MOST_BATCHES: usize = 8;
-/// Fewest batches for an estimate.
+/// Fewest batches that allow an estimate.
 const FEWEST_BATCHES: usize = 4;
-/// Most pixels that the estimate averages over.
+/// Largest number of pixels used for the estimate.
 const MOST_PIXELS: usize = 1 << 20;
-/// Luminance to which pixels are clamped, kcd/m²: only the sun's disc and its reflections are brighter, and a few of their
-/// pixels would outweigh the whole picture.
+/// Luminance to which pixels are clamped, kcd/m². Only the sun's disc and its reflections are brighter; without the clamp a few
+/// of their pixels would outweigh the rest of the image.
 const BRIGHTEST: f32 = 100.0;
 
 /// The estimate for a growing number of frames.
 pub(super) struct Noise {
-    /// Frames in a batch.
+    /// Batch size, frames.
     size: u32,
-    /// Luminance of the mean over the first batch, the first two, the first three ..
+    /// Luminance of the cumulative means: over the first batch, the first two, the first three, and so on.
     means: Vec<Vec<f32>>,
 }
 
 impl Noise {
-    /// Starts without frames.
+    /// Starts with no frames.
     pub(super) fn new() -> Self {
         Self {
             size: 1,
@@ -38,14 +38,14 @@ impl Noise {
         self.size * (self.means.len() as u32 + 1)
     }
 
-    /// Takes the mean of the first [`Noise::next_look`] frames: RGBA, kcd/m².
+    /// Adds the mean of the first [`Noise::next_look`] frames: RGBA, kcd/m².
     pub(super) fn look(&mut self, mean: &[[f32; 4]]) {
         let step = mean.len().div_ceil(MOST_PIXELS).max(1);
         let luminance = |t: &[f32; 4]| 0.2126 * t[0] + 0.7152 * t[1] + 0.0722 * t[2];
         let seen = mean.iter().step_by(step).map(luminance);
         self.means.push(seen.map(|l| l.min(BRIGHTEST)).collect());
         if self.means.len() == MOST_BATCHES {
-            // The means of the first two batches, of the first four..
+            // Merges pairs of batches: keeps the means over the first two, the first four, and so on.
             let mut keep = false;
             self.means.retain(|_| {
                 keep = !keep;
@@ -55,8 +55,8 @@ impl Noise {
         }
     }
 
-    /// Standard error of the newest mean (root mean square over the pixels), relative to the mean luminance; `None` with too few
-    /// batches, 0 for a black picture.
+    /// Standard error of the newest mean (root mean square over the pixels), relative to the mean luminance. `None` with too few
+    /// batches, 0 for a black image.
     pub(super) fn relative_error(&self) -> Option<f64> {
         let count = self.means.len();
         let newest = self.means.last().filter(|_| count >= FEWEST_BATCHES)?;
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
     use crate::daylight::sampling::{r2, rnd, tea};
 
-    /// Estimates after each look, by frames whose pixel `i` is `frame(index, i)`; with the number of frames.
+    /// Estimates after each look, with the number of frames. Pixel `i` of a frame is `frame(index, i)`.
     fn estimates(frames: u32, pixels: usize, frame: impl Fn(u32, usize) -> f32) -> Vec<(u32, f64)> {
         let (mut noise, mut sums, mut list) = (Noise::new(), vec![0.0f64; pixels], Vec::new());
         for index in 0..frames {
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn random_frames_have_their_standard_error() {
-        // Uniform over 0..2: mean 1, variance 1/3.
+        // Uniform in 0..2: mean 1, variance 1/3.
         let random = |index: u32, pixel: usize| {
             let mut state = tea::<16>(index, pixel as u32);
             2.0 * rnd(&mut state) as f32
@@ -166,7 +166,7 @@ mod tests {
             0 => 1e6 * (index % 2) as f32,
             _ => 5.0,
         };
-        // Once a batch is a pair of frames, which is long before the estimate is heeded.
+        // The disc cancels once a batch has two frames, long before the estimate is used.
         let mut list = estimates(64, 10_000, disc);
         list.retain(|e| e.0 > 8);
         assert!(list.len() > 3, "{list:?}");

@@ -1,4 +1,4 @@
-//! The sphere on pictures: equirectangular, as a cross of cube faces, or as six.
+//! The sphere of directions as images: equirectangular, a cross of cube faces, or six faces.
 
 use std::f64::consts::PI;
 use std::thread;
@@ -8,24 +8,24 @@ use glam::DVec3;
 use crate::cli::Layout;
 use crate::daylight::cube;
 
-/// Names of the faces, in Vulkan's order.
+/// Face names in Vulkan's order.
 pub const FACE_NAMES: [&str; 6] = ["px", "nx", "py", "ny", "pz", "nz"];
 
-/// Column and row of each face in a cross, in Vulkan's order. Neighbours meet without a turn.
+/// Column and row of each face in the cross, in Vulkan's order. Adjacent faces are not rotated against each other.
 const CROSS: [(usize, usize); 6] = [(2, 1), (0, 1), (1, 0), (1, 2), (1, 1), (3, 1)];
 
-/// Texels, rows from the top.
+/// An image, rows from the top.
 pub struct Picture {
-    /// Columns and rows.
+    /// Width and height, texels.
     pub size: [u32; 2],
     /// RGB; the fourth component is 1.
     pub texels: Vec<[f32; 4]>,
 }
 
-/// The value in a unit direction; shared by threads.
+/// A function of a unit direction, called from several threads.
 type Value<'v> = &'v (dyn Fn(DVec3) -> DVec3 + Sync);
 
-/// Index and texels of a row.
+/// Index and texels of one row.
 type Row<'t> = (usize, &'t mut [[f32; 4]]);
 
 /// Number of rows that [`draw`] reports progress for; `size` is the edge of a cube face, texels.
@@ -37,7 +37,7 @@ pub fn rows(layout: Layout, size: u32) -> u64 {
     }
 }
 
-/// The pictures of `layout` with `value` at the centre of each texel; `size` is the edge of a cube face, texels.
+/// Draws the images of `layout` with `value` at each texel centre; `size` is the edge of a cube face, texels.
 pub fn draw(layout: Layout, size: u32, value: Value<'_>, done: &(dyn Fn() + Sync)) -> Vec<Picture> {
     let n = size as usize;
     match layout {
@@ -58,7 +58,7 @@ pub fn draw(layout: Layout, size: u32, value: Value<'_>, done: &(dyn Fn() + Sync
     }
 }
 
-/// First row zenith, first column north, azimuth clockwise to the right.
+/// Direction of an equirectangular texel. The first row is the zenith, the first column north; azimuth runs clockwise to the right.
 fn equirect_direction(i: usize, j: usize, width: usize, height: usize) -> DVec3 {
     let azimuth = 2.0 * PI * (i as f64 + 0.5) / width as f64;
     let elevation = PI * (0.5 - (j as f64 + 0.5) / height as f64);
@@ -73,7 +73,7 @@ fn cross_direction(i: usize, j: usize, size: usize) -> Option<DVec3> {
     Some(cube::texel_direction(face, i % size, j % size, size))
 }
 
-/// Rows are distributed over all cores; texels without a direction are 0.
+/// Draws an image, with rows distributed over all cores. Texels without a direction are 0.
 fn picture(
     size: [u32; 2],
     direction: &(dyn Fn(usize, usize) -> Option<DVec3> + Sync),
@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn a_cross_has_no_seam_inside() {
-        // Neighbouring texels of the cross are neighbours on the sphere.
+        // Adjacent texels of the cross are adjacent on the sphere.
         let n = 16;
         for (i, j) in (0..4 * n - 1).flat_map(|i| (0..3 * n - 1).map(move |j| (i, j))) {
             let Some(here) = cross_direction(i, j, n) else {

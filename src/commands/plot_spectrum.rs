@@ -1,4 +1,4 @@
-//! The lecture's figure "Solar radiation": a black body of 5800 K against the sun's spectrum, above and below the air.
+//! The lecture's figure "Solar radiation": a 5800 K black body and the sun's spectrum, outside the atmosphere and at the ground.
 
 use std::error::Error;
 
@@ -12,15 +12,15 @@ use crate::daylight::sunlight::{
 
 /// Temperature of the lecture's black body, K.
 const KELVIN: f64 = 5800.0;
-/// Wavelengths drawn, nm; the table covers a part.
+/// Wavelength axis, nm. The table covers part of it.
 const DRAWN_NM: std::ops::Range<f64> = 250.0..1200.0;
-/// Irradiances drawn, W m⁻² nm⁻¹.
+/// Irradiance axis, W m⁻² nm⁻¹.
 const DRAWN: std::ops::Range<f64> = 0.0..2.4;
 
 /// The figure as SVG.
 pub fn draw(light: &Light) -> String {
     let mut svg = String::new();
-    // Drawing to a string cannot fail unless `figure` itself is wrong.
+    // Writing to a string cannot fail.
     figure(&mut svg, light).expect("drawing to memory");
     svg
 }
@@ -55,7 +55,7 @@ fn figure(svg: &mut String, light: &Light) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Points (nm, W m⁻² nm⁻¹), label and colour.
+/// Points (nm, W m⁻² nm⁻¹), label and colour of a curve.
 type Curve = (Vec<(f64, f64)>, String, RGBColor);
 
 /// The curves of the figure.
@@ -68,7 +68,7 @@ fn curves(light: &Light) -> [Curve; 3] {
     let body = (250..=1200).map(f64::from);
     let body = body.map(|nm| (nm, planck(KELVIN, nm) * SUN_SOLID_ANGLE));
     let outside = |nm: f64| (nm, extraterrestrial_radiance(nm) * SUN_SOLID_ANGLE);
-    // A sun below the horizon has no light to attenuate.
+    // With the sun below the horizon there is no direct light.
     let shines = if elevation >= 0.0 { 1.0 } else { 0.0 };
     let attenuated = |(nm, e): (f64, f64)| (nm, shines * e * transmittance(nm, mass, turbidity));
     [

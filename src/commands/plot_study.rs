@@ -1,4 +1,4 @@
-//! Error over samples of every irradiance method, on logarithmic axes.
+//! Plot of error against samples for each irradiance method, with logarithmic axes.
 
 use std::error::Error;
 
@@ -11,7 +11,7 @@ use crate::options::name;
 /// The figure as SVG.
 pub fn draw(rows: &[Convergence]) -> String {
     let mut svg = String::new();
-    // Drawing to a string cannot fail unless `figure` itself is wrong.
+    // Writing to a string cannot fail.
     figure(&mut svg, rows).expect("drawing to memory");
     svg
 }

@@ -1,4 +1,4 @@
-//! `skylight render`: one picture to a file, without a window.
+//! `skylight render`: renders one image to a file, without a window.
 
 use std::path::Path;
 
@@ -20,13 +20,13 @@ use crate::output::{
 use crate::passes::light::lighting::{Precision, Show};
 use crate::passes::picture::tone_map::ToneSettings;
 
-/// Number of samples from which drawing takes much longer than good compression.
+/// Number of samples from which drawing takes much longer than thorough compression.
 const AVERAGED: u32 = 4;
 
 /// Renders `scene` to `output`.
 ///
 /// # Errors
-/// Whatever keeps the file from being written; an older file is left alone then.
+/// Any error up to writing the file; an existing file is then left unchanged.
 pub fn run(scene: Option<&Path>, output: &Path, options: &OptionValues) -> Result<()> {
     let exr = output
         .extension()
@@ -94,7 +94,7 @@ impl<'j> Renderer<'j> {
         })
     }
 
-    /// Draws the quantity that the frame shows.
+    /// Draws the displayed quantity.
     fn draw(&mut self, rule: Rule) -> Result<Drawn> {
         while !self.frame.is_refined() {
             self.recorder.begin()?;
@@ -144,7 +144,7 @@ impl<'j> Renderer<'j> {
         Ok(format!("{width}x{height}{summary}{samples}"))
     }
 
-    /// Quantity and range of the false colours. A range that was not given is taken from the picture, which is then mapped
+    /// Quantity and range of the false colours. Without a given range, it is taken from the image, which is then tone mapped
     /// again.
     fn false_colours(&mut self) -> Result<Option<(Quantity, Range)>> {
         let settings = &self.job.settings;
@@ -167,7 +167,7 @@ impl<'j> Renderer<'j> {
         Ok(Some((quantity, range)))
     }
 
-    /// EV100 used, for quantities that are exposed.
+    /// EV100 used; `None` for quantities that are not exposed.
     fn ev100(&mut self) -> Result<Option<f64>> {
         let settings = &self.job.settings;
         let exposed = settings.scale.is_none() && settings.false_colour.is_none();
@@ -186,7 +186,7 @@ impl<'j> Renderer<'j> {
         let (picture, drawn) = self.layer(shown, "", self.rule)?;
         let mut layers = vec![picture];
         if self.job.settings.layers {
-            // As many samples as the picture has, so that the addends sum to it.
+            // Same sample count as the image, so that the addends sum to it.
             let same = Rule {
                 most: drawn.samples,
                 noise: None,
@@ -231,12 +231,12 @@ impl<'j> Renderer<'j> {
     }
 }
 
-/// The additional layers.
+/// The additional layers of an EXR file.
 fn extra_layers() -> impl Iterator<Item = Show> {
     Show::ADDENDS.into_iter().chain(Show::INPUTS)
 }
 
-/// The picture and the requested additional layers.
+/// The image, and the additional layers if requested.
 fn wanted_layers(job: &Job) -> impl Iterator<Item = (Show, LayerKind)> {
     let shown = job.settings.show;
     let others = extra_layers().filter(|_| job.settings.layers);
@@ -244,7 +244,7 @@ fn wanted_layers(job: &Job) -> impl Iterator<Item = (Show, LayerKind)> {
         .chain(others.map(|show| (show, (name(show), channels(show, name(show))))))
 }
 
-/// Channels of a layer. The picture itself is always RGB, so that every program shows it.
+/// Channels of a layer. The image itself is always RGB, so that any viewer can show it.
 fn channels(show: Show, name: &str) -> Channels {
     match show {
         _ if name.is_empty() => Channels::Rgb,

@@ -1,4 +1,4 @@
-//! The samples of a picture: drawn until the limit on number or noise is met, or the user interrupts.
+//! Draws the samples of an image until the limit on samples or noise is met, or the user interrupts.
 
 use std::time::{Duration, Instant};
 
@@ -11,31 +11,31 @@ use crate::error::Result;
 use crate::frame::Frame;
 use crate::gpu::{Recorder, read_back};
 
-/// Samples below which the noise estimate is not trusted: few batches may agree by chance.
+/// Fewest samples for which the noise estimate is trusted: few batches may agree by chance.
 const FEWEST: u32 = 32;
 
-/// When to stop.
+/// Stopping rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rule {
-    /// Most samples.
+    /// Largest number of samples.
     pub most: u32,
-    /// Relative standard error of the luminance at which to stop earlier.
+    /// Relative standard error of the luminance at which to stop early.
     pub noise: Option<f64>,
 }
 
 /// The result of [`draw`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Drawn {
-    /// Samples in the mean.
+    /// Number of samples in the mean.
     pub samples: u32,
-    /// Relative standard error of the picture at the last estimate; none after few samples.
+    /// Relative standard error of the image at the last estimate; `None` with too few samples.
     pub error: Option<f64>,
-    /// Whether the user interrupted it.
+    /// Whether the user interrupted the drawing.
     pub is_interrupted: bool,
 }
 
 impl Drawn {
-    /// For the line on stdout; empty for a single frame.
+    /// Text for the line on stdout; empty for a single sample.
     pub(super) fn summary(&self, rule: &Rule) -> String {
         if rule.most == 1 {
             return String::new();
@@ -52,7 +52,7 @@ impl Drawn {
         samples + &self.error.map_or(String::new(), error)
     }
 
-    /// For the metadata of the file.
+    /// Metadata for the image file.
     pub(super) fn metadata(&self, rule: &Rule) -> Vec<(String, String)> {
         let mut list = vec![("samples drawn".to_owned(), self.samples.to_string())];
         list.extend(
@@ -67,10 +67,10 @@ impl Drawn {
     }
 }
 
-/// Draws samples until the rule is met.
+/// Draws samples until `rule` is met.
 ///
 /// # Errors
-/// When the device refuses.
+/// Fails when the device is lost or out of memory.
 pub(super) fn draw(
     frame: &mut Frame,
     recorder: &mut Recorder,
@@ -107,7 +107,7 @@ fn is_enough(samples: u32, rule: &Rule, error: Option<f64>) -> bool {
     samples >= FEWEST.min(rule.most) && rule.noise.is_some_and(is_small)
 }
 
-/// Samples that the rule will take: the error falls at least with the square root of their number.
+/// Expected number of samples. Assumes that the error falls with the square root of their number; it falls at least that fast.
 fn expected(samples: u32, rule: &Rule, error: Option<f64>) -> u32 {
     let (Some(wanted), Some(error)) = (rule.noise, error) else {
         return rule.most;
@@ -116,22 +116,22 @@ fn expected(samples: u32, rule: &Rule, error: Option<f64>) -> u32 {
     (needed.ceil() as u32).clamp(samples, rule.most)
 }
 
-/// Time for `left` samples at the average pace so far.
+/// Remaining time for `left` samples at the average speed so far.
 fn time_left(done: u32, left: u32, elapsed: Duration) -> Duration {
     elapsed.mul_f64(f64::from(left) / f64::from(done.max(1)))
 }
 
-/// A progress bar with samples, noise and time left; hidden in a pipe and for a single frame.
+/// A progress bar with samples, noise and remaining time; hidden in a pipe and for a single sample.
 pub(super) struct Progress(ProgressBar);
 
 impl Progress {
-    /// A bar for `rule`.
+    /// Creates a bar for `rule`.
     pub(super) fn new(rule: &Rule, quiet: bool) -> Self {
         if quiet || rule.most < 2 {
             return Self(ProgressBar::hidden());
         }
         let bar = ProgressBar::new(u64::from(rule.most));
-        // The template is constant; were it wrong, the default style would do.
+        // The template is constant and valid; a fault in it would only leave the default style.
         if let Ok(style) =
             ProgressStyle::with_template("{prefix}{bar:30} {pos}/{len} samples, {msg}")
         {
@@ -140,7 +140,7 @@ impl Progress {
         Self(bar)
     }
 
-    /// Names the picture being drawn, where there are several.
+    /// Sets the name of the layer being drawn.
     pub(super) fn name(&self, name: &str) {
         self.0.set_prefix(format!("{name} "));
     }

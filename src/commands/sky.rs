@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::options::{OptionValues, name};
 use crate::output::{check_writable, print, write_text};
 
-/// Irradiance by the exact sum unless the user wants another way: nothing here has to be fast.
+/// Defaults to the exact irradiance, except with a preset: speed does not matter here.
 pub fn exact_by_default(options: &mut OptionValues) {
     if options.get("preset").is_none() {
         options.set_default("irradiance", IrradianceMethod::Exact);
@@ -22,7 +22,7 @@ pub fn exact_by_default(options: &mut OptionValues) {
 /// Prints the figures and draws the plot if requested.
 ///
 /// # Errors
-/// Options that make no sense, or a file that cannot be written.
+/// Invalid options, or a file that cannot be written.
 pub fn run(args: &SkyArgs, mut options: OptionValues) -> Result<()> {
     if let Some(path) = &args.plot {
         check_writable(path)?;
@@ -73,7 +73,7 @@ fn study_json(rows: &[Convergence]) -> String {
     format!("{:#}", json!({ "study": table, "exponents": exponents }))
 }
 
-/// The table that the documentation of [`crate::daylight::irradiance`] holds.
+/// The table in the documentation of [`crate::daylight::irradiance`].
 fn study_table(rows: &[Convergence]) -> String {
     let mut text = String::from("| method | samples | rms error of E(up) |\n|---|---|---|\n");
     for row in rows {

@@ -1,4 +1,4 @@
-//! Figures of a daylight: as JSON by their field names (which are fixed), as a table by [`Display`](std::fmt::Display).
+//! Figures of a daylight: as JSON with fixed field names, and as a table by [`Display`](std::fmt::Display).
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use crate::daylight::sunlight::{Sunlight, air_mass};
 use crate::error::Result;
 use crate::options::{Direction, SunInput};
 
-/// The axes with their names and directions.
+/// The axes: key, label and direction.
 pub const AXES: [(&str, &str, DVec3); 6] = [
     ("+x", "east", DVec3::X),
     ("-x", "west", DVec3::NEG_X),
@@ -25,19 +25,19 @@ pub const AXES: [(&str, &str, DVec3); 6] = [
     ("-z", "north", DVec3::NEG_Z),
 ];
 
-/// Largest correlated colour temperature searched, K.
+/// Highest correlated colour temperature reported, K.
 const HOTTEST: f64 = 9e5;
 
-/// The report of `skylight sky`. RGB is linear BT.709; cd/m² of luminances, lux of illuminances.
+/// The report of `skylight sky`. RGB is linear BT.709, in cd/m² for luminances and lux for illuminances.
 #[derive(Debug, Serialize)]
 pub struct SkyReport {
-    /// The options that give this daylight again.
+    /// The options that reproduce this daylight.
     pub inputs: BTreeMap<String, String>,
     pub sun: SunReport,
     pub sky: SkyPart,
-    /// Radiance of everything below the horizon.
+    /// Radiance of all directions below the horizon.
     pub ground: GroundPart,
-    /// Sun and sky on a horizontal plane.
+    /// Illuminance of a horizontal plane by sun and sky, lux.
     pub global_horizontal_lux: f64,
     pub warnings: Vec<String>,
 }
@@ -45,47 +45,47 @@ pub struct SkyReport {
 #[derive(Debug, Serialize)]
 pub struct SunReport {
     pub azimuth_deg: f64,
-    /// True, without refraction.
+    /// True elevation, without refraction, degrees.
     pub elevation_deg: f64,
-    /// Apparent, used for everything else.
+    /// Apparent elevation, degrees; used for everything else.
     pub apparent_elevation_deg: f64,
     pub direction: [f64; 3],
-    /// At the apparent elevation; below the horizon the value at the horizon.
+    /// Relative air mass at the apparent elevation; below the horizon, its value at the horizon.
     pub air_mass: f64,
-    /// At normal incidence.
+    /// Illuminance at normal incidence, lux.
     pub illuminance_lux: f64,
     pub illuminance_rgb: [f64; 3],
-    /// Of the disc.
+    /// Luminance of the disc, cd/m².
     pub luminance: f64,
     pub luminance_rgb: [f64; 3],
-    /// On a horizontal plane.
+    /// Direct illuminance of a horizontal plane, lux.
     pub direct_horizontal_lux: f64,
-    /// `None` when it has set.
+    /// Correlated colour temperature, K; `None` when the sun has set.
     pub cct_k: Option<f64>,
-    /// `None` in polar day and night, and without a place and a moment; RFC 3339 in the offset of --when.
+    /// RFC 3339, in the UTC offset of --when. `None` in polar day or night, and without a place and a moment.
     pub sunrise: Option<String>,
     pub solar_noon: Option<String>,
     pub sunset: Option<String>,
-    /// "day" or "night" where the sun neither rises nor sets on this date.
+    /// "day" or "night" if the sun neither rises nor sets on this date.
     pub polar: Option<&'static str>,
 }
 
 #[derive(Debug, Serialize)]
 pub struct SkyPart {
     pub model: String,
-    /// As used, within the model's range.
+    /// Turbidity used, clamped to the model's range.
     pub turbidity: f64,
     pub ground_albedo: f64,
     pub zenith_luminance: f64,
     pub zenith_rgb: [f64; 3],
     pub zenith_chromaticity: [f64; 2],
-    /// `None` if the sky is bluer than any black body.
+    /// Correlated colour temperature of the zenith, K; `None` if it is bluer than any black body.
     pub zenith_cct_k: Option<f64>,
-    /// Of the light on a horizontal plane.
+    /// Correlated colour temperature of the light on a horizontal plane, K.
     pub cct_k: Option<f64>,
     pub diffuse_horizontal_lux: f64,
     pub diffuse_horizontal_rgb: [f64; 3],
-    /// E of sky and ground, without the sun, on planes that face the axes.
+    /// Illuminance (RGB, lux) by sky and ground, without the sun, of planes facing the axes.
     pub irradiance: BTreeMap<&'static str, [f64; 3]>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub samples: Vec<Sample>,
@@ -97,7 +97,7 @@ pub struct GroundPart {
     pub rgb: [f64; 3],
 }
 
-/// Radiance in one direction: sky above the horizon, ground below; without the sun's disc.
+/// Radiance in one direction: sky above the horizon, ground below. Excludes the sun's disc.
 #[derive(Debug, Serialize)]
 pub struct Sample {
     pub azimuth_deg: f64,
@@ -107,7 +107,7 @@ pub struct Sample {
 }
 
 impl SkyReport {
-    /// The figures of `light`, and its radiance in `directions`.
+    /// Computes the figures of `light`, and its radiance in `directions`.
     ///
     /// # Errors
     /// A date that the ephemeris does not cover.
@@ -160,7 +160,7 @@ impl SunReport {
     }
 }
 
-/// From the spectrum, before it is brought into the gamut of BT.709.
+/// Correlated colour temperature of the sun, from its spectrum before gamut mapping to BT.709.
 fn sun_temperature(light: &Light) -> Option<f64> {
     let elevation = light.conditions.sun_elevation_deg.max(0.0);
     let xyz = Sunlight::new(turbidity(light), elevation).luminance_xyz;
@@ -171,7 +171,7 @@ fn temperature(xyz: DVec3) -> Option<f64> {
     correlated_colour_temperature(xyz).filter(|kelvin| *kelvin < HOTTEST)
 }
 
-/// As used by the model; a warning tells when it differs from the option.
+/// Turbidity used by the model. A warning reports when it differs from the option.
 fn turbidity(light: &Light) -> f64 {
     let (low, high) = light.conditions.model.turbidity_range();
     light.conditions.turbidity.clamp(low, high)

@@ -1,4 +1,4 @@
-//! The report of a daylight as a table.
+//! The daylight report as a text table.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -136,7 +136,7 @@ fn kelvin(value: Option<f64>, none: &str) -> String {
     value.map_or_else(|| none.to_owned(), |k| format!("{k:.0} K"))
 }
 
-/// Four significant digits, or all before the decimal point.
+/// Formats with four significant digits, or with all integer digits if there are more (below 10⁷).
 fn number(value: f64) -> String {
     let digits = 3 - value.abs().max(1e-300).log10().floor() as i32;
     match digits {

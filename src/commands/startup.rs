@@ -1,4 +1,4 @@
-//! `skylight info --startup`: the time of each step up to the first picture of the bundled scene.
+//! `skylight info --startup`: the time of each step up to the first image of the bundled scene.
 
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -14,7 +14,7 @@ use crate::passes::light::lighting::Precision;
 /// Number of pipelines listed, slowest first.
 const LISTED: usize = 8;
 
-/// Takes the steps of `render` and prints their times.
+/// Goes through the steps of `render` and prints their times.
 ///
 /// # Errors
 /// No usable device, or a device error.

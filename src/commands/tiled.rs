@@ -1,8 +1,8 @@
-//! Pictures that are too large to be drawn whole: tiles, stitched row by row into the file.
+//! Images too large to be drawn in one piece: tiles are drawn and stitched row by row into the file.
 //!
-//! All tiles have the same light: shadow map and sky are those of the whole picture, exposure and ambient occlusion come from an
-//! overview of it. Up to 36 million pixels the overview has the picture's resolution, and the result is identical to the picture
-//! drawn whole; above, ambient occlusion is coarser. There are no seams either way.
+//! All tiles share the same light. Shadow map and sky are those of the whole image; exposure and ambient occlusion come from an
+//! overview. Up to 36 million pixels the overview has full resolution, and the result is identical to the image drawn in one
+//! piece; above that, ambient occlusion is coarser. There are no seams either way.
 
 mod plan;
 
@@ -25,18 +25,18 @@ use crate::output::{Encoding, LayerKind, PngRows, write_exr_rows};
 use crate::passes::light::lighting::{Precision, Show};
 use crate::passes::picture::tone_map::Scale;
 
-/// Draws tiles of the picture of a job.
+/// Draws a job's image in tiles.
 pub(super) struct Tiled<'j> {
     job: &'j Job,
     plan: Plan,
     recorder: Recorder,
     frame: Frame,
-    /// Log-average luminance, cd/m², where the exposure is automatic.
+    /// Log-average luminance, cd/m², if the exposure is automatic.
     average: Option<f64>,
     progress: ProgressBar,
 }
 
-/// The tiles of the picture; none where it is drawn whole.
+/// The tiles; `None` if the image can be drawn in one piece.
 fn plan(job: &Job, context: &Context) -> Option<Plan> {
     let size = job.settings.size;
     let limit = context.summary().max_image_edge;
@@ -48,10 +48,10 @@ fn plan(job: &Job, context: &Context) -> Option<Plan> {
 }
 
 impl<'j> Tiled<'j> {
-    /// Draws the overview; none where the picture is drawn whole.
+    /// Draws the overview. `None` if the image can be drawn in one piece.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// Options that do not apply to tiles, or a device that cannot create the resources.
     pub fn new(job: &'j Job, context: &Arc<Context>, precision: Precision) -> Result<Option<Self>> {
         let Some(plan) = plan(job, context) else {
             return Ok(None);
@@ -85,7 +85,7 @@ impl<'j> Tiled<'j> {
         Ok(Some(tiled))
     }
 
-    /// Draws the overview, keeps what the tiles share of it, and sets the frame up for tiles.
+    /// Draws the overview, keeps what the tiles share, and sets up the frame for tiles.
     fn draw_overview(
         &mut self,
         settings: FrameSettings,
@@ -124,7 +124,7 @@ impl<'j> Tiled<'j> {
         Ok(())
     }
 
-    /// The tone settings of tiles: the overview decides what depends on the whole picture.
+    /// Tone settings for the tiles. Values that depend on the whole image come from the overview.
     fn tone(
         &mut self,
         settings: &FrameSettings,
@@ -134,7 +134,7 @@ impl<'j> Tiled<'j> {
             let average = self.read(|frame| frame.average_luminance())?.floats()[0];
             let average = f64::from(average) * 1e3;
             self.average = Some(average);
-            // As the tone map does with the average: an irradiance is exposed as such, not as white paper.
+            // As in the tone mapping pass: irradiance is exposed as such, not as white paper.
             let paper = if tone.show == Show::Irradiance {
                 std::f64::consts::PI
             } else {
@@ -166,7 +166,7 @@ impl<'j> Tiled<'j> {
         Ok(self.recorder.finish()?)
     }
 
-    /// Draws one row of tiles and stitches `image` of them, `each` values a pixel.
+    /// Draws one row of tiles and stitches their `image`, with `each` values per pixel.
     fn band<T: Copy + Default>(
         &mut self,
         band: &Span,
@@ -195,10 +195,10 @@ impl<'j> Tiled<'j> {
         Ok(whole)
     }
 
-    /// Writes a PNG; returns size and exposure in words.
+    /// Writes a PNG; returns a summary with size and exposure.
     ///
     /// # Errors
-    /// Whatever keeps the file from being written; an older one is left alone then.
+    /// Any error up to writing the file; an existing file is then left unchanged.
     pub fn save_png(mut self, path: &Path) -> Result<String> {
         let settings = &self.job.settings;
         if settings.false_colour.is_some() {
@@ -218,7 +218,7 @@ impl<'j> Tiled<'j> {
         Ok(self.summary(&exposure))
     }
 
-    /// The exposure, of quantities that have one.
+    /// EV100 used; `None` for quantities that are not exposed.
     fn ev100(&self) -> Option<f64> {
         let settings = &self.job.settings;
         if settings.scale.is_some() || settings.show.file_unit() == 1.0 {
@@ -227,10 +227,10 @@ impl<'j> Tiled<'j> {
         settings.ev100.or_else(|| self.average.map(automatic))
     }
 
-    /// Writes an EXR of these quantities, the picture first; returns size and layers in words.
+    /// Writes an EXR of these quantities, the image first; returns a summary with size and layers.
     ///
     /// # Errors
-    /// Whatever keeps the file from being written; an older one is left alone then.
+    /// Any error up to writing the file; an existing file is then left unchanged.
     pub fn save_exr(mut self, path: &Path, shows: &[Show], kinds: &[LayerKind]) -> Result<String> {
         let metadata = self.job.metadata();
         let mut bands = self.plan.bands.clone().into_iter();
@@ -247,7 +247,7 @@ impl<'j> Tiled<'j> {
         Ok(self.summary(&format!(", {} layer(s)", kinds.len())))
     }
 
-    /// One quantity of a row of tiles, in the file's unit.
+    /// One quantity in a row of tiles, in the file's unit.
     fn layer(&mut self, show: Show, band: &Span, switches: bool) -> Result<Vec<[f32; 4]>> {
         if switches {
             self.frame.show(show)?;
@@ -269,5 +269,5 @@ impl<'j> Tiled<'j> {
     }
 }
 
-/// Most samples whose occlusion is kept; later samples reuse them in turn.
+/// Largest number of samples whose occlusion is kept; later samples reuse them cyclically.
 const MAX_OCCLUSION_IMAGES: usize = 16;

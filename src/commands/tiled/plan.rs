@@ -1,47 +1,47 @@
-//! The cut of a picture into tiles: arithmetic only.
+//! Layout of the tiles of an image. Arithmetic only.
 
 use glam::{UVec2, Vec2};
 
 use crate::passes::view::Window;
 
-/// Most pixels of a picture that is drawn whole, at about 50 bytes each: a little over 8K.
+/// Largest image drawn in one piece, pixels: a little over 8K, at about 50 bytes per pixel.
 const MAX_WHOLE_PIXELS: u64 = 36_000_000;
-/// Most pixels of an overview that serves the exposure only.
+/// Largest overview that serves exposure only, pixels.
 const MAX_EXPOSURE_PIXELS: u64 = 2_000_000;
-/// Default edge of tiles, pixels.
+/// Default tile edge, pixels.
 const EDGE: u32 = 2048;
-/// Pixels around a tile that are drawn and discarded: passes read neighbouring pixels.
+/// Border around a tile, pixels. It is drawn and discarded, since passes read neighbouring pixels.
 const MARGIN: u32 = 4;
-/// Tiles start at multiples of this, which cuts no block of a file.
+/// Alignment of tiles, pixels: a tile boundary cuts no block of a file.
 const STEP: u32 = 16;
 
-/// Pixels along one axis.
+/// Extent of a tile along one axis, pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Span {
-    /// First pixel of the picture that the tile fills.
+    /// First image pixel that the tile fills.
     pub first: u32,
-    /// Number of pixels that it fills.
+    /// Number of image pixels that it fills.
     pub count: u32,
-    /// First pixel that is drawn.
+    /// First image pixel that is drawn.
     pub origin: u32,
 }
 
-/// A picture in tiles.
+/// An image divided into tiles.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Plan {
-    /// The whole picture, pixels.
+    /// Size of the whole image, pixels.
     pub full: UVec2,
-    /// What is drawn for each tile, pixels.
+    /// Size drawn for each tile, pixels.
     pub tile: UVec2,
-    /// Tiles of a row.
+    /// Tile columns.
     pub columns: Vec<Span>,
-    /// Rows of tiles.
+    /// Tile rows.
     pub bands: Vec<Span>,
     limit: u32,
 }
 
 impl Plan {
-    /// None where the picture is drawn whole. `edge` is the one asked for, `limit` the largest edge of an image, pixels.
+    /// `None` if the image can be drawn in one piece. `edge` is the requested tile edge, `limit` the largest image edge, pixels.
     pub fn new(full: UVec2, edge: Option<u32>, limit: u32) -> Option<Self> {
         let pixels = u64::from(full.x) * u64::from(full.y);
         let longest = full.max_element();
@@ -61,8 +61,8 @@ impl Plan {
         })
     }
 
-    /// An overview, which is the whole picture divided by the smallest integer that makes it fit: its size, that integer, and its
-    /// window. `occludes`: it serves ambient occlusion, not the exposure only.
+    /// The overview: its size, the smallest integer divisor of the image size that makes it fit, and its window. `occludes`: it serves
+    /// ambient occlusion, not just exposure.
     pub fn overview(&self, occludes: bool) -> (UVec2, u32, Window) {
         let most = if occludes {
             MAX_WHOLE_PIXELS
@@ -90,8 +90,8 @@ impl Plan {
     }
 }
 
-/// Cuts `full` pixels into spans of `edge`. All draw the same number of pixels: at the ends of the picture the margin is shifted
-/// inward.
+/// Divides `full` pixels into spans of `edge`. Each draws the same number of pixels: at the ends of the image the margin is
+/// shifted inward.
 fn spans(full: u32, edge: u32) -> Vec<Span> {
     let drawn = full.min(edge + 2 * MARGIN);
     (0..full)

@@ -70,7 +70,7 @@ pub fn notice(context: &Context) {
 pub struct Job {
     /// The options of the image.
     pub settings: Options,
-    /// The model.
+    /// Geometry and materials.
     pub scene: Scene,
     /// The camera.
     pub camera: Camera,

@@ -1,4 +1,4 @@
-//! Resolves options into a sun position and a daylight, as every command needs. `sky` and `bake` need nothing else.
+//! Resolves options into a sun position and a daylight. `sky` and `bake` need nothing else.
 
 use crate::daylight::sky::{Conditions, Daylight};
 use crate::daylight::sun_position::{SunPosition, lecture};
@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::options::{OptionValues, Options, SunInput, Switch};
 use crate::scene::{Loaded, Scene};
 
-/// A daylight without a scene.
+/// A sun position and a daylight, without a scene.
 pub struct Light {
     /// The options; those that concern images have no effect here.
     pub settings: Options,
@@ -72,7 +72,7 @@ pub fn sun_position(settings: &Options) -> Result<SunPosition> {
     Ok(sun)
 }
 
-/// Inputs of the daylight with this sun.
+/// Inputs of the daylight for this position of the sun.
 pub fn conditions(settings: &Options, sun: &SunPosition) -> Conditions {
     Conditions {
         model: settings.sky,

@@ -62,7 +62,7 @@ pub struct SunReport {
     pub direct_horizontal_lux: f64,
     /// Correlated colour temperature, K; `None` when the sun has set.
     pub cct_k: Option<f64>,
-    /// RFC 3339, in the UTC offset of --when. `None` in polar day or night, and without a place and a moment.
+    /// Sunrise, RFC 3339 in the UTC offset of --when. `None` in polar day or night, and without a place and a moment.
     pub sunrise: Option<String>,
     pub solar_noon: Option<String>,
     pub sunset: Option<String>,

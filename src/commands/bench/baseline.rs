@@ -13,7 +13,7 @@ struct Change {
     name: String,
     old_ms: f64,
     new_ms: f64,
-    /// New over old.
+    /// Wall time, new over old.
     ratio: f64,
     /// Ratios within 1 ± `noise` are not significant.
     noise: f64,

@@ -81,7 +81,7 @@ impl Plan {
         (size(k), k, window)
     }
 
-    /// The window of a tile.
+    /// The part of the image that is drawn for a tile.
     pub fn window(&self, column: &Span, band: &Span) -> Window {
         Window {
             origin: UVec2::new(column.origin, band.origin),

@@ -10,7 +10,8 @@ use crate::scene::{BUNDLED, bundled_name};
 
 use super::document::Document;
 
-/// The state file of a scene. Its name includes a hash of the absolute path, since scenes in different folders may share a name.
+/// The state file of a scene. Unless the scene is bundled, the name includes a hash of its absolute path: scenes in different
+/// folders may share a name.
 fn file_of(scene: Option<&Path>) -> Option<PathBuf> {
     let folder = dirs::state_dir().or_else(dirs::data_local_dir)?;
     let bundled = scene.map_or(Some(BUNDLED[0]), bundled_name);

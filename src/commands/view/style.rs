@@ -32,7 +32,7 @@ pub(super) fn apply(context: &egui::Context) {
     });
 }
 
-/// A box over the picture.
+/// Frame style of a box over the image.
 pub(super) fn backdrop() -> Frame {
     Frame::new()
         .fill(BACKDROP)

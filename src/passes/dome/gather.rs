@@ -167,7 +167,7 @@ impl Dome {
     /// For pictures of `size` pixels.
     ///
     /// # Errors
-    /// When the device refuses or has no memory left.
+    /// Fails when the device cannot create the resources.
     pub fn new(
         context: &Arc<Context>,
         geometry: &Geometry,

@@ -46,7 +46,7 @@ fn content(show: Show) -> (bool, f32) {
 
 impl Background {
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, settings: LightingSettings) -> Result<Self> {
         let (sky, empty) = content(settings.show);
         let pipeline = |disc: bool| {

@@ -206,7 +206,7 @@ impl Lighting {
     /// A picture of `size` pixels.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, size: [u32; 2], settings: LightingSettings) -> Result<Self> {
         Self::with(context, size, settings, false)
     }
@@ -215,7 +215,7 @@ impl Lighting {
     /// with hard shadows of the map of [`crate::passes::sun_shadow::map::Shadow::perspective`].
     ///
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn converging(
         context: &Arc<Context>,
         size: [u32; 2],

@@ -59,7 +59,7 @@ struct Picked {
 
 impl Probe {
     /// # Errors
-    /// When the device has no memory left.
+    /// Fails when the device is out of memory.
     pub fn new(context: &Arc<Context>) -> Result<Self> {
         let bytes = (TEXELS * Texel::SLOT_BYTES) as u64;
         Ok(Self {

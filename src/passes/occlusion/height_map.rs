@@ -45,7 +45,7 @@ impl HeightMap {
     /// For a scene.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, geometry: &Geometry) -> Result<Self> {
         let desc = ImageDesc::flat("height map", Format::D32_SFLOAT, [EDGE; 2]);
         Ok(Self {

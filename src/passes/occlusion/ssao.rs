@@ -85,7 +85,7 @@ impl Ssao {
     /// For pictures of `size` pixels.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, size: [u32; 2], settings: SsaoSettings) -> Result<Self> {
         let constants = [
             ("STEPS", settings.steps),

@@ -26,7 +26,7 @@ impl Accumulate {
     /// Creates the pass for pictures of `size` pixels.
     ///
     /// # Errors
-    /// A device error, or no memory left.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, size: [u32; 2]) -> Result<Self> {
         let format = Format::R32G32B32A32_SFLOAT;
         let pipeline = fullscreen(

@@ -34,7 +34,7 @@ pub struct Exposure {
 
 impl Exposure {
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>) -> Result<Self> {
         let image = |name| {
             Image::new(

@@ -35,7 +35,7 @@ impl Fade {
     /// Creates the pass for pictures of `size` pixels that average `samples` frames; the last one shows nothing of the preview.
     ///
     /// # Errors
-    /// A device error, or no memory left.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, size: [u32; 2], samples: u32) -> Result<Self> {
         let format = Format::R32G32B32A32_SFLOAT;
         Ok(Self {

@@ -28,7 +28,7 @@ impl Present {
     /// Creates the pass for windows of an sRGB `format`.
     ///
     /// # Errors
-    /// A device error, or no memory left.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, format: Format) -> Result<Self> {
         let pipeline = |encoded: u32| {
             let constants = [("ENCODED", encoded)];
@@ -48,7 +48,7 @@ impl Present {
     /// Draws the display values and the user interface over them.
     ///
     /// # Errors
-    /// No memory left for the user interface.
+    /// Fails when there is no memory left for the user interface.
     pub fn record(
         &self,
         recorder: &mut Recorder,

@@ -75,7 +75,7 @@ impl ToneMap {
     /// Creates the pass for pictures of `size` pixels.
     ///
     /// # Errors
-    /// A device error, or no memory left.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, size: [u32; 2], settings: ToneSettings) -> Result<Self> {
         let false_colour = settings.false_colour.is_some();
         let light = is_light(settings.show) && !false_colour;

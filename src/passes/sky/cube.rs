@@ -142,7 +142,7 @@ impl SkyCube {
     /// A cube with faces of `edge` texels, and what the irradiance needs besides.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, edge: u32) -> Result<Self> {
         let (half, float) = (Format::R16G16B16A16_SFLOAT, Format::R32G32B32A32_SFLOAT);
         let smooth = ImageDesc::cube("sky radiance, smooth", float, SMOOTH_EDGE).mipmapped();

@@ -122,7 +122,7 @@ impl Irradiance {
     /// Makes the cubes and uploads the table; `recorder` must be recording.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(recorder: &mut Recorder, settings: IrradianceSettings) -> Result<Self> {
         let context: Arc<Context> = recorder.context().clone();
         let cube =

@@ -193,7 +193,7 @@ impl Shadow {
     /// Cascades of `resolution` texels a side for single frames.
     ///
     /// # Errors
-    /// When the device has no memory left.
+    /// Fails when the device is out of memory.
     pub fn cascades(
         context: &Arc<Context>,
         geometry: &Geometry,
@@ -209,7 +209,7 @@ impl Shadow {
     /// needs no bias of casters.
     ///
     /// # Errors
-    /// When the device has no memory left.
+    /// Fails when the device is out of memory.
     pub fn perspective(
         context: &Arc<Context>,
         geometry: &Geometry,

@@ -198,7 +198,7 @@ impl Gbuffer {
     /// Images of `size` pixels, and the pipelines that `geometry` needs; `faces`: with the slopes of the face under each pixel.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(
         context: &Arc<Context>,
         geometry: &Geometry,

@@ -114,7 +114,7 @@ impl Geometry {
     /// Uploads a scene; `recorder` must be recording.
     ///
     /// # Errors
-    /// When the device has no memory left.
+    /// Fails when the device is out of memory.
     pub fn new(recorder: &mut Recorder, scene: &Scene) -> Result<Self> {
         let (indices, layout) = arranged(scene);
         let vertex = |recorder: &mut Recorder, name, bytes| {

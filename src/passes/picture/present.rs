@@ -18,9 +18,9 @@ gpu_struct! {
     }
 }
 
-/// The pass.
+/// The presentation pass.
 pub struct Present {
-    /// For a linear picture, and for one that is encoded already.
+    /// For a linear and for an already encoded picture.
     pipelines: [Pipeline; 2],
 }
 
@@ -45,7 +45,7 @@ impl Present {
         })
     }
 
-    /// Draws the display values and the user interface over them.
+    /// Draws the display values, with the user interface on top.
     ///
     /// # Errors
     /// Fails when there is no memory left for the user interface.

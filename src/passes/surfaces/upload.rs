@@ -7,7 +7,7 @@ use crate::scene::{Encoding, Layout, Material, Scene, Texture};
 
 use crate::passes::surfaces::geometry::Surface;
 
-/// Uploads colours and tangents for every vertex; vertices without them get white and a zero tangent.
+/// Uploads colours and tangents for every vertex; a scene without them gets white and zero tangents.
 pub(in crate::passes) fn upload_details(
     recorder: &mut Recorder,
     scene: &Scene,

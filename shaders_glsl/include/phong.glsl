@@ -8,7 +8,7 @@ float phong_scale(float p) {
 }
 
 /// Fresnel approximation of rho_s (Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering"). The limit at grazing
-/// angles is (1 - roughness)^2, consistent with how materials derive rho_s and p from roughness.
+/// angles is (1 - roughness)^2, or rho_s if larger; roughness follows from p by the rule that materials use.
 vec3 grazing(vec3 rho_s, float shininess, float cosine) {
     float smoothness = 1.0 - pow(2.0 / (shininess + 2.0), 0.25);
     vec3 most = max(vec3(smoothness * smoothness), rho_s);
@@ -18,7 +18,7 @@ vec3 grazing(vec3 rho_s, float shininess, float cosine) {
 const int LOBE_SAMPLES = 16;
 
 /// Integral of the unoccluded sky over the normalized lobe around r of a surface with normal n. Importance sampled by the lobe,
-/// (p+1)/(2 pi) (r.w)^p, with a low-discrepancy point set; `shift` (0..1) offsets it from frame to frame.
+/// (p+1)/(2 pi) (r.w)^p, on a Fibonacci lattice; `shift` (0..1) offsets it from frame to frame.
 vec3 sky_in_lobe(samplerCube sky, vec3 r, vec3 n, float p, vec2 shift) {
     mat3 frame = frame_from_normal(r);
     vec3 sum = vec3(0.0);

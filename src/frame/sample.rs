@@ -17,7 +17,7 @@ pub enum Visibility {
     /// Screen-space ambient occlusion: a single-frame estimate from the surfaces on screen.
     #[default]
     Ssao,
-    /// Shadow maps from directions of the sky: their mean over the samples converges to the true visibility.
+    /// Shadow maps from sampled sky directions: their mean over the samples converges to the true visibility.
     Dome,
     /// `Dome`, cross-faded from an `Ssao` preview, for a view that comes to rest.
     Progressive,
@@ -47,14 +47,14 @@ pub struct Sampling {
 /// Seed of the points on the sun's disc, distinct from those of the sky.
 const DISC: u32 = 0x0d15_c000;
 
-/// Where a frame samples the pixel and the sun's disc.
+/// Sample position of a frame in the pixel and on the sun's disc.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
     /// Offset from the pixel's centre, pixels.
     pub jitter: Vec2,
     /// Unit vector toward a point of the sun's disc.
     pub sun_direction: Vec3,
-    /// Shift of the shadow map's texels, 0..1.
+    /// Sub-texel shift of the shadow map, 0..1.
     pub texel: Vec2,
     /// Phase of the ambient occlusion noise, 0..1.
     pub phase: f32,

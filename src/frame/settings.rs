@@ -38,7 +38,7 @@ pub struct FrameSettings {
     pub ssao: SsaoSettings,
     /// Lighting.
     pub lighting: LightingSettings,
-    /// Display.
+    /// Tone mapping and exposure.
     pub tone: ToneSettings,
 }
 

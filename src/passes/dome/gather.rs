@@ -116,9 +116,9 @@ pub struct Gathered<'a> {
     pub materials: &'a Image,
     /// The picture without sky light, kcd/m².
     pub frame: &'a Image,
-    /// E of sky and ground, klx.
+    /// Irradiance E of sky and ground, klx.
     pub sky_irradiance: &'a Image,
-    /// L of sky and ground, kcd/m².
+    /// Radiance L of sky and ground, kcd/m².
     pub sky_radiance: &'a Image,
 }
 
@@ -134,7 +134,7 @@ pub struct Dome {
     gather: Pipeline,
     resolve: Pipeline,
     maps: Image,
-    /// Alternating means: sky and rest, see `dome_gather.frag`.
+    /// Alternating means: sky light and other light, see `dome_gather.frag`.
     means: [[Image; 2]; 2],
     /// Alternating means of the illuminance terms, if enabled.
     illuminance: Option<[Image; 2]>,

@@ -96,7 +96,7 @@ impl Show {
         }
     }
 
-    /// Whether the picture contains `quantity`.
+    /// Whether the values shown are a `quantity`.
     pub fn holds(self, quantity: Quantity) -> bool {
         match quantity {
             Quantity::Luminance => self.file_unit() != 1.0 && self != Self::Irradiance,

@@ -27,7 +27,7 @@ gpu_struct! {
     }
 }
 
-/// How the occlusion is computed.
+/// Settings of the ambient occlusion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SsaoSettings {
     /// Radius, metres; 0 turns it off (A = 1).

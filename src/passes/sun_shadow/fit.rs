@@ -21,7 +21,7 @@ pub struct ShadowView {
     pub shadow_from_world: Mat4,
     /// Edge of a texel, metres; for a perspective map, at the viewer's end.
     pub texel: f32,
-    /// The same in units of the map's depth.
+    /// Edge of a texel in units of the map's depth.
     pub texel_depth: f32,
     /// Unit vector toward the light.
     pub toward: Vec3,

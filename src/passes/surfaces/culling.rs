@@ -33,7 +33,7 @@ pub struct Cull {
 }
 
 impl Cull {
-    /// For a camera.
+    /// Culling tests for a camera.
     pub fn camera(view: &View) -> Self {
         let clip_from_world = view.clip_from_world();
         let eye = view.camera.eye;
@@ -51,7 +51,7 @@ impl Cull {
         Self::new(clip_from_world, viewer, ahead, 0.1 * away)
     }
 
-    /// For a directional light.
+    /// Culling tests for a directional light.
     pub fn light(map: &ShadowView) -> Self {
         let viewer = Viewer::Toward(map.toward);
         Self::new(map.shadow_from_world, viewer, map.inside, map.texel)

@@ -21,7 +21,7 @@ pub struct Part {
     pub clusters: Range<usize>,
     /// Number of the material.
     pub material: u32,
-    /// How it is drawn.
+    /// Shader features and pipeline.
     pub kind: Kind,
     /// Whether it casts shadows.
     pub casts: bool,
@@ -64,7 +64,7 @@ pub(in crate::passes) struct Surface {
 /// The bindings of a draw call: a material with its maps.
 #[derive(Clone, Copy)]
 pub struct Bound<'g> {
-    /// How it is drawn.
+    /// Shader features and pipeline.
     pub kind: Kind,
     /// Number of the material.
     pub material: u32,

@@ -1,4 +1,4 @@
-//! The frame: owns the passes, and draws them in the order of the diagram on the first page of these docs.
+//! The frame owns the passes and records them in the order of the diagram on the first page of these docs.
 
 mod average;
 mod sample;
@@ -40,7 +40,7 @@ pub struct Frame {
     gbuffer: Gbuffer,
     height_map: HeightMap,
     ssao: Ssao,
-    /// Of single frames: previews, and those that the dome does not light.
+    /// Shadow map and lighting of previews and of frames that the dome does not light.
     preview: Lit,
     background: Background,
     average: Average,
@@ -54,22 +54,22 @@ pub struct Frame {
 /// The newest frame.
 #[derive(Clone, Copy)]
 struct Drawn {
-    /// Its number in an average; none of a preview.
+    /// Its number in an average; `None` for a preview.
     index: Option<u32>,
     view: View,
 }
 
-/// What a tile has from the picture that it is cut from.
+/// State for rendering a picture in tiles.
 #[derive(Default)]
 struct Tiling {
-    /// The tile; without one the frame is the whole picture.
+    /// The current tile; `None`: the frame is the whole picture.
     tile: Option<Window>,
-    /// Ambient occlusion of the whole picture, by sample: surfaces beyond the tile's edge occlude too.
+    /// Ambient occlusion of the whole picture, one image per sample, because surfaces beyond the tile's edge occlude too.
     occlusion: Vec<Image>,
 }
 
 impl Tiling {
-    /// Ambient occlusion for sample `index`, if the tiles share it; images repeat where there are more samples.
+    /// Shared ambient occlusion for sample `index`, if any. The images repeat if there are more samples than images.
     fn occlusion(&self, index: Option<u32>) -> Option<&Image> {
         let count = self.occlusion.len().max(1);
         self.occlusion.get(index.unwrap_or(0) as usize % count)
@@ -77,14 +77,14 @@ impl Tiling {
 }
 
 impl Frame {
-    /// Uploads the scene and makes the passes; `recorder` must be recording.
+    /// Uploads the scene and creates the passes. `recorder` must be recording.
     ///
     /// # Errors
-    /// When the device refuses or has no memory left: what was recorded must not be submitted then.
+    /// Fails when the device cannot create the resources. The recorded commands must then not be submitted.
     pub fn new(recorder: &mut Recorder, scene: &Scene, settings: FrameSettings) -> Result<Self> {
         let context = recorder.context().clone();
         let (device, asked) = (&context, settings);
-        // Drivers take their time to make pipelines: other threads do it while the scene is uploaded.
+        // Pipeline creation is slow, so other threads do it while the scene is uploaded.
         thread::scope(|scope| {
             let sky_cube = scope.spawn(move || SkyCube::new(device, asked.sky_edge));
             let ssao = scope.spawn(move || asked.ssao(device));
@@ -118,11 +118,12 @@ impl Frame {
         })
     }
 
-    /// Takes over other settings: remakes the passes that depend on what differs, and keeps the others with what they have drawn.
+    /// Applies new settings: recreates the passes that depend on a changed setting and keeps the others with their contents.
     /// `recorder` must be recording, with no frame in flight.
     ///
     /// # Errors
-    /// When the device refuses or has no memory left. The frame is as it was then; what was recorded must not be submitted.
+    /// Fails when the device cannot create the resources. The frame is then unchanged, and the recorded commands must not be
+    /// submitted.
     pub fn apply(&mut self, recorder: &mut Recorder, settings: FrameSettings) -> Result<()> {
         let settings = settings.for_scene(&self.context, &self.geometry);
         let differs = settings.irradiance != self.settings.irradiance;
@@ -130,17 +131,17 @@ impl Frame {
         self.remake(settings, irradiance)
     }
 
-    /// Shows something else from the next frame on.
+    /// Sets the quantity shown from the next frame on.
     ///
     /// # Errors
-    /// When the device refuses or has no memory left; the frame is as it was then.
+    /// Fails when the device cannot create the resources. The frame is then unchanged.
     pub fn show(&mut self, show: Show) -> Result<()> {
         let mut settings = self.settings;
         (settings.lighting.show, settings.tone.show) = (show, show);
         self.remake(settings, None)
     }
 
-    /// Makes the passes that other settings need, then swaps all of them in: nothing changes when one fails.
+    /// Creates the passes that the new settings need, then swaps them all in. If one fails, nothing changes.
     fn remake(&mut self, new: FrameSettings, irradiance: Option<Irradiance>) -> Result<()> {
         let (old, device, geometry) = (&self.settings, &self.context, &self.geometry);
         let is_resized = new.size != old.size;
@@ -178,12 +179,12 @@ impl Frame {
         self.draw(rec, daylight, camera, Some(index));
     }
 
-    /// Records a frame that is no part of an average: while the view or the light moves.
+    /// Records a frame outside of any average, for a moving view or light.
     pub fn preview(&mut self, rec: &mut Recorder, daylight: &Daylight, camera: &Camera) {
         self.draw(rec, daylight, camera, None);
     }
 
-    /// The frame. Sky, irradiance and shadow map are drawn only when their inputs changed.
+    /// Records a frame. Sky, irradiance and shadow map are redrawn only when their inputs change.
     fn draw(
         &mut self,
         rec: &mut Recorder,
@@ -197,7 +198,7 @@ impl Frame {
         let (Lit { shadow, lighting }, resolve) = self.average.frame(&mut self.preview, index);
         shadow.fit(geometry, &view, sample.sun_direction, sample.texel);
 
-        // None of these reads another's images: without a barrier in between they may run at the same time.
+        // None of these passes reads another's images, so without a barrier in between they may overlap.
         rec.prepare(self.gbuffer.surfaces().images().chain(shadow.target()));
         let sky = self.sky_cube.record(rec, daylight);
         let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
@@ -205,7 +206,7 @@ impl Frame {
         let surfaces = self.gbuffer.record(rec, geometry, &view);
         let occlusion = match self.tiling.occlusion(index) {
             Some(of_picture) => of_picture,
-            // It is bound, but not read.
+            // Bound but not read.
             None if resolve.is_dome() => self.ssao.image(),
             None => {
                 let above = self.height_map.record(rec, geometry, settings.ssao.radius);
@@ -230,23 +231,23 @@ impl Frame {
         self.drawn = Some(Drawn { index, view });
     }
 
-    /// Sets the share of the way, in log luminance, that an automatic exposure moves toward that of each following picture: 1 (the
-    /// default) adapts at once, [`crate::daylight::exposure::adaptation`] smoothly.
+    /// Sets the adaptation rate of automatic exposure: the fraction of the difference in log luminance covered with each following
+    /// picture. 1 (the default) adapts at once; [`crate::daylight::exposure::adaptation`] adapts smoothly.
     pub fn set_adaptation(&mut self, share: f64) {
         self.exposure.set_share(share as f32);
     }
 
-    /// Exposes the newest picture again, which adapts the exposure further. `rec` must be recording.
+    /// Exposes and tone maps the newest picture again, so that exposure adapts further. `rec` must be recording.
     pub fn expose(&self, rec: &mut Recorder) {
         let radiance = self.radiance();
         let average = self.exposure.record(rec, radiance);
         self.tone_map.record(rec, radiance, average);
     }
 
-    /// Tone maps the newest picture again, by other settings. `rec` must be recording, with no frame in flight.
+    /// Tone maps the newest picture again with new settings. `rec` must be recording, with no frame in flight.
     ///
     /// # Errors
-    /// When the device refuses or has no memory left; the frame is as it was then.
+    /// Fails when the device cannot create the resources. The frame is then unchanged.
     pub fn retone(&mut self, rec: &mut Recorder, tone: ToneSettings) -> Result<()> {
         let settings = FrameSettings {
             tone,
@@ -259,28 +260,28 @@ impl Frame {
         Ok(())
     }
 
-    /// Draws this tile of a picture from now on.
+    /// Renders this tile of a larger picture from now on.
     pub fn set_tile(&mut self, tile: Window) {
         self.tiling.tile = Some(tile);
     }
 
-    /// Gives away the ambient occlusion of the newest frame. No frame may be in flight.
+    /// Takes the ambient occlusion image of the newest frame. No frame may be in flight.
     ///
     /// # Errors
-    /// When the device has no memory left.
+    /// Fails when the device is out of memory.
     pub fn take_occlusion(&mut self) -> Result<Image> {
         let next = self.settings.ssao(&self.context)?;
         Ok(std::mem::replace(&mut self.ssao, next).into_image())
     }
 
-    /// Lights tiles by the ambient occlusion of the whole picture from now on, an image for each sample.
+    /// Uses the ambient occlusion of the whole picture for tiles from now on, one image per sample.
     pub fn share_occlusion(&mut self, of_samples: Vec<Image>) {
         self.tiling.occlusion = of_samples;
     }
 
-    /// Records the read-out of one pixel of the newest picture; [`Frame::picked`] has it when the work is done. Nothing is
-    /// recorded outside of the picture, and before the first. The illuminance of [`Visibility::Dome`] is known with
-    /// [`DomeSettings::illuminance`](crate::passes::dome::gather::DomeSettings::illuminance) only.
+    /// Records the read-out of one pixel of the newest picture; [`Frame::picked`] returns it when the GPU has finished. Nothing is
+    /// recorded for pixels outside the picture or before the first picture. With [`Visibility::Dome`] the illuminance is known only
+    /// if [`DomeSettings::illuminance`](crate::passes::dome::gather::DomeSettings::illuminance) is set.
     pub fn pick(&mut self, rec: &mut Recorder, pixel: [u32; 2]) {
         let [width, height] = self.settings.size.to_array();
         let is_inside = pixel[0] < width && pixel[1] < height;
@@ -300,13 +301,13 @@ impl Frame {
         );
     }
 
-    /// The pixel of the last [`Frame::pick`], once.
+    /// Returns the pixel of the last [`Frame::pick`], once.
     pub fn picked(&mut self) -> Option<Reading> {
         let geometry = &self.geometry;
         self.probe.reading(|material| geometry.diffuse(material))
     }
 
-    /// The newest picture in kcd/m² (or the quantity shown): of an average its mean so far.
+    /// The newest picture in kcd/m² (or the quantity shown); for an average, the mean so far.
     pub fn radiance(&self) -> &Image {
         newest(&self.average, &self.preview, self.drawn)
     }
@@ -316,7 +317,7 @@ impl Frame {
         self.tone_map.image()
     }
 
-    /// The log-average luminance of the newest picture: one texel, kcd/m².
+    /// The log-average luminance of the newest picture, kcd/m², as one texel.
     pub fn average_luminance(&self) -> &Image {
         self.exposure.image()
     }
@@ -332,7 +333,7 @@ impl Frame {
         self.irradiance.is_complete()
     }
 
-    /// Samples of the sky's irradiance so far, and in all.
+    /// Samples of the sky's irradiance so far, and in total.
     pub fn irradiance_progress(&self) -> (u32, u32) {
         let settings = self.irradiance.settings();
         let wanted = if settings.method.is_sampled() {
@@ -343,13 +344,13 @@ impl Frame {
         (self.irradiance.samples_done(), wanted)
     }
 
-    /// Forgets sky, irradiance and shadow map, so that the next frame draws everything: for measurements.
+    /// Invalidates sky, irradiance and shadow map, so that the next frame redraws everything. For benchmarks.
     pub fn invalidate(&mut self) {
         self.sky_cube.invalidate();
         self.preview.shadow.invalidate();
     }
 
-    /// Its settings, as the scene has them.
+    /// Its settings, adjusted to the scene.
     pub fn settings(&self) -> &FrameSettings {
         &self.settings
     }
@@ -373,20 +374,20 @@ fn newest<'a>(average: &'a Average, preview: &'a Lit, drawn: Option<Drawn>) -> &
     average.unwrap_or(preview.lighting.image())
 }
 
-/// A pass that is made again if something of its settings differs.
+/// Recreates a pass if its settings differ.
 fn remade<T>(differs: bool, make: impl FnOnce() -> Result<T>) -> Result<Option<T>> {
     differs.then(make).transpose()
 }
 
-/// Swaps a pass for the one that was made again, if any.
+/// Replaces a pass with the recreated one, if any.
 fn replace<T>(pass: &mut T, remade: Option<T>) {
     if let Some(remade) = remade {
         *pass = remade;
     }
 }
 
-/// The result of a thread.
+/// Joins a thread and returns its result.
 fn joined<T>(thread: ScopedJoinHandle<'_, Result<T>>) -> Result<T> {
-    // A panic there is one here too.
+    // Propagates a panic of the thread.
     thread.join().unwrap_or_else(|panic| resume_unwind(panic))
 }

@@ -7,35 +7,35 @@
 #include "materials.glsl"
 #include "octahedral.glsl"
 
-// The light of the sky by shadow maps from directions of the sky: E = 1/n sum V (n.w) L/p, and what it would be without V.
-// Both are averaged over the frames, with everything else that the frames show; their quotient is A, weighted by the light.
+// Sky light by shadow maps from sampled directions: E = 1/n sum V (n.w) L/p, and the same without V. Both are averaged over
+// the frames, as is all other light; their quotient is the light-weighted A.
 
-// rgb: the sky's light, reflected; a: the luminance that it would have if nothing hid the sky, by the same directions.
+// rgb: reflected sky light; a: its luminance without occlusion, from the same directions.
 layout(location = 0) out vec4 sky;
-// rgb: all other light, kcd/m^2; a: the luminance of the sky's light if nothing hid it, by the irradiance cube.
+// rgb: all other light, kcd/m^2; a: the luminance of the unoccluded sky light, from the irradiance cube.
 layout(location = 1) out vec4 rest;
 
 // Variant: ILLUMINANCE
 #ifdef ILLUMINANCE
-// Illuminance of the surface, klx: x: by the sky; y: by the sky if nothing hid it, by the same directions, and z: by the
-// irradiance cube; w: by the sun.
+// Illuminance of the surface, klx. x: from the sky; y: from the unoccluded sky, same directions; z: from the unoccluded sky,
+// irradiance cube; w: from the sun.
 layout(location = 2) out vec4 illuminance;
 layout(set = 0, binding = 11) uniform sampler2D previous_illuminance;
 #endif
 
-// What the sky's light is shown as: the radiance reflected, the irradiance, or the share A.
+// The quantity shown for sky light: irradiance, A, or (neither) the reflected radiance.
 layout(constant_id = 0) const bool SHOW_IRRADIANCE = false;
 layout(constant_id = 1) const bool SHOW_OCCLUSION = false;
-// Whether it is shown at all.
+// Whether sky light is shown at all.
 layout(constant_id = 2) const bool SKY = true;
 layout(constant_id = 3) const int DIRECTIONS = 4;
-// As of lighting.frag.
+// As in lighting.frag.
 layout(constant_id = 4) const bool ALBEDO_IMAGE = true;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform usampler2D normal_material;
 layout(set = 0, binding = 2) uniform sampler2D albedo;         // with ALBEDO_IMAGE; else any
-layout(set = 0, binding = 3) uniform sampler2D frame;          // kcd/m^2, without the sky's light; a: of the sun alone, klx
+layout(set = 0, binding = 3) uniform sampler2D frame;          // kcd/m^2, without sky light; a: illuminance from the sun, klx
 layout(set = 0, binding = 4) uniform sampler2D previous_sky;
 layout(set = 0, binding = 5) uniform sampler2D previous_rest;
 layout(set = 0, binding = 7) uniform samplerCube sky_irradiance; // E of sky and ground, klx
@@ -47,8 +47,8 @@ layout(push_constant, scalar) uniform Push {
     float share; // of this frame in the means, 0..1
 } push;
 
-/// The light of this frame's directions on a face: rgb with V; a: its luminance without V. The ground's is known without
-/// sampling where V is left out.
+/// The light of this frame's directions on a face; rgb: with V; a: its luminance without V. Without V the ground's part has a
+/// closed form and needs no sampling.
 vec4 light_of_directions(vec3 world, vec3 n, vec3 face) {
     vec3 visible = vec3(0.0);
     float whole = luminance(push.ground) * (0.5 * PI * (1.0 - n.y));

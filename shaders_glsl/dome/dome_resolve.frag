@@ -1,8 +1,8 @@
 #version 460
 
-// The picture of the means: the sky's light, scaled by what its directions got wrong of the whole sky, and all other light.
+// Resolves the means: sky light, corrected by the ratio of the exact to the sampled unoccluded sky, plus all other light.
 
-layout(location = 0) out vec4 radiance; // rgb: kcd/m^2, or the quantity asked for; a: with ILLUMINANCE that of the surface, klx
+layout(location = 0) out vec4 radiance; // rgb: kcd/m^2, or the quantity shown; a: with ILLUMINANCE, that of the surface, klx
 
 layout(constant_id = 0) const bool ILLUMINANCE = false;
 
@@ -17,7 +17,7 @@ void main() {
     vec3 light = visible.a > 0.0 ? visible.rgb * (other.a / visible.a) : vec3(0.0);
     float lux = 0.0;
     if (ILLUMINANCE) {
-        // Of the sky, scaled likewise, and of the sun.
+        // From the sky, with the same correction, and from the sun.
         vec4 e = textureLod(illuminance, uv, 0.0);
         lux = (e.y > 0.0 ? e.x * e.z / e.y : 0.0) + e.w;
     }

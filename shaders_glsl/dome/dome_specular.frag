@@ -8,20 +8,20 @@
 #include "octahedral.glsl"
 #include "phong.glsl"
 
-// Specular reflection of the sky with its visibility, rho_s V(x, r) L_sky(r) of the lecture's rendering equation: the reflection
-// of the open sky, and V, the visible share of the light in the lobe around r, from the directions of all frames so far. Each
-// direction counts by (r.w)^p: the more directions there are, the nearer to r are those that decide.
+// Specular reflection of the sky with visibility, rho_s V(x, r) L_sky(r) of the lecture's rendering equation: the reflection of
+// the unoccluded sky, and V, the visible fraction of the light in the lobe around r, from the directions of all frames so far.
+// Each direction is weighted by (r.w)^p: the more directions there are, the closer to r those with most of the weight.
 
-// rgb: reflection of the open sky, kcd/m^2; a: visible light of the directions in the lobe.
+// rgb: reflection of the unoccluded sky, kcd/m^2; a: visible light of the directions in the lobe.
 layout(location = 0) out vec4 reflected;
 // All light of the directions in the lobe.
 layout(location = 1) out float lobe;
 
 layout(constant_id = 0) const int DIRECTIONS = 4;
 layout(constant_id = 1) const bool FRESNEL = false;
-// Energy-conserving lobe, which blurs the sky. Otherwise the lecture's perfect mirror.
+// Energy-conserving lobe, which blurs the sky; otherwise the lecture's perfect mirror.
 layout(constant_id = 2) const bool NORMALIZED = false;
-// As of lighting.frag.
+// As in lighting.frag.
 layout(constant_id = 3) const bool ALBEDO_IMAGE = true;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
@@ -34,12 +34,12 @@ layout(set = 0, binding = 7) uniform sampler2D materials;      // see materials.
 layout(set = 0, binding = 8, scalar) uniform View { VIEW_BLOCK } view;
 
 layout(push_constant, scalar) uniform Push {
-    vec2 shift;           // of the samples of the lobe, 0..1
+    vec2 shift;           // of the lobe's samples, 0..1
     float share;          // of this frame in the means
     float specular_scale; // factor on every rho_s
 } push;
 
-// Largest exponent: of a lobe narrower than the spacing of the directions only the nearest one would count.
+// Largest exponent: in a lobe narrower than the spacing of the directions only the nearest one would count.
 const float MAX_EXPONENT = 256.0;
 
 void gather(vec2 uv, float d) {

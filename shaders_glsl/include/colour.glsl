@@ -1,12 +1,12 @@
 #ifndef COLOUR_GLSL
 #define COLOUR_GLSL
-// BT.709 primaries and D65, derived exactly (IEC 61966-2-1's rounded matrix differs by up to 4e-4); columns.
+// XYZ to linear BT.709 (D65), derived exactly (IEC 61966-2-1's rounded matrix differs by up to 4e-4); in columns.
 const mat3 RGB_FROM_XYZ = mat3(
     3.2409699419045213, -0.9692436362808796, 0.0556300796969936,
     -1.5373831775700935, 1.8759675015077206, -0.2039769588889765,
     -0.4986107602930033, 0.0415550574071756, 1.0569715142428786);
 
-/// Luminance of linear BT.709, same unit as the colour.
+/// Luminance of a linear BT.709 colour, in the colour's unit.
 float luminance(vec3 rgb) {
     return dot(rgb, vec3(0.2126, 0.7152, 0.0722));
 }

@@ -1,6 +1,6 @@
 // Cube map faces in Vulkan's order and orientation: +X -X +Y -Y +Z -Z (Vulkan specification, "Cube Map Face Selection").
 
-/// Direction (not normalised) through the point st in [0,1]^2 of a face.
+/// Direction (not normalized) through the point st in [0,1]^2 of a face.
 vec3 cube_direction(int face, vec2 st) {
     vec2 c = st * 2.0 - 1.0;
     switch (face) {

@@ -1,13 +1,13 @@
-// The directions of a frame of the dome, and their shadow maps: tiles of one image.
+// The dome's directions in a frame, and their shadow maps: tiles of one image.
 #include "face.glsl"
 
 layout(set = 0, binding = 6) uniform sampler2D maps; // reversed: 1 is nearest the light
 layout(set = 0, binding = 9, scalar) uniform Dome {
     mat4 clip_from_world[16];
-    mat4 planes[16]; // their inverse transposes
-    vec4 window[16]; // first texel of the map and its edges
+    mat4 planes[16]; // inverse transposes of clip_from_world
+    vec4 window[16]; // first texel of the map and its edge lengths
     vec4 toward[16]; // unit, toward the light; a: depth bias
-    vec4 light[16];  // share of the irradiance at normal incidence, klx; a: 1 of the sky, 0 of the ground
+    vec4 light[16];  // contribution to the irradiance at normal incidence, klx; a: 1 for the sky, 0 for the ground
 } dome;
 
 /// Whether the light of direction k reaches a point of a face with shading normal n.

@@ -1,11 +1,11 @@
-// The face under a pixel, and shadow maps compared in its plane. Reversed depth d is linear over the picture: two slopes
-// describe a triangle's plane, exactly, also where a triangle is a few pixels wide and differences to neighbours fail.
+// The face at a pixel, and shadow comparison in its plane. Reversed depth d is linear over the picture, so two slopes describe
+// a triangle's plane exactly, even for triangles a few pixels wide, where differences to neighbouring pixels fail.
 #include "texel.glsl"
 #include "view.glsl"
 
-/// The shading normal on the viewer's side, of any length. Winding and stored normals of real models disagree too often to
-/// trust either: the true face, from derivatives, decides the side; surfaces are two-sided.
-/// `slack` (0..1): a normal is turned only if its cosine with the face is less than minus this.
+/// The shading normal on the viewer's side, not normalized. Winding and stored normals of real models disagree too often to
+/// trust either, so the true face, from derivatives, decides the side. Surfaces are two-sided.
+/// `slack` (0..1): a normal is flipped only if its cosine with the face normal is less than -slack.
 vec3 facing_normal(vec3 shading_normal, vec3 from_eye, float slack) {
     vec3 face = cross(dFdx(from_eye), dFdy(from_eye));
     face *= dot(face, from_eye) > 0.0 ? -1.0 : 1.0;
@@ -13,8 +13,8 @@ vec3 facing_normal(vec3 shading_normal, vec3 from_eye, float slack) {
     return dot(shading_normal, face) < limit ? -shading_normal : shading_normal;
 }
 
-// Slopes are kept as halves: the scale keeps gentle ones out of their denormal range, the limit holds those of a triangle seen
-// from its edge, which a half cannot.
+// Slopes are stored as half floats. The scale keeps small slopes out of the denormal range; the limit clamps those of edge-on
+// triangles, which a half cannot represent.
 const float SLOPE_SCALE = 256.0;
 const float MAX_SLOPE = 100.0;
 
@@ -24,26 +24,27 @@ uint face_slopes() {
     return packHalf2x16(clamp(slopes, -MAX_SLOPE, MAX_SLOPE) * SLOPE_SCALE);
 }
 
-/// View-space normal of the face under a pixel, on the viewer's side. `slopes`: of `face_slopes`; `ray`: x and y of the pixel's
-/// ray with z = -1; `pixels_per_ray`: pixels to a unit of x and of y.
+/// View-space normal of the face at a pixel, on the viewer's side. `slopes`: from `face_slopes`; `ray`: x and y of the pixel's
+/// ray with z = -1; `pixels_per_ray`: pixels per unit of x and of y.
 vec3 face_normal(uint slopes, vec2 ray, vec2 pixels_per_ray) {
     return normal_of_slopes(unpackHalf2x16(slopes) / SLOPE_SCALE * pixels_per_ray, ray);
 }
 
-// Cosine between face and shading normal above which they are taken for the same surface: 37 degrees.
+// Cosine between face and shading normal above which they count as the same surface: 37 degrees.
 const float SAME_FACE = 0.8;
 
-/// Whether a face turns its back to a light. Not where the shading normal n leans far from it, as that of leaves: there n decides.
+/// Whether a face is turned away from a light. False if the shading normal n deviates far from the face, as on leaves: n decides
+/// there.
 bool is_turned_away(vec3 face, vec3 n, vec3 toward) {
     return dot(face, n) > SAME_FACE && dot(face, toward) <= 0.0;
 }
 
-// Share of the rise that rounding of a caster's corners to the sub-texel grid may make wrong.
+// Relative error of the rise from rounding a caster's vertices to the sub-texel grid.
 const float RISE_ERROR = 0.02;
 
-/// Whether a point of a face is lit by a shadow map (reversed: 1 is nearest the light), compared at the centre of the texel that
-/// holds it with the depth that the face's plane has there: a plane cannot shadow itself, whatever its slope.
-/// `clip`: from world; `planes`: its inverse transpose, which transforms planes; `window`: the map's first texel and its edges.
+/// Whether a point of a face is lit, by a shadow map (reversed: 1 is nearest the light). The depth of the face's plane is compared
+/// at the centre of the texel that contains the point: a plane cannot shadow itself, whatever its slope.
+/// `clip`: clip from world; `planes`: its inverse transpose, for planes; `window`: first texel of the map and its edge lengths.
 bool is_lit_in_plane(sampler2D map, mat4 clip, mat4 planes, vec4 window, float bias, vec3 world, vec3 face) {
     vec4 c = clip * vec4(world, 1.0);
     vec3 p = c.xyz / c.w;

@@ -1,6 +1,6 @@
 #include "colour.glsl"
 
-/// Mikhailov 2019, "Turbo, An Improved Rainbow Colormap for Visualization": its polynomial of sRGB values, decoded.
+/// Mikhailov 2019, "Turbo, An Improved Rainbow Colormap for Visualization": polynomial fit of the sRGB values, decoded.
 vec3 turbo(float x) {
     vec3 c = vec3(59.28637943, 2.82956604, 27.34824973);
     c = c * x + vec3(-152.94239396, 4.27729857, -89.90310912);

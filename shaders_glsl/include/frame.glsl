@@ -1,5 +1,5 @@
 // Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
-// The lecture's frame (Frisvad 2012) divides by 1 + n.z: in float32 its error reaches 0.15 near n = -z, this one's stays at 1e-7.
+// The lecture's frame (Frisvad 2012) divides by 1 + n.z: in float32 its error reaches 0.15 near n = -z; here it stays at 1e-7.
 
 /// Right-handed orthonormal frame whose third column is n.
 mat3 frame_from_normal(vec3 n) {

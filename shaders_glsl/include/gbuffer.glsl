@@ -1,15 +1,15 @@
-// What a draw of the G-buffer reads.
+// Uniforms and push constants of the G-buffer pass.
 
 layout(set = 0, binding = 0, scalar) uniform Camera {
     mat4 clip_from_world;
     vec3 eye;      // world, metres
-    float sharpen; // mip levels by which maps are sharper than a single sample wants
+    float sharpen; // mip bias toward finer levels, relative to one sample per pixel
 } camera;
 
 layout(push_constant, scalar) uniform Push {
     vec3 diffuse;       // rho_d, multiplies the diffuse map
     uint material;      // index into the table of materials
-    float cutoff;       // of a cut-out: alpha below it is a hole
+    float cutoff;       // of an alpha-tested surface: fragments with alpha below it are discarded
     float normal_scale; // factor on the slopes of the normal map
     uint is_specular;   // whether it has a rho_s
 } push;

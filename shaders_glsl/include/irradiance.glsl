@@ -1,4 +1,4 @@
-// The lecture's slide "Integrating skylight": E(n) = 1/N sum L (n.w) / pdf(w) with pdf = (n.w) / pi, so each sample adds pi L.
+// As on the lecture's slide "Integrating skylight": E(n) = 1/N sum L (n.w) / pdf(w) with pdf = (n.w) / pi; a sample adds pi L.
 #include "constants.glsl"
 #include "cube.glsl"
 #include "frame.glsl"
@@ -13,7 +13,7 @@ layout(set = 0, binding = 2, scalar) readonly buffer Samples {
 };
 
 layout(push_constant, scalar) uniform Push {
-    uint first; // index of the first sample of this pass; 0 starts anew
+    uint first; // index of the first sample of this pass; 0 restarts
     uint count; // samples of this pass
 } push;
 
@@ -25,15 +25,15 @@ vec3 random_direction(inout uint t) {
     return vec3(cos(phi) * sin_theta, sin(phi) * sin_theta, sqrt(1.0 - xi1));
 }
 
-/// The frame turned around its normal, by angles that fill the circle evenly among neighbouring texels (the R2 sequence of
-/// Roberts 2018): their errors differ, and the bilinear lookup of the map averages them.
+/// The frame rotated about its normal by an angle that varies evenly among neighbouring texels (R2 sequence, Roberts 2018): their
+/// errors differ, and the map's bilinear lookup averages them.
 mat3 turned(mat3 frame, ivec2 texel, int face) {
     float angle = 2.0 * PI * fract(dot(vec2(texel), vec2(0.7548776662, 0.5698402910)) + 0.6180339887 * float(face));
     vec2 turn = vec2(cos(angle), sin(angle));
     return mat3(turn.x * frame[0] + turn.y * frame[1], turn.x * frame[1] - turn.y * frame[0], frame[2]);
 }
 
-/// The sum so far with this pass's samples: rgb: pi L, klx; a: number of samples. `n` is the direction of the texel.
+/// The sum so far including this pass's samples; rgb: pi L, klx; a: number of samples. `n` is the texel's direction.
 vec4 refined(vec3 n, ivec2 texel, int face) {
     mat3 frame = frame_from_normal(n);
     if (!MONTE_CARLO) frame = turned(frame, texel, face);
@@ -41,8 +41,8 @@ vec4 refined(vec3 n, ivec2 texel, int face) {
     uint t = tea(uint(texel.y) * edge + uint(texel.x), uint(face) + 6u * push.first);
     vec3 total = vec3(0.0);
     for (uint i = 0u; i < push.count; ++i) {
-        // Filtered importance sampling (Krivanek and Colbert 2008): a sample stands for its share of the hemisphere. The
-        // lecture's random samples look at points.
+        // Filtered importance sampling (Krivanek and Colbert 2008): a sample represents its part of the hemisphere. The
+        // lecture's random samples are unfiltered.
         vec4 local = MONTE_CARLO ? vec4(random_direction(t), 0.0) : samples[push.first + i];
         total += textureLod(sky_radiance, frame * local.xyz, local.w).rgb;
     }
@@ -51,7 +51,7 @@ vec4 refined(vec3 n, ivec2 texel, int face) {
     return sum;
 }
 
-/// E, klx, of a sum.
+/// E, klx, from a sum.
 vec4 mean(vec4 sum) {
     return vec4(sum.rgb / sum.a, 1.0);
 }

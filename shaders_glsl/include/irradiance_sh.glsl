@@ -17,6 +17,6 @@ vec4 evaluated(vec3 n) {
     vec3 e = PI * basis[0] * push.coefficients[0];
     for (int i = 1; i < 4; ++i) e += (2.0 * PI / 3.0) * basis[i] * push.coefficients[i];
     for (int i = 4; i < 9; ++i) e += (PI / 4.0) * basis[i] * push.coefficients[i];
-    // The truncated series dips below zero on normals away from the light.
+    // The truncated series becomes negative for normals facing away from the light.
     return vec4(max(e, 0.0), 1.0);
 }

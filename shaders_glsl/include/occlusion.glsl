@@ -1,7 +1,7 @@
-// Texels of the ambient occlusion: a distance along the view axis (m) in the upper 22 bits, to 3e-5 of it, and ten bits of
-// something else. One lookup instead of two, and no halves to widen.
+// Texels of the ambient occlusion: the distance along the view axis (m) in the upper 22 bits, with a relative error of 3e-5, and
+// ten bits of payload. One lookup instead of two, and no conversion from half floats.
 
-/// Distance where nothing is, metres: farther than any radius.
+/// Distance of pixels without a surface, metres: beyond any radius.
 const float NOWHERE = 1e18;
 
 uint distance_pack(float distance) {
@@ -13,44 +13,44 @@ float packed_distance(uint word) {
     return uintBitsToFloat((word >> 1) & 0x7ffffe00u);
 }
 
-/// A surface and the thickness of the body behind it (m), to an eighth.
+/// Packs a surface's distance and the thickness of the body behind it (m), with a relative error of 1/8.
 uint occluder_pack(float distance, float thickness) {
     return distance_pack(distance) | floatBitsToUint(thickness) >> 21;
 }
 
 /// Thickness of the body behind the surface, metres.
 float occluder_thickness(uint word) {
-    // The distance's last bit comes along as the sign.
+    // The distance's last bit ends up as the sign.
     return abs(uintBitsToFloat(word << 21));
 }
 
-// A is 1 less a multiple of this: single slices go down to 1 - pi/2. No occlusion is a word of 0 at no distance.
+// A is stored as 1 minus a multiple of this: single slices go down to 1 - pi/2. A word of 0 is A = 1 at distance 0.
 const float OCCLUSION_STEP = 1.0 / 640.0;
 
-/// A surface and its ambient occlusion A, 1 - pi/2 .. 1.
+/// Packs a surface's distance and its ambient occlusion A, 1 - pi/2 .. 1.
 uint occlusion_pack(float a, float distance) {
     return distance_pack(distance) | uint(clamp((1.0 - a) / OCCLUSION_STEP + 0.5, 0.0, 1023.0));
 }
 
-/// A, with its distance along the view axis (m).
+/// A, and the distance along the view axis (m).
 vec2 occlusion_unpack(uint word) {
     return vec2(1.0 - float(int(word & 1023u)) * OCCLUSION_STEP, packed_distance(word));
 }
 
-/// A, upsampled without crossing depth edges. Texel k of the occlusion was computed at pixel k * downscale of the picture.
+/// A, upsampled without crossing depth edges. Texel k of the occlusion belongs to pixel k * downscale of the picture.
 float ambient_occlusion(usampler2D occlusion, int downscale, ivec2 pixel, float distance) {
     vec2 at = vec2(pixel) / float(downscale);
     vec2 base = floor(at);
     vec2 f = at - base, g = 1.0 - f;
     vec2 uv = (base + 0.5) / vec2(textureSize(occlusion, 0));
-    // Lookups with an offset share their coordinates.
+    // Lookups with constant offsets share one coordinate computation.
     uvec4 words = uvec4(textureLod(occlusion, uv, 0.0).r, textureLodOffset(occlusion, uv, 0.0, ivec2(1, 0)).r,
                         textureLodOffset(occlusion, uv, 0.0, ivec2(0, 1)).r, textureLodOffset(occlusion, uv, 0.0, ivec2(1, 1)).r);
     vec4 bilinear = vec4(g.x * g.y, f.x * g.y, g.x * f.y, f.x * f.y);
     vec2 sum = vec2(0.0);
     for (int i = 0; i < 4; ++i) {
         vec2 tap = occlusion_unpack(words[i]);
-        // The small terms keep the weights finite: a texel across an edge counts if there is no other.
+        // The small terms keep the weights finite, and texels across an edge count if there are no others.
         float w = (bilinear[i] + 1e-3) / (1e-3 * distance + abs(tap.g - distance));
         sum += vec2(tap.r, 1.0) * w;
     }

@@ -1,4 +1,4 @@
-// Cigolle et al. 2014, "A Survey of Efficient Representations for Independent Unit Vectors": octahedral map.
+// Octahedral encoding (Cigolle et al. 2014, "A Survey of Efficient Representations for Independent Unit Vectors").
 
 vec2 sign_not_zero(vec2 v) {
     return vec2(v.x >= 0.0 ? 1.0 : -1.0, v.y >= 0.0 ? 1.0 : -1.0);
@@ -10,7 +10,7 @@ vec2 octahedral_encode(vec3 n) {
     return n.z >= 0.0 ? p : (1.0 - abs(p.yx)) * sign_not_zero(p);
 }
 
-/// A direction of any length as the G-buffer keeps it: 16 bits a component, 0.003 degrees.
+/// Encodes a direction of any length for the G-buffer: 16 bits per component, precise to 0.003 degrees.
 uint normal_pack(vec3 n) {
     return packSnorm2x16(octahedral_encode(n));
 }
@@ -22,7 +22,7 @@ vec3 octahedral_decode(vec2 p) {
     return normalize(n);
 }
 
-/// The unit vector of a word of the G-buffer.
+/// Decodes a G-buffer word to a unit vector.
 vec3 normal_unpack(uint word) {
     return octahedral_decode(unpackSnorm2x16(word));
 }

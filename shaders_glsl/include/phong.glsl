@@ -1,14 +1,14 @@
-// Mirrors: the lecture's lobe (r.w)^p, and the same lobe as a reflectance that keeps the balance of energy.
+// Specular lobes: the lecture's (r.w)^p, and its energy-conserving form.
 #include "frame.glsl"
 
 /// Lewis 1994, "Making Shaders More Physically Plausible": with this factor (and the cosine of the incoming light, which the
-/// lecture's form leaves out) the lobe reflects the share rho_s of what falls on it head-on, and never more.
+/// lecture's form omits) the lobe reflects the fraction rho_s of light at normal incidence, and never more.
 float phong_scale(float p) {
     return (p + 2.0) / (2.0 * PI);
 }
 
-/// Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering": rho_s toward grazing angles. A rough surface, by
-/// the rule that gives it its rho_s and p, mirrors no more than the share g = (1 - roughness)^2.
+/// Fresnel approximation of rho_s (Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering"). The limit at grazing
+/// angles is (1 - roughness)^2, or rho_s if larger; roughness follows from p by the rule that materials use.
 vec3 grazing(vec3 rho_s, float shininess, float cosine) {
     float smoothness = 1.0 - pow(2.0 / (shininess + 2.0), 0.25);
     vec3 most = max(vec3(smoothness * smoothness), rho_s);
@@ -17,8 +17,8 @@ vec3 grazing(vec3 rho_s, float shininess, float cosine) {
 
 const int LOBE_SAMPLES = 16;
 
-/// Integral of the sky over the normalised lobe around r of a surface with normal n, if nothing hid it: directions drawn by the
-/// lobe, (p+1)/(2 pi) (r.w)^p, on the R2 sequence; `shift` turns it from frame to frame.
+/// Integral of the unoccluded sky over the normalized lobe around r of a surface with normal n. Importance sampled by the lobe,
+/// (p+1)/(2 pi) (r.w)^p, on a Fibonacci lattice; `shift` (0..1) offsets it from frame to frame.
 vec3 sky_in_lobe(samplerCube sky, vec3 r, vec3 n, float p, vec2 shift) {
     mat3 frame = frame_from_normal(r);
     vec3 sum = vec3(0.0);

@@ -1,4 +1,4 @@
 layout(push_constant, scalar) uniform Push {
     mat4 shadow_from_world;
-    float cutoff; // alpha below it is a hole
+    float cutoff; // fragments with alpha below it are discarded
 } push;

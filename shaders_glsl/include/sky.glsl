@@ -1,4 +1,4 @@
-// What all skies share: the guard around the model, as `daylight::sky` on the CPU.
+// Common to all sky models: twilight, night, ground and gamut clipping, as in `daylight::sky` on the CPU.
 #include "colour.glsl"
 #include "cube.glsl"
 
@@ -9,15 +9,15 @@ layout(push_constant, scalar) uniform Push {
     vec3 ground;        // radiance below the horizon, kcd/m^2
 } push;
 
-// float32 loses exp(B / cos theta) closer to the horizon than this; the texel centres of a cube stay above it.
+// Closer to the horizon than this, exp(B / cos theta) is lost in float32; the texel centres of a cube stay above it.
 const float MIN_COS_THETA = 1e-4;
 
-/// Angle between two unit vectors (Kahan): acos loses half of its digits near 0, just where the sky is brightest.
+/// Angle between two unit vectors (Kahan): acos loses half of its digits near 0, where the sky is brightest.
 float angle_between(vec3 a, vec3 b) {
     return 2.0 * atan(length(a - b), length(a + b));
 }
 
-/// The nearest displayable colour: a saturated glow lies outside of BT.709, and light cannot be negative. Keeps luminance.
+/// Clips negative components, which saturated sky colours outside of BT.709 have, preserving luminance.
 vec3 clip_negative(vec3 rgb) {
     if (min(rgb.r, min(rgb.g, rgb.b)) >= 0.0) return rgb;
     vec3 clamped = max(rgb, 0.0);
@@ -26,7 +26,7 @@ vec3 clip_negative(vec3 rgb) {
     return target > 0.0 && l > 0.0 ? clamped * (target / l) : vec3(0.0);
 }
 
-/// The sky, or the ground below it, kcd/m^2. `model` is the model's own radiance.
+/// Radiance of the sky, or of the ground below the horizon, kcd/m^2. `model` is the model's radiance.
 vec4 guarded(vec3 direction, vec3 model) {
     return vec4(direction.y > 0.0 ? clip_negative(model) * push.scale + push.night : push.ground, 1.0);
 }

@@ -1,4 +1,4 @@
-// Hosek and Wilkie 2012, eq. 8, the published RGB fit.
+// Hosek and Wilkie 2012, eq. 8, with the published RGB fit.
 #include "sky.glsl"
 
 layout(set = 0, binding = 0, scalar) uniform Model {
@@ -17,7 +17,7 @@ float distribution(int channel, float cos_theta, float gamma) {
             + model.coefficients[k + 7] * sqrt(cos_theta));
 }
 
-/// The sky in a unit direction, kcd/m^2.
+/// Radiance of the sky in a unit direction, kcd/m^2.
 vec4 sky(vec3 direction) {
     float cos_theta = max(direction.y, 0.0);
     float gamma = angle_between(direction, push.sun_direction);

@@ -1,4 +1,4 @@
-// Preetham et al. 1999, A.2. The CIE clear sky has the same form and is drawn by this shader too.
+// Preetham et al. 1999, A.2. The CIE clear sky has the same form and uses this shader too.
 #include "sky.glsl"
 
 struct Perez {
@@ -28,7 +28,7 @@ vec3 preetham(vec3 direction) {
     return RGB_FROM_XYZ * (vec3(x, y, 1.0 - x - y) * (Y / y));
 }
 
-/// The sky in a unit direction, kcd/m^2.
+/// Radiance of the sky in a unit direction, kcd/m^2.
 vec4 sky(vec3 direction) {
     return guarded(direction, preetham(direction));
 }

@@ -1,13 +1,13 @@
 #include "colour.glsl"
 
-// Tone curves of exposed linear BT.709 (1 is the display's white before the curve); results are linear.
+// Tone curves for exposed linear BT.709 (1 is the display's white before the curve); results are linear.
 
 /// Ferschin's exponential mapping (the lecture's slide "Tone mapping"), per channel.
 vec3 tone_exponential(vec3 c) {
     return 1.0 - exp(-c);
 }
 
-/// The same on luminance, the colour kept: channels may exceed 1.
+/// The same on luminance, preserving chromaticity: channels may exceed 1.
 vec3 tone_exponential_luminance(vec3 c) {
     float l = luminance(c);
     return l > 0.0 ? c * ((1.0 - exp(-l)) / l) : vec3(0.0);
@@ -55,7 +55,7 @@ vec3 tone_agx(vec3 c) {
     return pow(max(outset * x, 0.0), vec3(2.2));
 }
 
-/// ACES, Hill's fit of RRT and ODT, without the exposure factor some engines add.
+/// ACES, Hill's fit of RRT and ODT, without the exposure factor that some engines add.
 vec3 tone_aces(vec3 c) {
     const mat3 in_matrix = mat3(
         0.59719, 0.07600, 0.02840,

@@ -3,15 +3,15 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "view.glsl"
 
-// The lecture's slide "Environment mapping - filling the background": the sky cube along the pixel's ray. The depth test
-// leaves only pixels without a surface. The sun's disc is drawn here and nowhere else.
+// The background, as on the lecture's slide "Environment mapping - filling the background": the sky cube along the pixel's ray.
+// The depth test passes only pixels without a surface. The sun's disc is drawn only here.
 
-layout(location = 0) out vec4 radiance; // rgb: kcd/m^2, or a constant; a: illuminance, 0 where no surface is
+layout(location = 0) out vec4 radiance; // rgb: kcd/m^2, or a constant; a: illuminance, 0 without a surface
 
 layout(constant_id = 0) const bool SKY = true;
-// The sun's disc is in view.
+// Whether the sun's disc may be in view.
 layout(constant_id = 2) const bool DISC = true;
-// Without the sky: what quantities have where no surface is.
+// Constant for pixels without a surface, if the sky is not drawn.
 layout(constant_id = 1) const float EMPTY = 0.0;
 
 layout(set = 0, binding = 0) uniform samplerCube sky_radiance; // kcd/m^2, without the disc
@@ -22,13 +22,13 @@ layout(push_constant, scalar) uniform Push {
     vec3 direction;     // unit, toward the sun
     vec3 luminance;     // of the disc's centre, kcd/m^2
     float sin_radius;   // of the disc
-    float limb;         // limb darkening coefficient u, 0: a uniform disc
-    float max_radiance; // largest value the target holds, kcd/m^2
+    float limb;         // limb darkening coefficient u; 0: a uniform disc
+    float max_radiance; // largest value the target can represent, kcd/m^2
 } push;
 
-/// Luminance of the disc, limb-darkened: I = I0 (1 - u (1 - mu)).
+/// Luminance of the disc with limb darkening: I = I0 (1 - u (1 - mu)).
 vec3 disc(vec3 direction) {
-    // The sine, because float32 has no digits left in cosines of a quarter of a degree.
+    // By the sine: in float32, cosines of a quarter of a degree have no precision left.
     float s = length(cross(direction, push.direction)) / push.sin_radius;
     float mu = sqrt(max(1.0 - s * s, 0.0));
     bool inside = s < 1.0 && dot(direction, push.direction) > 0.0;

@@ -12,35 +12,35 @@
 // The lecture's slide "Illumination model for skylight":
 //   L_r = rho_d/pi ((n.l) V E_sun + A E_sky(n)) + rho_s ((r.l)^p V E_sun + L_sky(r))
 
-layout(location = 0) out vec4 radiance; // rgb: kcd/m^2, or the quantity asked for; a: illuminance of the surface, klx
+layout(location = 0) out vec4 radiance; // rgb: kcd/m^2, or the quantity shown; a: illuminance of the surface, klx
 
-// Which addends go into the sum.
+// Terms of the sum.
 layout(constant_id = 0) const bool SUN = true;
 layout(constant_id = 1) const bool SKY = true;
 layout(constant_id = 2) const bool SUN_SPECULAR = true;
 layout(constant_id = 3) const bool SKY_SPECULAR = true;
-// One of these instead of the sum.
+// One of these quantities instead of the sum.
 layout(constant_id = 4) const bool SHOW_VISIBILITY = false;
 layout(constant_id = 5) const bool SHOW_OCCLUSION = false;
 layout(constant_id = 6) const bool SHOW_IRRADIANCE = false;
 layout(constant_id = 7) const bool SHOW_ALBEDO = false;
 layout(constant_id = 8) const bool SHOW_NORMAL = false;
 layout(constant_id = 9) const bool SHOW_DEPTH = false;
-// Pixels of the picture to one of the occlusion, each way.
+// Pixels per texel of the occlusion, along each axis.
 layout(constant_id = 10) const int OCCLUSION_DOWNSCALE = 2;
 // rho_s grows toward grazing angles.
 layout(constant_id = 11) const bool FRESNEL = false;
-// With the diffuse light of the sky; otherwise the dome adds it (A = 0 here).
+// Includes diffuse sky light; otherwise the dome adds it (A = 0 here).
 layout(constant_id = 12) const bool AMBIENT = true;
-// One comparison with the shadow map in the plane of the face, for frames whose mean softens the edges.
+// A single shadow comparison in the plane of the face, for averaged frames, whose mean softens the edges.
 layout(constant_id = 13) const bool PLANE_SHADOW = false;
-// rho_d of each pixel is in an image; otherwise the scene has no maps, and the table of materials has rho_d.
+// rho_d is stored per pixel; otherwise the scene has no maps, and rho_d is in the table of materials.
 layout(constant_id = 14) const bool ALBEDO_IMAGE = true;
-// Maps of the sun, side by side.
+// Number of the sun's shadow maps, side by side.
 layout(constant_id = 15) const int CASCADES = 1;
-// Penumbrae as wide as the sun's disc makes them.
+// Penumbrae of physical width, from the sun's angular radius.
 layout(constant_id = 16) const bool PCSS = false;
-// Energy-conserving specular lobe, of sun and sky alike.
+// Energy-conserving specular lobe for both sun and sky.
 layout(constant_id = 17) const bool NORMALIZED = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
@@ -56,17 +56,17 @@ layout(set = 0, binding = 8, scalar) uniform Sun {
     vec3 direction;       // unit, toward the sun
     vec3 illuminance;     // E_sun at normal incidence, klx
     float depth_bias;     // of comparisons with PLANE_SHADOW
-    float max_radiance;   // largest value the target holds, kcd/m^2
+    float max_radiance;   // largest value the target can represent, kcd/m^2
     float specular_scale; // factor on every rho_s
     mat4 planes;          // inverse transpose of shadow_from_world
-    ivec2 occlusion_from; // pixel of the occlusion's picture that is this one's first
+    ivec2 occlusion_from; // origin of this picture in the occlusion's picture, pixels
 } sun;
 
 layout(set = 0, binding = 9) uniform sampler2D materials; // see materials.glsl
 
 #include "sun_shadow.glsl"
 
-/// V of one point of the sun's disc. The error is up to a texel of the map; the mean over many maps averages it out.
+/// V of one point of the sun's disc. Shadow edges are off by up to a texel; the mean over many maps averages this out.
 float plane_visibility(vec3 world, vec3 n, vec3 face) {
     if (is_turned_away(face, n, sun.direction)) return 0.0;
     vec4 window = vec4(vec2(0.0), vec2(textureSize(shadow_map, 0)));
@@ -79,7 +79,7 @@ void main() {
     float d = textureLod(depth, uv, 0.0).r;
     vec3 ray = view_ray(uv, view.ray_scale, view.ray_offset);
     vec3 world_ray = view.world_from_view * ray;
-    // The depth test leaves only pixels with a surface: d > 0.
+    // The depth test passes only pixels with a surface: d > 0.
     float distance = view.near / d;
     vec3 world = view.eye + world_ray * distance;
     uvec3 own = textureLod(normal_material, uv, 0.0).xyz;

@@ -6,16 +6,16 @@
 #include "occlusion.glsl"
 #include "octahedral.glsl"
 
-// Therrien et al. 2023, "Screen Space Indirect Lighting with Visibility Bitmask": a slice through the view direction is cut
+// Therrien et al. 2023, "Screen Space Indirect Lighting with Visibility Bitmask": a slice through the view direction is divided
 // into sectors, and each sample blocks those between its front and its back. As in Jimenez et al. 2016, "Practical Realtime
-// Strategies for Accurate Indirect Occlusion" (GTAO), directions count by their cosine: sectors are cut to count the same.
-// Added here: backs by the thickness of bodies, samples as wide as their step, and a picture that goes on past its edge.
+// Strategies for Accurate Indirect Occlusion" (GTAO), directions are cosine-weighted; here all sectors have equal weight.
+// Extensions: backs from the thickness of bodies, samples as wide as their step, and extrapolation past the picture's edge.
 
 layout(location = 0) out uint occlusion; // A and the distance along the view axis, packed
 
 layout(constant_id = 0) const int STEPS = 1;     // on each side of the slice
-layout(constant_id = 1) const int DOWNSCALE = 1; // pixels of the G-buffer to one of the occluders, each way
-layout(constant_id = 2) const int SPACING = 1;   // occluders to a point at which A is computed, each way
+layout(constant_id = 1) const int DOWNSCALE = 1; // pixels of the G-buffer per occluder, along each axis
+layout(constant_id = 2) const int SPACING = 1;   // occluders per point at which A is computed, along each axis
 
 layout(set = 0, binding = 0) uniform usampler2D occluders;
 layout(set = 0, binding = 1) uniform usampler2D normal_material;
@@ -29,17 +29,17 @@ layout(push_constant, scalar) uniform Push {
 } push;
 
 const float SECTORS = 32.0;
-// What rises less than this over the face that is lit (a sine) is that face, not an occluder: samples lie at pixel centres,
-// beside the slice, where a plane seen at a grazing angle would pass for a horizon.
+// Sine of the elevation above the receiving face below which a sample belongs to the face and does not occlude: samples lie at
+// pixel centres, beside the slice, where a plane seen at a grazing angle would look like a horizon.
 const float FLAT = 0.02;
 
-// The point that is lit.
+// The receiving point.
 vec3 p;        // view space, metres
 vec3 v;        // unit, toward the eye
 vec3 n;        // unit
-vec3 face;     // normal of the face itself, unit: where normals are smooth, its own ends rise over the plane of n
+vec3 face;     // normal of the face itself, unit: with smooth normals, parts of the face rise above the plane of n
 vec2 origin;   // texels
-vec2 ray_step; // of a texel, of rays with z = -1
+vec2 ray_step; // per texel, for rays with z = -1
 vec2 ray_base; // of texel 0
 vec2 texel_size; // of the picture's
 vec2 pixel_size; // of the G-buffer's
@@ -48,7 +48,7 @@ vec3 point(vec2 texel, float distance) {
     return vec3(texel * ray_step + ray_base, -1.0) * distance;
 }
 
-// As `texel_at`, with sizes that are found once.
+// Like `texel_at`, with precomputed sizes.
 
 uint occluder_at(vec2 texel) {
     return textureLod(occluders, (texel + 0.5) * texel_size, 0.0).r;
@@ -58,22 +58,22 @@ vec3 normal_at(vec2 texel) {
     return normal_unpack(textureLod(normal_material, (texel * float(DOWNSCALE) + 0.5) * pixel_size, 0.0).r) * view.world_from_view;
 }
 
-/// Past the picture's edge that of its last pixel.
+/// Depth of a pixel, clamped to the picture's edge.
 float depth_at(vec2 pixel) {
     return textureLod(depth, (pixel + 0.5) * pixel_size, 0.0).r;
 }
 
-/// Relative change of depth toward the neighbour, on either side, that lies on the same face: the one of less change.
+/// Relative change of depth per pixel, toward the neighbour with the smaller change, which is assumed to be on the same face.
 float depth_slope(vec2 pixel, vec2 unit, float d) {
     float before = depth_at(pixel - unit) - d;
     float after = depth_at(pixel + unit) - d;
-    // At the picture's edge there is one only.
+    // At the picture's edge there is only one neighbour.
     bool is_first = any(lessThan(pixel - unit, vec2(0.0)));
     bool is_last = any(greaterThan(pixel + unit, vec2(textureSize(depth, 0) - 1)));
     return (is_first || (!is_last && abs(after) < abs(before)) ? after : -before) / d;
 }
 
-/// The normal of the face under a pixel; the shading normal where no neighbour lies on it.
+/// The normal of the face at a pixel; the shading normal if no neighbour lies on the same face.
 vec3 face_at(vec2 pixel) {
     float d = depth_at(pixel);
     vec2 slope = vec2(depth_slope(pixel, vec2(1.0, 0.0), d), depth_slope(pixel, vec2(0.0, 1.0), d)) * float(DOWNSCALE) / ray_step;
@@ -81,13 +81,13 @@ vec3 face_at(vec2 pixel) {
     return dot(normal, n) > SAME_FACE ? normal : n;
 }
 
-/// Half of a slice: the side of the view direction toward which its axis points.
+/// Half of a slice: the side of the view direction that its axis points to.
 struct Side {
     vec3 axis;        // unit, perpendicular to the view direction
     vec2 n;           // the normal's projection on the slice, unit: along the axis, along the view direction
     vec2 stride;      // texels of a step of the radius
     float sectors;    // of this side, up to the tangent plane
-    float per_weight; // sectors of a unit of weight
+    float per_weight; // sectors per unit of weight
 };
 
 /// Weight of the directions between the view direction and one whose cosine to it is c: the integral over the angle h of
@@ -98,8 +98,8 @@ float weight(float c, vec2 n) {
     return 0.5 * ((1.0 - c2) * n.y + (0.5 * PI - c * (1.9836721 - c2 * (0.2379583 + 0.1722095 * c2))) * n.x);
 }
 
-/// 1 / sqrt x within 0.2 %: the initial guess by the exponent and one step of Newton's method (Lomont 2003, "Fast inverse square
-/// root"). A software device computes `inversesqrt` by a root and a division.
+/// 1 / sqrt x with an error below 0.2 %: an initial guess from the exponent and one Newton step (Lomont 2003, "Fast inverse square
+/// root"). A software device computes `inversesqrt` with a square root and a division.
 float rsqrt(float x) {
     float y = uintBitsToFloat(0x5f375a86u - (floatBitsToUint(x) >> 1));
     return y * (1.5 - 0.5 * x * y * y);
@@ -108,11 +108,11 @@ float rsqrt(float x) {
 /// Sectors between the view direction and a point q of the slice (along the axis, along the view direction, metres).
 float sectors_to(vec2 q, Side side) {
     float sectors = weight(q.y * rsqrt(dot(q, q) + 1e-20), side.n) * side.per_weight;
-    // Behind the tangent plane everything is blocked by it.
+    // Below the tangent plane all sectors are blocked.
     return dot(q, side.n) > 0.0 ? sectors : side.sectors;
 }
 
-/// Sectors from 0 to a count.
+/// Bit mask of the first `count` sectors.
 uint below(float count) {
     int whole = clamp(int(count), 0, 32);
     return whole >= 32 ? 0xffffffffu : (1u << whole) - 1u;
@@ -122,7 +122,7 @@ uint between(float a, float b, float dither) {
     return below(max(a, b) + dither) & ~below(min(a, b) + dither);
 }
 
-/// The sectors that one sample blocks: a box seen from p, from its front to its back, as wide as the step.
+/// The sectors that one sample blocks: a box, as seen from p, from the sample's front to its back and as wide as the step.
 uint blocked_by(vec2 texel, Side side, float half_width, float dither) {
     uint word = occluder_at(texel);
     float distance = packed_distance(word);
@@ -130,7 +130,7 @@ uint blocked_by(vec2 texel, Side side, float half_width, float dither) {
     float r2 = dot(delta, delta);
     float over_face = dot(delta, face);
     vec2 q = vec2(abs(dot(delta, side.axis)), dot(delta, v));
-    // No farther back than the sphere of the radius: sqrt(1 - t) of its circle as a parabola.
+    // The back is clamped to the sphere of the radius, with a parabola for sqrt(1 - t) of its circle.
     float t = min(q.x * q.x / (push.radius * push.radius), 1.0);
     float back = max(q.y - occluder_thickness(word), -push.radius * (1.0 - t * (0.5 + 0.5 * t)));
     float h = half_width * distance;
@@ -140,7 +140,7 @@ uint blocked_by(vec2 texel, Side side, float half_width, float dither) {
     return occludes ? between(front_at, back_at, dither) : 0u;
 }
 
-/// The sectors blocked past the picture's edge, where the surface at the edge goes on as a plane up to the radius.
+/// The sectors blocked past the picture's edge, where the surface at the edge is extrapolated as a plane up to the radius.
 uint blocked_past(vec2 texel, Side side, float dither) {
     vec3 m = normal_at(texel);
     vec3 delta = point(texel, packed_distance(occluder_at(texel))) - p;
@@ -151,13 +151,13 @@ uint blocked_past(vec2 texel, Side side, float dither) {
     away *= inversesqrt(dot(away, away));
     float b = dot(q, away);
     float reach = sqrt(b * b + room) - b;
-    // The plane that is lit hides nothing of itself.
+    // The receiver's plane does not occlude itself.
     float over_face = dot(delta, face) + reach * (away.x * dot(face, side.axis) + away.y * dot(face, v));
     if (over_face <= FLAT * push.radius) return 0u;
     return between(sectors_to(q, side), sectors_to(q + away * reach, side), dither);
 }
 
-/// The sectors that surfaces on one side block.
+/// The sectors blocked by surfaces on one side.
 uint blocked_sectors(Side side, float jitter, float dither) {
     vec2 size = vec2(textureSize(occluders, 0));
     vec2 room = abs((mix(vec2(0.5), size - 0.5, greaterThan(side.stride, vec2(0.0))) - origin) / side.stride);
@@ -166,7 +166,7 @@ uint blocked_sectors(Side side, float jitter, float dither) {
     float half_width = push.radius / (float(STEPS) * -p.z);
     uint sectors = 0u;
     for (int i = 0; i < STEPS; ++i) {
-        // Steps grow with the distance.
+        // Steps grow with distance.
         float s = (float(i) + jitter) / float(STEPS);
         vec2 texel = floor(origin + side.stride * min(max(s * s, first), last));
         sectors |= blocked_by(texel, side, half_width * s, dither);
@@ -177,15 +177,15 @@ uint blocked_sectors(Side side, float jitter, float dither) {
 
 #include "height_map.glsl"
 
-/// 1 - A by the slice at a share `turn` of half a circle.
+/// 1 - A from the slice at the angle `turn` (0..1, in half turns).
 float slice_occlusion(float turn, float jitter, float dither, float distance) {
-    // Slices turn evenly about v, which leaves the image plane's normal toward the picture's edges.
+    // Slices are evenly distributed about v, which deviates from the image plane's normal toward the picture's edges.
     vec3 right = normalize(vec3(v.z, 0.0, -v.x));
     vec3 axis = right * cos(turn * PI) + cross(v, right) * sin(turn * PI);
     vec2 slice_n = vec2(dot(n, axis), dot(n, v));
     float length_n = max(length(slice_n), 1e-4);
     slice_n /= length_n;
-    // Each side up to the tangent plane, whose cosines to the view direction are -n.x and n.x.
+    // Each side ends at the tangent plane, whose cosines to the view direction are -n.x and n.x.
     float plus_weight = weight(-slice_n.x, slice_n);
     float minus_weight = weight(slice_n.x, vec2(-slice_n.x, slice_n.y));
     float both = plus_weight + minus_weight;
@@ -206,20 +206,20 @@ void main() {
     ray_base = view_ray(0.5 / full_size, view.ray_scale, view.ray_offset).xy;
     texel_size = 1.0 / vec2(textureSize(occluders, 0));
     pixel_size = 1.0 / full_size;
-    // The depth test leaves only points with a surface.
+    // The depth test passes only points with a surface.
     float distance = packed_distance(occluder_at(texel));
     p = point(texel, distance);
     v = normalize(-p);
     n = normal_at(texel);
     face = face_at(texel * float(DOWNSCALE));
     origin = texel + 0.5;
-    // A pattern of 4x4 directions and step offsets, after Jimenez et al., taken out again by the blur. From frame to frame the
-    // phase moves each by another number of turns, coprime ones, so that they do not repeat together.
+    // A 4x4 pattern of directions and step offsets, after Jimenez et al., which the blur removes. Between frames the phase advances
+    // each by a different factor; the factors are coprime, so that they do not repeat together.
     ivec2 cell = own & 3;
     float turn = fract(float(((cell.x + cell.y) & 3) * 4 + cell.x) / 16.0 + push.phase);
     float jitter = fract(float((cell.y - cell.x) & 3) * 0.25 + 0.125 + push.phase * 7.0);
-    // By the golden ratio: no sum of the two above, which repeats within the pattern.
+    // By the golden ratio, not as a sum of the two above, which would repeat within the pattern.
     float dither = fract(float(4 * cell.y + cell.x) * 0.6180340 + 0.5 + push.phase * 5.0);
-    // Not cut at 0: a single slice may block more than its share (up to pi/2), and only the mean over many is A.
+    // Not clamped to 0: the occlusion of a single slice may exceed 1 (up to pi/2), and only the mean over many slices is A.
     occlusion = occlusion_pack(1.0 - slice_occlusion(turn, jitter, dither, distance), distance);
 }

@@ -4,15 +4,15 @@
 #include "occlusion.glsl"
 #include "texel.glsl"
 
-// Takes out the pattern of ssao.frag by a box as wide as it, four of its texels, that does not cross depth edges.
+// Removes the noise pattern of ssao.frag with an edge-aware box filter as wide as the pattern, four texels.
 
 layout(location = 0) out uint occlusion; // A and the distance along the view axis, packed
 
-layout(constant_id = 0) const int SPACING = 1; // occluders to a texel, each way
+layout(constant_id = 0) const int SPACING = 1; // occluders per texel, along each axis
 
-// An edge is where distance changes by more than this share of it ..
+// A depth edge is a change of distance by more than this fraction of it ..
 const float EDGE = 0.01;
-// .. and by more than this many times what the plane under the texel changes by: across the box it is two texels of slope.
+// .. plus this many times the slope of the plane at the texel: across the box, the plane changes by two texels of slope.
 const float PLANE = 3.0;
 
 layout(set = 0, binding = 0) uniform usampler2D noisy_occlusion;
@@ -25,7 +25,7 @@ float distance_at(vec2 texel) {
 void main() {
     vec2 texel = floor(gl_FragCoord.xy) * float(SPACING);
     float centre = distance_at(texel);
-    // The slope of a plane seen at a grazing angle is no edge: the tolerance follows the smaller neighbouring step.
+    // A plane seen at a grazing angle is not an edge: the tolerance follows the smaller step to a neighbour.
     float slope = min(abs(distance_at(texel - vec2(1, 0)) - centre), abs(distance_at(texel + vec2(1, 0)) - centre))
                 + min(abs(distance_at(texel - vec2(0, 1)) - centre), abs(distance_at(texel + vec2(0, 1)) - centre));
     float scale = 1.0 / (EDGE * centre + PLANE * slope * float(SPACING) + 1e-6);
@@ -34,10 +34,10 @@ void main() {
     for (int y = -2; y <= 2; ++y) {
         for (int x = -2; x <= 2; ++x) {
             vec2 tap = occlusion_unpack(textureLod(noisy_occlusion, (gl_FragCoord.xy + vec2(x, y)) / size, 0.0).r);
-            // Five texels of which the outer ones count half are as wide as four, and centred.
+            // Five texels with half weight on the outer ones are as wide as four, and centred.
             float inside = (abs(x) == 2 ? 0.5 : 1.0) * (abs(y) == 2 ? 0.5 : 1.0);
             float step = abs(tap.y - centre) * scale;
-            // Where all lie beyond an edge their mean is better than nothing.
+            // The lower limit gives a mean even if all texels lie beyond an edge.
             sum += vec2(tap.x, 1.0) * (inside * max(1.0 - step, 1e-4));
         }
     }

@@ -4,7 +4,7 @@
 #include "materials.glsl"
 #include "occlusion.glsl"
 
-// Every DOWNSCALE-th pixel of the G-buffer, packed in one word: ssao.frag looks it up many times.
+// Packs every DOWNSCALE-th pixel of the G-buffer into one word, which ssao.frag looks up many times.
 
 layout(location = 0) out uint occluder;
 

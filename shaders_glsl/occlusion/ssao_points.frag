@@ -2,10 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #include "texel.glsl"
 
-// Depth at the points of the occlusion, so that the depth test leaves out the sky: a shader that returns early saves a software
-// device nothing.
+// Depth at the occlusion's points, so that the depth test rejects the sky: on a software device an early return saves nothing.
 
-layout(constant_id = 0) const int PIXELS_PER_POINT = 1; // each way
+layout(constant_id = 0) const int PIXELS_PER_POINT = 1; // along each axis
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
 

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 
-// Running mean of the frames, in 32-bit float: m_k = m_(k-1) + (x_k - m_(k-1)) / k.
+// Running mean of the frames, in 32-bit floats: m_k = m_(k-1) + (x_k - m_(k-1)) / k.
 
 layout(location = 0) out vec4 mean;
 

@@ -3,8 +3,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "colour.glsl"
 
-// The luminance that automatic exposure goes by: Reinhard et al. 2002, eq. 1, bounded around the median. The CPU's
-// twin is daylight/exposure.rs. One workgroup: a histogram, its median, then the bounded mean of log2 L.
+// Metering for automatic exposure: the log-average luminance (Reinhard et al. 2002, eq. 1), bounded around the median. The CPU
+// counterpart is daylight/exposure.rs. One workgroup computes a histogram, its median, then the bounded mean of log2 L.
 
 const uint THREADS = 256u;
 layout(local_size_x = 256) in;
@@ -14,16 +14,16 @@ layout(set = 0, binding = 1) uniform sampler2D previous_luminance;             /
 layout(set = 0, binding = 2) uniform writeonly image2DArray average_luminance; // kcd/m^2, one texel
 
 layout(push_constant, scalar) uniform Push {
-    float black;         // log2 of kcd/m^2: what is darker does not count
+    float black;         // log2 of kcd/m^2: darker samples are ignored
     float bins_per_stop; // of the histogram, which starts at `black`
-    float bound;         // stops from the median to which a sample is limited
-    float fade;          // stops beyond that, toward black, in which its weight goes to 0
-    float share;         // of the way from the previous luminance to that of this picture; 1: there is no previous one
+    float bound;         // largest distance of a sample from the median, stops
+    float fade;          // stops beyond that, toward black, over which its weight falls to 0
+    float share;         // blend from the previous luminance (0) to that of this picture (1); 1 if there is no previous one
 } push;
 
-// Samples on a grid over the picture: enough for a mean, at the same cost for every resolution.
+// Samples on a grid over the picture: enough for a mean, at a cost independent of the resolution.
 const uvec2 GRID = uvec2(128u, 72u);
-const uint SAMPLES = GRID.x * GRID.y / THREADS; // of a thread
+const uint SAMPLES = GRID.x * GRID.y / THREADS; // per thread
 
 shared uint bins[THREADS];
 shared float median; // log2 of kcd/m^2
@@ -31,7 +31,7 @@ shared vec2 sums[THREADS]; // weighted distance from the median, weight
 
 const float NOTHING = -1e4;
 
-/// log2 of the luminance at a sample, kcd/m^2; NOTHING for black and for what is no number.
+/// log2 of the luminance at a sample, kcd/m^2; NOTHING for black and NaN.
 float log_luminance(uint index) {
     vec2 size = vec2(textureSize(radiance, 0));
     vec2 at = (vec2(index % GRID.x, index / GRID.x) + 0.5) / vec2(GRID) * size;
@@ -39,7 +39,7 @@ float log_luminance(uint index) {
     return l >= exp2(push.black) ? log2(min(l, 1e30)) : NOTHING;
 }
 
-/// The median by the histogram, linear within a bin; NOTHING when the histogram is empty.
+/// The median from the histogram, linear within a bin; NOTHING if the histogram is empty.
 float find_median() {
     uint count = 0u;
     for (uint i = 0u; i < THREADS; ++i) count += bins[i];
@@ -81,7 +81,7 @@ void main() {
     if (thread != 0u) return;
     for (uint i = 1u; i < THREADS; ++i) sum += sums[i];
     bool black = median == NOTHING;
-    // A black picture looks the same at every exposure.
+    // A black picture looks the same at any exposure.
     float target = black ? 0.0 : median + sum.x / sum.y;
     if (push.share < 1.0) {
         float previous = log2(texelFetch(previous_luminance, ivec2(0), 0).r);

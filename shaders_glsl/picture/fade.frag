@@ -3,7 +3,7 @@
 
 // Cross-fade from the preview to the converging picture.
 
-layout(location = 0) out vec4 radiance; // rgb: kcd/m^2, or the quantity asked for; a: illuminance, klx
+layout(location = 0) out vec4 radiance; // rgb: kcd/m^2, or the quantity shown; a: illuminance, klx
 
 layout(set = 0, binding = 0) uniform sampler2D preview;
 layout(set = 0, binding = 1) uniform sampler2D converging;
@@ -15,6 +15,6 @@ layout(push_constant, scalar) uniform Push {
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     radiance = texelFetch(converging, pixel, 0);
-    // Without a preview the image may hold anything, NaN too.
+    // Without a preview the image's contents are undefined and may be NaN.
     if (push.share > 0.0) radiance = mix(radiance, texelFetch(preview, pixel, 0), push.share);
 }

@@ -3,11 +3,11 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "colour.glsl"
 
-// Copies the picture to the window; scales it while their sizes differ.
+// Copies the picture to the window, scaled if their sizes differ.
 
 layout(location = 0) out vec4 window; // linear; the target's sRGB format encodes
 
-// The picture holds encoded values: decode, because the target's format encodes again.
+// Whether the picture holds encoded values; they are decoded, because the target's format encodes again.
 layout(constant_id = 0) const bool ENCODED = false;
 
 layout(set = 0, binding = 0) uniform sampler2D display;

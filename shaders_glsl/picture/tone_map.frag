@@ -7,7 +7,7 @@
 
 layout(location = 0) out vec4 display;
 
-// At most one curve; without one the scale is linear, as in the lecture.
+// At most one curve is set; with none the scale is linear, as in the lecture.
 layout(constant_id = 0) const bool EXPONENTIAL = false;
 layout(constant_id = 1) const bool REINHARD = false;
 layout(constant_id = 2) const bool AGX = false;
@@ -19,9 +19,9 @@ layout(constant_id = 5) const bool GAMMA = false;
 layout(constant_id = 6) const bool AUTO = false;
 // Ferschin's curve on luminance.
 layout(constant_id = 8) const bool EXPONENTIAL_LUMINANCE = false;
-// Show the luminance as grey.
+// Show the luminance in grey.
 layout(constant_id = 7) const bool GREY = false;
-// False colours of the luminance instead of exposure and curve.
+// Show false colours of the luminance instead of exposure and curve.
 layout(constant_id = 9) const bool FALSE_COLOUR = false;
 
 layout(set = 0, binding = 0) uniform sampler2D radiance;          // kcd/m^2
@@ -29,8 +29,8 @@ layout(set = 0, binding = 1) uniform sampler2D average_luminance; // kcd/m^2, on
 
 layout(push_constant, scalar) uniform Push {
     float exposure;      // display units for 1 kcd/m^2; with AUTO the display value of the average luminance;
-                         // with FALSE_COLOUR shares of the range for a factor of 2
-    float offset;        // added after the scale: shows signed quantities; with FALSE_COLOUR the share of 1 kcd/m^2 (1 klx)
+                         // with FALSE_COLOUR the fraction of the range per factor of 2
+    float offset;        // added after the scale: shows signed quantities; with FALSE_COLOUR the position of 1 kcd/m^2 (1 klx)
     float white;         // Reinhard's white, display units
     float inverse_gamma; // of the power
 } push;

@@ -1,7 +1,7 @@
 #version 460
 
-// Layered rendering, as on the lecture's slide "Irradiance environment map": the triangle is emitted to each face of the
-// cube, chosen by gl_Layer.
+// Layered rendering, as on the lecture's slide "Irradiance environment map": the triangle is emitted once per cube face, selected
+// by gl_Layer.
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 18) out;
 

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-// ALBEDO: there is a target for rho_d. DETAILED: surfaces with holes, normal maps or colours at their vertices.
+// ALBEDO: with a render target for rho_d. DETAILED: surfaces with alpha test, normal maps or vertex colours.
 // Variant: ALBEDO
 // Variant: DETAILED
 // Variant: DETAILED ALBEDO
@@ -24,15 +24,15 @@ layout(location = 1) out vec4 albedo; // rgb: rho_d; a: factor on rho_s
 layout(constant_id = 0) const bool DIFFUSE_MAP = true;
 layout(constant_id = 1) const bool SPECULAR_MAP = true;
 layout(constant_id = 3) const bool CUT_OUT = true;
-// Front faces are on the side of all their normals, which loading the scene has checked.
+// All normals are on the side of their front faces, as checked when the scene was loaded.
 layout(constant_id = 4) const bool NORMALS_MATCH_WINDING = false;
-// Whether the G-buffer keeps the slopes of faces.
+// Whether the G-buffer stores the slopes of faces.
 layout(constant_id = 5) const bool FACES = false;
 
 layout(set = 0, binding = 1) uniform sampler2D diffuse_map;
 layout(set = 0, binding = 2) uniform sampler2D specular_map;
 
-// Cards of leaves and grass lean their normals out of the crown or up: a normal across the face stays as it is.
+// Foliage cards have normals tilted out of the crown or upward: a normal roughly perpendicular to the face's is not flipped.
 const float CUT_OUT_SLACK = 0.5;
 
 #ifdef DETAILED
@@ -43,7 +43,7 @@ layout(set = 0, binding = 3) uniform sampler2D normal_map;
 layout(location = 4) in vec4 surface_colour;  // linear RGBA
 layout(location = 5) in vec4 surface_tangent; // w: sign of the bitangent
 
-/// The normal of the map in the frame of the surface (Mikkelsen 2008: interpolated, not normalised).
+/// The map's normal in the tangent frame of the surface (Mikkelsen 2008: interpolated, not normalized).
 vec3 mapped_normal(vec3 n) {
     vec3 slope = texture(normal_map, surface_uv, -camera.sharpen).xyz * 2.0 - 1.0;
     slope.xy *= push.normal_scale;
@@ -51,8 +51,8 @@ vec3 mapped_normal(vec3 n) {
     return slope.x * surface_tangent.xyz + slope.y * bitangent + slope.z * n;
 }
 
-/// A mapped normal that reflects the view above the surface. A ray reflected into the surface meets it again and is reflected
-/// once more, upward; without that, waves far away would reflect the ground below the horizon.
+/// Adjusts a mapped normal so that the reflected view ray points above the surface. A ray reflected into the surface would hit it
+/// again and be reflected upward; without this, distant waves would reflect the ground below the horizon.
 vec3 reflecting_up(vec3 mapped, vec3 n) {
     vec3 toward = normalize(from_eye);
     vec3 r = reflect(toward, normalize(mapped));

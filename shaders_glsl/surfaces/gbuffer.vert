@@ -23,7 +23,7 @@ layout(location = 5) out vec4 surface_tangent;
 
 void main() {
     gl_Position = camera.clip_from_world * vec4(position, 1.0);
-    // Relative to the eye, so that derivatives keep their digits far from the origin.
+    // Relative to the eye, so that derivatives stay precise far from the origin.
     from_eye = position - camera.eye;
     shading_normal = normal.xyz;
     thickness = normal.w;

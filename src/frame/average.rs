@@ -1,4 +1,4 @@
-//! How the frames of an average become a picture, and what lights them.
+//! How the frames of an average are combined into a picture, and which lighting they use.
 
 use std::sync::Arc;
 
@@ -19,23 +19,23 @@ pub(super) struct Lit {
     pub lighting: Lighting,
 }
 
-/// How the frames of an average become a picture.
+/// How the frames of an average are combined into a picture.
 pub(super) enum Average {
     /// Each frame is a picture.
     None,
-    /// By their mean.
+    /// The plain mean of the frames.
     Mean(Box<Accumulate>),
-    /// By the true visibility of the sky.
+    /// Means that converge to the true visibility of the sky.
     Dome(Box<Converging>),
 }
 
 /// The passes of [`Visibility::Dome`] and [`Visibility::Progressive`].
 pub(super) struct Converging {
-    /// Hard shadows, and all light but the diffuse light of the sky.
+    /// Hard shadows, and all light except diffuse sky light.
     lit: Lit,
-    /// That light, and the means.
+    /// Diffuse sky light, and the means.
     dome: Dome,
-    /// From the preview to the means.
+    /// Cross-fade from the preview to the means.
     fade: Option<Fade>,
     /// Whether the newest frame was a preview.
     is_previewed: bool,
@@ -43,7 +43,7 @@ pub(super) struct Converging {
 
 impl Average {
     /// # Errors
-    /// When the device refuses or has no memory left.
+    /// Fails when the device cannot create the resources.
     pub fn new(
         context: &Arc<Context>,
         geometry: &Geometry,
@@ -72,7 +72,7 @@ impl Average {
         })))
     }
 
-    /// Whether new settings need another one.
+    /// Whether the new settings need a new average.
     pub fn is_changed(old: &FrameSettings, new: &FrameSettings) -> bool {
         let of = |s: &FrameSettings| {
             let of_dome = (s.samples, s.sampling, s.lighting, s.shadow_resolution);
@@ -81,7 +81,7 @@ impl Average {
         of(old) != of(new)
     }
 
-    /// What lights frame number `index` of an average, and how it becomes the picture. A frame without a number is a preview.
+    /// Shadow map and lighting of frame number `index` of an average, and how the frame is resolved. `None` is a preview.
     pub fn frame<'a>(
         &'a mut self,
         preview: &'a mut Lit,
@@ -108,7 +108,7 @@ impl Average {
         }
     }
 
-    /// The newest picture, kcd/m²; of single frames that is their own.
+    /// The newest picture, kcd/m²; `None` if each frame is a picture of its own.
     pub fn image(&self) -> Option<&Image> {
         match self {
             Self::None => None,
@@ -118,28 +118,28 @@ impl Average {
     }
 }
 
-/// How one frame becomes the picture.
+/// How one frame is resolved into the picture.
 pub(super) enum Resolve<'a> {
-    /// It is the picture.
+    /// The frame is the picture.
     None,
-    /// It is added to a mean, as its number.
+    /// The frame is added to a mean under this number.
     Mean(&'a mut Accumulate, u32),
-    /// It is added to the means of the dome, and faded to from a preview.
+    /// The frame is added to the means of the dome; the picture cross-fades from a preview.
     Dome {
         dome: &'a mut Dome,
-        /// With the preview, and whether that was the frame before.
+        /// The cross-fade, the preview, and whether the previous frame was a preview.
         fade: Option<(&'a mut Fade, (&'a Image, bool))>,
         index: u32,
     },
 }
 
 impl<'a> Resolve<'a> {
-    /// Whether the dome brings the diffuse light of the sky.
+    /// Whether the dome adds the diffuse sky light.
     pub fn is_dome(&self) -> bool {
         matches!(self, Self::Dome { .. })
     }
 
-    /// Gives the picture after this frame.
+    /// Records the resolve and returns the picture after this frame.
     pub fn record(
         self,
         rec: &mut Recorder,

@@ -1,4 +1,4 @@
-//! Where the frames of an average sample the pixel and the sun's disc, and what occludes the sky.
+//! Sample positions of the frames of an average in the pixel and on the sun's disc, and the choice of sky visibility.
 
 use glam::{DVec2, UVec2, Vec2, Vec3};
 
@@ -11,15 +11,15 @@ use crate::scene::Camera;
 
 use super::FrameSettings;
 
-/// How the sky's visibility from a surface is found.
+/// How the sky's visibility from a surface is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Visibility {
-    /// Screen-space ambient occlusion: in one frame, an estimate by what is on the screen.
+    /// Screen-space ambient occlusion: a single-frame estimate from the surfaces on screen.
     #[default]
     Ssao,
-    /// Shadow maps from directions of the sky: their mean over the samples converges to the true visibility.
+    /// Shadow maps from sampled sky directions: their mean over the samples converges to the true visibility.
     Dome,
-    /// As `Dome`, faded to from a preview, which is drawn as with `Ssao`: for a view that comes to rest.
+    /// `Dome`, cross-faded from an `Ssao` preview, for a view that comes to rest.
     Progressive,
 }
 
@@ -29,45 +29,44 @@ pub enum Filter {
     /// One pixel wide, uniform.
     #[default]
     Box,
-    /// A Blackman-Harris window 3 pixels wide: smooth, little aliasing of fine patterns.
+    /// A Blackman-Harris window 3 pixels wide: smooth, with little aliasing of fine patterns.
     BlackmanHarris,
 }
 
 /// How the frames of an average differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Sampling {
-    /// How the sky's visibility is found.
+    /// How the sky's visibility is computed.
     pub visibility: Visibility,
-    /// Directions and maps of [`Visibility::Dome`].
+    /// Directions and shadow maps of [`Visibility::Dome`].
     pub dome: DomeSettings,
     /// The pixel filter.
     pub filter: Filter,
 }
 
-/// Seed of the points on the sun's disc, apart from those of the sky.
+/// Seed of the points on the sun's disc, distinct from those of the sky.
 const DISC: u32 = 0x0d15_c000;
 
-/// Where a frame samples the pixel and the sun's disc.
+/// Sample position of a frame in the pixel and on the sun's disc.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
-    /// Offset in the pixel, pixels.
+    /// Offset from the pixel's centre, pixels.
     pub jitter: Vec2,
-    /// Toward a point of the sun's disc.
+    /// Unit vector toward a point of the sun's disc.
     pub sun_direction: Vec3,
-    /// Shift of the shadow map's texels, 0..1.
+    /// Sub-texel shift of the shadow map, 0..1.
     pub texel: Vec2,
-    /// Phase of the noise of ambient occlusion, 0..1.
+    /// Phase of the ambient occlusion noise, 0..1.
     pub phase: f32,
-    /// Mip levels by which textures are sharper than one sample a pixel wants.
+    /// Mip bias toward finer levels, relative to one sample per pixel.
     sharpen: f32,
 }
 
-/// Mip levels by which textures are sharpened where samples converge: each sees an eighth of the pixel's width.
+/// Mip bias toward finer levels for converging frames: each sample filters over an eighth of the pixel's width.
 const SHARPEN: f32 = 3.0;
 
 impl Sample {
-    /// The sample of frame number `index` of an average; that of the pixel's and the sun's centre without a number, and where
-    /// nothing is averaged.
+    /// The sample of frame number `index` of an average. Without a number, or if nothing is averaged: the centres of pixel and sun.
     pub fn of(settings: &FrameSettings, daylight: &Daylight, index: Option<u32>) -> Self {
         let sun = daylight.sun_direction.as_vec3();
         let averages = settings.takes_mean() || settings.converges();
@@ -82,7 +81,7 @@ impl Sample {
             };
         }
         if settings.lighting.shadows.penumbrae {
-            // The lookup of the map integrates over the disc already.
+            // The shadow lookup already integrates over the disc.
             return Self {
                 sun_direction: sun,
                 ..sample
@@ -91,7 +90,7 @@ impl Sample {
         sample
     }
 
-    /// The view of this sample through a camera, of a picture of `size` pixels or of a tile of one.
+    /// The camera's view for this sample; `size` is that of the picture or, with `tile`, of the tile, pixels.
     pub fn view(&self, camera: &Camera, size: UVec2, tile: Option<Window>) -> View {
         View {
             camera: *camera,
@@ -115,8 +114,8 @@ impl Sample {
 
     /// Sample number `index` of a low-discrepancy sequence.
     fn new(sun: Vec3, index: u32, sampling_settings: &Sampling) -> Self {
-        // Sequences that are independent of each other: otherwise the mean over pixel and disc would not converge to that over all
-        // pairs of points.
+        // The sequences must be independent: otherwise the mean over pixel and disc would not converge to the mean over all pairs of
+        // points.
         let seed = sampling_settings.dome.seed;
         let disc = sampling::scrambled_sobol(index, seed ^ DISC);
         let index = seed.wrapping_mul(1 << 12).wrapping_add(index);
@@ -131,8 +130,8 @@ impl Sample {
     }
 }
 
-/// Offset in the pixel, pixels, distributed as the filter's weight (Ernst, Stamminger & Greiner 2006, "Filter importance
-/// sampling"): the mean of the samples is the filtered pixel.
+/// Offset from the pixel's centre, pixels, distributed like the filter's weight (Ernst, Stamminger & Greiner 2006, "Filter
+/// importance sampling"): the mean of the samples is the filtered pixel.
 fn offset(filter: Filter, xi: DVec2) -> Vec2 {
     match filter {
         Filter::Box => (xi - 0.5).as_vec2(),
@@ -145,7 +144,7 @@ fn offset(filter: Filter, xi: DVec2) -> Vec2 {
 /// Half the width of the window, pixels.
 const RADIUS: f64 = 1.5;
 
-/// The offset below which the share `xi` of a Blackman-Harris window lies (Harris 1978, four terms), by bisection.
+/// Inverse CDF of a Blackman-Harris window (Harris 1978, four terms) at `xi`, pixels; by bisection.
 fn blackman_harris(xi: f64) -> f64 {
     // The window is 0.35875 - 0.48829 cos + 0.14128 cos 2 - 0.01168 cos 3 of 2 pi t, t over 0..1; this is its integral.
     let share = |t: f64| {
@@ -164,7 +163,7 @@ fn blackman_harris(xi: f64) -> f64 {
     (low + high - 1.0) * RADIUS
 }
 
-/// A uniform point of the sun's disc for `xi` in the unit square.
+/// Unit vector toward a point of the sun's disc, uniformly distributed for `xi` uniform in the unit square.
 fn on_disc(centre: Vec3, xi: DVec2) -> Vec3 {
     let radius = (xi.x.sqrt() * SUN_ANGULAR_RADIUS) as f32;
     let angle = (xi.y * std::f64::consts::TAU) as f32;

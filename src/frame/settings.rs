@@ -1,4 +1,4 @@
-//! Settings of a frame, and the passes that are made of them.
+//! Settings of a frame, and constructors of passes from them.
 
 use std::sync::Arc;
 
@@ -19,14 +19,14 @@ use crate::passes::sun_shadow::map::Shadow;
 use crate::passes::surfaces::gbuffer::Gbuffer;
 use crate::passes::surfaces::geometry::Geometry;
 
-/// What stays the same from frame to frame.
+/// Settings that stay the same from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrameSettings {
     /// Width and height, pixels.
     pub size: UVec2,
-    /// Frames that are averaged into a picture; 1 samples pixel centres and the sun's centre.
+    /// Number of frames averaged into a picture; 1 samples the pixel centres and the sun's centre.
     pub samples: u32,
-    /// How they differ, and how the sky's visibility is found.
+    /// How the frames differ, and how the sky's visibility is computed.
     pub sampling: Sampling,
     /// Edge of a face of the sky cube, texels.
     pub sky_edge: u32,
@@ -38,7 +38,7 @@ pub struct FrameSettings {
     pub ssao: SsaoSettings,
     /// Lighting.
     pub lighting: LightingSettings,
-    /// Display.
+    /// Tone mapping and exposure.
     pub tone: ToneSettings,
 }
 
@@ -79,7 +79,7 @@ impl Default for FrameSettings {
 }
 
 impl FrameSettings {
-    /// These settings, to show something else.
+    /// These settings, showing another quantity.
     #[must_use]
     pub fn showing(mut self, show: Show) -> Self {
         (self.lighting.show, self.tone.show) = (show, show);
@@ -99,12 +99,12 @@ impl FrameSettings {
         self.samples > 1 && self.sampling.visibility == Visibility::Ssao
     }
 
-    /// Whether the mean of the frames has the true visibility of the sky ([`crate::passes::dome::gather::Dome`]).
+    /// Whether the mean of the frames converges to the true visibility of the sky ([`crate::passes::dome::gather::Dome`]).
     pub(super) fn converges(&self) -> bool {
         self.sampling.visibility != Visibility::Ssao
     }
 
-    /// What the shadow map of single frames depends on.
+    /// The settings that the shadow map of single frames depends on.
     pub(super) fn shadow_map(&self) -> (u32, Shadows) {
         (self.shadow_resolution, self.lighting.shadows)
     }
@@ -140,7 +140,7 @@ impl FrameSettings {
         ToneMap::new(context, self.size.to_array(), self.tone)
     }
 
-    /// The same for a scene: without ρ_s it needs no lookups of that, without textures no image of ρ_d; a large one has cascades.
+    /// Adjusts the settings to a scene: no specular lookups without ρ_s, no albedo image without textures, cascades for large scenes.
     pub(super) fn for_scene(mut self, context: &Context, geometry: &Geometry) -> Self {
         let shadows = &mut self.lighting.shadows;
         if shadows.cascades == 0 {

@@ -1,4 +1,4 @@
-//! The passes, in folders by topic: each owns its pipeline and the images it writes; the images it reads are parameters.
+//! The render passes, grouped by topic. Each owns its pipeline and the images it writes; the images it reads are parameters.
 //!
 //! Units on the device are kcd/m² and klx (half floats end at 65 504); files and the CPU use cd/m² and lux.
 
@@ -22,7 +22,7 @@ fn kilo(rgb: DVec3) -> Vec3 {
     (rgb * 1e-3).as_vec3()
 }
 
-/// A pipeline that runs a fragment shader on every pixel of one target.
+/// A full-screen pipeline with one render target.
 fn fullscreen(
     context: &Arc<Context>,
     name: &str,
@@ -33,7 +33,7 @@ fn fullscreen(
     fullscreen_at(context, name, fragment, &[target], Depth::Off, constants)
 }
 
-/// A pipeline that runs a fragment shader on the pixels of targets that the depth test leaves.
+/// A full-screen pipeline with several render targets; the depth test selects the pixels.
 fn fullscreen_at(
     context: &Arc<Context>,
     name: &str,

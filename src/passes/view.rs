@@ -1,4 +1,4 @@
-//! The camera with its picture: matrices, and the block that screen-space shaders read.
+//! A camera with its picture: its matrices, and the uniform block of the screen-space shaders.
 
 use glam::{Mat3, Mat4, UVec2, Vec2, Vec3};
 
@@ -16,7 +16,7 @@ gpu_struct! {
     }
 }
 
-/// A camera with the size of its picture and a sub-pixel jitter.
+/// A camera with the size of its picture and its sub-pixel jitter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
     /// The camera.
@@ -25,23 +25,23 @@ pub struct View {
     pub size: UVec2,
     /// Offset of the sample in the pixel, in pixels, −0.5..0.5; zero is the pixel's centre.
     pub jitter: Vec2,
-    /// Mip bias, levels toward the finer ones: the mean of many samples filters better than mip maps.
+    /// Mip bias toward finer levels: the mean of many samples filters better than mip maps.
     pub sharpen: f32,
-    /// The part of a larger picture that this one is; None: the whole.
+    /// The part of a larger picture that this view covers; `None`: the whole.
     pub window: Option<Window>,
 }
 
-/// A part of a picture, in pixels of the part.
+/// A part of a larger picture, in pixels of the part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
     /// Its upper left corner in the picture.
     pub origin: UVec2,
-    /// Width and height of the whole picture; not whole numbers where the part is coarser than the picture.
+    /// Width and height of the whole picture; may be fractional if the part is coarser than the picture.
     pub picture: Vec2,
 }
 
 impl View {
-    /// The view of the whole picture of which this is a part.
+    /// The view of the whole picture that this view is part of.
     pub fn whole(&self) -> Self {
         let picture = self.window.map(|window| window.picture.ceil().as_uvec2());
         Self {
@@ -51,7 +51,7 @@ impl View {
         }
     }
 
-    /// The view from so many metres behind: its frustum is wider by the same distance on all sides.
+    /// The same view, moved back along the view axis by `metres`.
     pub fn from_behind(&self, metres: f32) -> Self {
         let mut view = *self;
         view.camera.eye -= view.camera.forward() * metres;
@@ -64,7 +64,7 @@ impl View {
         picture.x / picture.y
     }
 
-    /// From x and y of the whole picture's clip space to the part's: a factor and a shift.
+    /// Scale and shift from x and y of the whole picture's clip space to the part's.
     fn part(&self) -> (Vec2, Vec2) {
         let Some(window) = self.window else {
             return (Vec2::ONE, Vec2::ZERO);
@@ -85,14 +85,13 @@ impl View {
             * self.camera.view_from_world()
     }
 
-    /// Moving the picture by −jitter brings the sample to the pixel's centre.
+    /// Shifts the picture by −jitter, which moves the sample to the pixel's centre.
     fn jitter_matrix(&self) -> Mat4 {
         let shift = -2.0 * self.jitter / self.size.as_vec2();
         Mat4::from_translation(shift.extend(0.0))
     }
 
-    /// The point of the world that is seen at `pixel` (pixels from the upper left corner), `distance` metres along the view
-    /// axis.
+    /// The world position at `pixel` (pixels from the upper left corner), `distance` metres along the view axis.
     pub fn point(&self, pixel: Vec2, distance: f32) -> Vec3 {
         let block = self.block();
         let ndc = 2.0 * pixel / self.size.as_vec2() - 1.0;
@@ -100,10 +99,10 @@ impl View {
         block.eye + block.world_from_view * ray * distance
     }
 
-    /// The block from which shaders reconstruct positions and rays.
+    /// The uniform block from which shaders reconstruct positions and rays.
     pub fn block(&self) -> ViewBlock {
         let tan_y = (0.5 * self.camera.fov_deg.to_radians()).tan();
-        // Vulkan's rows run down, the camera's y runs up.
+        // In Vulkan, rows run down; the camera's y axis points up.
         let (scale, shift) = self.part();
         let ray_scale = Vec2::new(tan_y * self.aspect(), -tan_y) / scale;
         ViewBlock {

@@ -1,12 +1,12 @@
-//! The light of the sky with its true visibility: shadow maps from directions of the sky, averaged over many frames.
+//! Sky light with true visibility: shadow maps from sampled sky directions, averaged over many frames.
 //!
-//! Each frame draws a few orthographic depth maps from directions that [`SkySampler`] draws by luminance, tiles of one image,
-//! and adds to each pixel V L cos θ / p of those directions (N), and the same without V (D). The means over the frames
-//! converge to ∫ V L cos dω and to E without occlusion, which the irradiance cube knows better (U): the picture shows
-//! N · U / D. Where nothing hides the sky that is exact from the first frame on, elsewhere errors of N and D cancel in part;
-//! U / D tends to 1, so no bias remains.
+//! [`SkySampler`] importance samples a few directions per frame by luminance. For each one, the frame draws a depth map into a
+//! tile of one image. Per pixel it sums V L cos θ / p over these directions (N), and the same without V (D). The means over the
+//! frames converge to ∫ V L cos dω and to the unoccluded E, which the irradiance cube has without noise (U). The picture shows
+//! N · U / D: exact from the first frame on where the sky is unoccluded; elsewhere errors of N and D partly cancel. U / D tends
+//! to 1, so no bias remains.
 //!
-//! What lies below the horizon is light as any other: directions of the lower hemisphere get maps too.
+//! The ground below the horizon is a light source too: directions of the lower hemisphere also get maps.
 
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
 use crate::passes::{fullscreen, fullscreen_at, kilo};
 
-/// Most directions of a frame: the length of the shader's arrays.
+/// Largest number of directions per frame: the length of the shader's arrays.
 pub const MOST_DIRECTIONS: u32 = 16;
 
 gpu_struct! {
@@ -46,20 +46,20 @@ gpu_struct! {
 }
 
 gpu_struct! {
-    /// Light of the ground, and the weight of this frame.
+    /// Radiance of the ground, and the weight of this frame.
     pub struct Push: push of DOME_GATHER_FRAG {
         ground: Vec3,
         share: f32,
     }
 }
 
-/// A direction with its map, a tile of the image of maps.
+/// A light direction with its shadow map, a tile of the atlas.
 struct Direction<'a> {
     /// Unit vector toward the light.
     pub toward: Vec3,
-    /// Share of the irradiance at normal incidence, klx.
+    /// Its contribution to the irradiance at normal incidence, klx.
     pub light: Vec3,
-    /// Whether it is of the sky, and not of the ground.
+    /// Whether it belongs to the sky rather than the ground.
     pub is_sky: bool,
     /// View of its map.
     pub view: &'a ShadowView,
@@ -68,7 +68,7 @@ struct Direction<'a> {
 }
 
 impl DomeBlock {
-    /// Of at most [`MOST_DIRECTIONS`].
+    /// Fills the block with at most [`MOST_DIRECTIONS`] directions.
     fn new<'a>(directions: impl Iterator<Item = Direction<'a>>) -> Self {
         let mut block: Self = bytemuck::Zeroable::zeroed();
         for (k, d) in directions.take(MOST_DIRECTIONS as usize).enumerate() {
@@ -83,16 +83,16 @@ impl DomeBlock {
     }
 }
 
-/// How many directions, and how finely.
+/// Settings of the dome: directions and shadow map resolution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DomeSettings {
-    /// Directions of a frame, 1..=16.
+    /// Directions per frame, 1..=16.
     pub directions: u32,
     /// Edge of a map, texels.
     pub map_edge: u32,
-    /// Start of the sequences.
+    /// Seed of the sample sequences.
     pub seed: u32,
-    /// Whether the picture's fourth channel has the illuminance, klx, whatever is shown: for read-outs.
+    /// Whether the picture's fourth channel holds the illuminance, klx, regardless of the quantity shown; for read-outs.
     pub illuminance: bool,
 }
 
@@ -114,48 +114,48 @@ pub struct Gathered<'a> {
     pub surfaces: &'a Surfaces,
     /// ρ_d of the materials.
     pub materials: &'a Image,
-    /// The picture without the light of the sky, kcd/m².
+    /// The picture without sky light, kcd/m².
     pub frame: &'a Image,
-    /// E of sky and ground, klx.
+    /// Irradiance E of sky and ground, klx.
     pub sky_irradiance: &'a Image,
-    /// L of sky and ground, kcd/m².
+    /// Radiance L of sky and ground, kcd/m².
     pub sky_radiance: &'a Image,
 }
 
-/// Bias of the comparison, in texels. Within half a texel of an inner corner the texel's centre may lie on the other face, up to
-/// about a texel over this one. Measured on the truth views: 0.2 takes 0.5 to 0.8 % of the light, 1 less than 0.2 %; 1.5 leaks
-/// at contacts.
+/// Depth bias of the comparison, texels. Within half a texel of a concave edge, the texel's centre may lie on the other face, up to
+/// about a texel above this one. Measured on the truth views: a bias of 0.2 loses 0.5 to 0.8 % of the light, 1 less than 0.2 %;
+/// 1.5 leaks light at contacts.
 pub(in crate::passes) const BIAS_TEXELS: f32 = 1.0;
 
-/// The passes and their images.
+/// The dome passes and their images.
 pub struct Dome {
     settings: DomeSettings,
     casters: Casters,
     gather: Pipeline,
     resolve: Pipeline,
     maps: Image,
-    /// Alternating means: sky and rest, see `dome_gather.frag`.
+    /// Alternating means: sky light and other light, see `dome_gather.frag`.
     means: [[Image; 2]; 2],
-    /// Alternating means of the parts of the illuminance, where it is wanted.
+    /// Alternating means of the illuminance terms, if enabled.
     illuminance: Option<[Image; 2]>,
     radiance: Image,
-    /// Specular reflection of the sky with its visibility, if asked for.
+    /// Specular reflection of the sky with visibility, if enabled.
     specular: Option<SpecularSky>,
     sky: Option<(Daylight, SkySampler)>,
     is_shown: bool,
 }
 
-/// Scrambles the directions of the ground differently from those of the sky.
+/// Seed of the ground's directions, distinct from that of the sky's.
 const GROUND: u32 = 0x0640_0000;
 
 const FORMAT: Format = Format::R32G32B32A32_SFLOAT;
 
-/// Tiles in a row of the image of maps.
+/// Tiles per row of the atlas.
 fn columns(directions: u32) -> u32 {
     f64::from(directions).sqrt().ceil() as u32
 }
 
-/// Whether the light of the sky is part of what is shown.
+/// Whether the quantity shown includes sky light.
 fn shows_sky(show: Show) -> bool {
     matches!(
         show,
@@ -164,10 +164,10 @@ fn shows_sky(show: Show) -> bool {
 }
 
 impl Dome {
-    /// For pictures of `size` pixels.
+    /// Creates the passes for pictures of `size` pixels.
     ///
     /// # Errors
-    /// When the device refuses or has no memory left.
+    /// Fails when the device cannot create the resources.
     pub fn new(
         context: &Arc<Context>,
         geometry: &Geometry,
@@ -209,7 +209,7 @@ impl Dome {
         })
     }
 
-    /// Draws the maps of frame number `index` and adds its light to the means; 0 starts new ones.
+    /// Draws the shadow maps of frame number `index` and adds its light to the means; 0 starts new means.
     pub fn record(
         &mut self,
         recorder: &mut Recorder,
@@ -224,7 +224,7 @@ impl Dome {
         let views: Vec<ShadowView> = (0u32..)
             .zip(&lights)
             .map(|(k, light)| {
-                // From another sequence than the directions: otherwise each direction would always get the same shift.
+                // Not from the sequence of the directions: otherwise a direction would always get the same shift.
                 let number = index.wrapping_mul(self.settings.directions) + k;
                 let shift = sampling::richtmyer(number).as_vec2();
                 let toward = light.direction.as_vec3();
@@ -261,8 +261,8 @@ impl Dome {
             .map_or(&self.radiance, SpecularSky::image)
     }
 
-    /// Directions of the frame: first of the sky, then, where the ground shines, a quarter of the ground. Each stands for its
-    /// share of its hemisphere.
+    /// Directions of the frame: first those of the sky, then, if the ground has luminance, a quarter for the ground. Each represents
+    /// an equal share of its hemisphere's samples.
     fn lights(&mut self, daylight: &Daylight, index: u32) -> Vec<DomeLight> {
         if self.sky.as_ref().is_none_or(|(drawn, _)| drawn != daylight) {
             self.sky = Some((daylight.clone(), SkySampler::new(daylight)));
@@ -291,7 +291,7 @@ impl Dome {
             .collect()
     }
 
-    /// Directions of sky and of ground.
+    /// Numbers of sky and ground directions.
     fn counts(&self, daylight: &Daylight) -> (u32, u32) {
         let all = self.settings.directions;
         if daylight.ground_luminance.max_element() <= 0.0 || all == 1 {
@@ -380,7 +380,7 @@ impl Dome {
 
     fn resolve(&self, recorder: &mut Recorder) {
         let [sky, rest] = &self.means[0];
-        // Without it any image: the binding must be there.
+        // Without illuminance any image will do: the binding must be written.
         let illuminance = self.illuminance.as_ref().map_or(rest, |means| &means[0]);
         recorder
             .pass("dome: resolve", &self.resolve)

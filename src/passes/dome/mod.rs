@@ -1,4 +1,4 @@
-//! The sky's visibility by shadow maps from directions of the sky, averaged over converging frames.
+//! The sky's visibility from shadow maps of sampled directions, averaged over converging frames.
 
 pub mod gather;
 pub mod specular;

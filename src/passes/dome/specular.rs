@@ -1,8 +1,8 @@
-//! Specular reflection: the form of the lobe, and the sky's visibility in it.
+//! Specular reflection of the sky: the lobe's shape, and the sky's visibility within the lobe.
 //!
-//! The lecture's illumination model reflects the open sky, ρ_s L_sky(r); its rendering equation has a visibility there,
-//! ρ_s V(x, r) L_sky(r). The pass estimates V with the maps of [`crate::passes::dome::gather`]: the visible share of the sky's light
-//! in the lobe around r, over all directions so far.
+//! The lecture's illumination model reflects the unoccluded sky, ρ_s L_sky(r); its rendering equation includes visibility,
+//! ρ_s V(x, r) L_sky(r). The pass estimates V with the shadow maps of [`crate::passes::dome::gather`], as the visible fraction of
+//! the sky light in the lobe around r, over all directions so far.
 
 use std::sync::Arc;
 
@@ -23,29 +23,29 @@ use crate::passes::{fullscreen, fullscreen_at};
 /// The specular lobe.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Phong {
-    /// The lecture's: (r·l)^p of the sun, and the sky as in a perfect mirror.
+    /// The lecture's: (r·l)^p for the sun, and a perfect mirror for the sky.
     #[default]
     Lecture,
-    /// Energy-conserving, ρ_s (p + 2)/(2π) (r·l)^p cos θ, of sun and sky alike.
+    /// Energy-conserving: ρ_s (p + 2)/(2π) (r·l)^p cos θ for both sun and sky.
     Normalized,
 }
 
 /// The sky's visibility in specular reflections.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Reflections {
-    /// Nothing, as in the lecture's illumination model.
+    /// Unoccluded, as in the lecture's illumination model.
     #[default]
     Open,
-    /// What hides it from other surfaces, as in the lecture's rendering equation (--visibility dome).
+    /// Occluded by surfaces, as in the lecture's rendering equation (--visibility dome).
     Hidden,
 }
 
-/// Specular terms.
+/// Settings of the specular terms.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Mirrors {
     /// The lobe.
     pub phong: Phong,
-    /// The sky's visibility in it.
+    /// The sky's visibility within the lobe.
     pub reflections: Reflections,
 }
 
@@ -60,18 +60,18 @@ gpu_struct! {
 
 const FORMATS: [Format; 2] = [Format::R32G32B32A32_SFLOAT, Format::R32_SFLOAT];
 
-/// The pass and its means.
+/// The sky reflection passes and their means.
 pub(in crate::passes) struct SpecularSky {
     lighting: LightingSettings,
     gather: Pipeline,
     resolve: Pipeline,
-    /// Alternating means: reflection of the open sky with the visible light of the lobe, and all light of the lobe.
+    /// Alternating means: reflection of the unoccluded sky with the visible light in the lobe, and all light in the lobe.
     means: [[Image; 2]; 2],
     radiance: Image,
 }
 
 impl SpecularSky {
-    /// None if what is shown has no specular reflection with visibility.
+    /// `None` if the quantity shown includes no sky reflection with visibility.
     pub fn new(
         context: &Arc<Context>,
         size: [u32; 2],
@@ -104,7 +104,7 @@ impl SpecularSky {
         }))
     }
 
-    /// Adds frame number `index` to the means, and the means to `picture`.
+    /// Adds frame number `index` to the means, and the resulting reflection to `picture`.
     #[allow(clippy::too_many_arguments)]
     pub fn record(
         &mut self,

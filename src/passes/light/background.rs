@@ -1,4 +1,4 @@
-//! The background: the sky cube along each pixel's ray where no surface is, and the sun's disc.
+//! The background: the sky cube along each pixel's ray, and the sun's disc, in pixels without a surface.
 
 use std::sync::Arc;
 
@@ -26,19 +26,19 @@ gpu_struct! {
     }
 }
 
-/// The pass: it fills the picture of [`crate::passes::light::lighting::Lighting`] where no surface is.
+/// The background pass: fills the pixels without a surface in the picture of [`crate::passes::light::lighting::Lighting`].
 pub struct Background {
     settings: LightingSettings,
-    /// For views without the sun.
+    /// For views without the sun's disc.
     without_disc: Pipeline,
     with_disc: Pipeline,
 }
 
-/// Whether the sky is drawn, and the value of pixels without a surface otherwise.
+/// Whether the sky is drawn; otherwise the constant value of pixels without a surface.
 fn content(show: Show) -> (bool, f32) {
     match show {
         Show::Beauty | Show::Luminance | Show::Background => (true, 0.0),
-        // Nothing occludes the sky itself.
+        // The sky itself is never occluded.
         Show::Visibility | Show::Occlusion => (false, 1.0),
         _ => (false, 0.0),
     }
@@ -46,7 +46,7 @@ fn content(show: Show) -> (bool, f32) {
 
 impl Background {
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, settings: LightingSettings) -> Result<Self> {
         let (sky, empty) = content(settings.show);
         let pipeline = |disc: bool| {
@@ -70,7 +70,7 @@ impl Background {
         })
     }
 
-    /// Fills what no surface covers.
+    /// Fills the pixels without a surface.
     pub fn record(
         &self,
         recorder: &mut Recorder,
@@ -83,7 +83,7 @@ impl Background {
         let push = Push {
             size: view.size.as_vec2(),
             direction: light.daylight.sun_direction.as_vec3(),
-            // The mean over the disc is kept: that of 1 - u (1 - mu) is 1 - u/3.
+            // Preserves the mean over the disc: the mean of 1 - u (1 - mu) is 1 - u/3.
             luminance: kilo(light.daylight.sun_luminance) / (1.0 - limb / 3.0),
             sin_radius: SUN_ANGULAR_RADIUS.sin() as f32,
             limb,
@@ -105,7 +105,7 @@ impl Background {
     }
 }
 
-/// Whether the sun's disc may be in view: within the cone around the line of sight that holds the corners of the picture.
+/// Whether the sun's disc may be in view: within the cone around the line of sight through the picture's corners.
 fn sees(view: &View, direction: Vec3) -> bool {
     let block = view.block();
     let corner = block.ray_scale.abs() + block.ray_offset.abs();

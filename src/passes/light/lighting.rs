@@ -1,4 +1,4 @@
-//! Lighting: the lecture's illumination model for each pixel, or one of its addends, or one of its inputs.
+//! Lighting: per pixel, the lecture's illumination model, one of its terms, or one of its inputs.
 //!
 //! L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r))
 
@@ -36,7 +36,7 @@ gpu_struct! {
     }
 }
 
-/// What is shown.
+/// The quantity shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Show {
     /// The whole picture, cd/m².
@@ -50,7 +50,7 @@ pub enum Show {
     SunSpecular,
     /// ρ_s L_sky(r), cd/m².
     SkySpecular,
-    /// Sky, ground and the sun's disc where no surface is, cd/m².
+    /// Sky, ground and the sun's disc in pixels without a surface, cd/m².
     Background,
     /// V, 0..1.
     Visibility,
@@ -64,12 +64,12 @@ pub enum Show {
     Normal,
     /// Distance along the view axis, metres; 0 is background.
     Depth,
-    /// Luminance of the whole picture, cd/m², as grey.
+    /// Luminance of the whole picture, cd/m², in grey.
     Luminance,
 }
 
 impl Show {
-    /// The addends of the picture: they sum to [`Show::Beauty`].
+    /// The terms of the picture: they sum to [`Show::Beauty`].
     pub const ADDENDS: [Self; 5] = [
         Self::Sun,
         Self::Sky,
@@ -88,7 +88,7 @@ impl Show {
         Self::Depth,
     ];
 
-    /// Factor from the device's unit to the file's: kcd/m² and klx to cd/m² and lux.
+    /// Conversion factor from device to file units: kcd/m² to cd/m², klx to lux.
     pub fn file_unit(self) -> f32 {
         match self {
             Self::Visibility | Self::Occlusion | Self::Albedo | Self::Normal | Self::Depth => 1.0,
@@ -96,7 +96,7 @@ impl Show {
         }
     }
 
-    /// Whether `quantity` can be read off it.
+    /// Whether the values shown are a `quantity`.
     pub fn holds(self, quantity: Quantity) -> bool {
         match quantity {
             Quantity::Luminance => self.file_unit() != 1.0 && self != Self::Irradiance,
@@ -132,9 +132,9 @@ impl Show {
 /// Precision of radiance on the device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
-    /// Half floats: for the screen. The sun's disc is clamped to 65 504 kcd/m².
+    /// Half floats, for display. The sun's disc is clamped to 65 504 kcd/m².
     Half,
-    /// 32-bit floats: for files and sums.
+    /// 32-bit floats, for files and sums.
     Float,
 }
 
@@ -146,7 +146,7 @@ impl Precision {
         }
     }
 
-    /// Largest radiance that the format holds, kcd/m².
+    /// Largest radiance the format can represent, kcd/m².
     pub(in crate::passes) fn max_radiance(self) -> f32 {
         match self {
             Self::Half => 65_504.0,
@@ -155,47 +155,47 @@ impl Precision {
     }
 }
 
-/// How surfaces are lit.
+/// Settings of the lighting.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LightingSettings {
-    /// What is shown.
+    /// The quantity shown.
     pub show: Show,
     /// Precision of the result.
     pub precision: Precision,
-    /// Factor on every ρ_s; 0 leaves the lookups out, which [`crate::frame::Frame`] does for scenes without any ρ_s.
+    /// Factor on every ρ_s. 0 disables the lookups; [`crate::frame::Frame`] sets it for scenes without any ρ_s.
     pub specular_scale: f32,
     /// Limb darkening of the sun's disc, u of I = I₀ (1 − u (1 − cos θ)); 0: a uniform disc.
     pub limb_darkening: f32,
-    /// Pixels to a texel of A, each way: [`crate::passes::occlusion::ssao::SsaoSettings::pixels_per_texel`].
+    /// Pixels per texel of A, along each axis: [`crate::passes::occlusion::ssao::SsaoSettings::pixels_per_texel`].
     pub occlusion_downscale: u32,
-    /// Whether ρ_d of each pixel is in an image, which [`crate::frame::Frame`] sets: scenes without maps have none.
+    /// Whether ρ_d is stored per pixel. Set by [`crate::frame::Frame`]; false for scenes without maps.
     pub has_albedo: bool,
     /// Whether ρ_s grows toward grazing angles (Schlick's approximation of Fresnel's equations).
     pub fresnel: bool,
-    /// How the sun's shadow is looked up.
+    /// Settings of the sun's shadow lookup.
     pub shadows: Shadows,
-    /// How surfaces reflect specularly.
+    /// Settings of the specular terms.
     pub mirrors: Mirrors,
 }
 
-/// The light of a moment: images and numbers.
+/// Light sources at a moment: parameters and images.
 #[derive(Clone, Copy)]
 pub struct Light<'a> {
-    /// The moment.
+    /// Daylight at that moment.
     pub daylight: &'a Daylight,
     /// Unit vector toward the point of the sun's disc that this frame samples.
     pub sun_direction: Vec3,
-    /// The sun's views.
+    /// The sun's shadow views.
     pub sun_views: &'a SunViews,
-    /// Their depth.
+    /// The sun's shadow map: depth of those views.
     pub shadow_map: &'a Image,
-    /// E, klx.
+    /// Irradiance E of sky and ground, klx.
     pub sky_irradiance: &'a Image,
-    /// L, kcd/m².
+    /// Radiance L of sky and ground, kcd/m².
     pub sky_radiance: &'a Image,
 }
 
-/// The pass and its picture.
+/// The lighting pass and its picture.
 pub struct Lighting {
     settings: LightingSettings,
     pipeline: Pipeline,
@@ -203,19 +203,19 @@ pub struct Lighting {
 }
 
 impl Lighting {
-    /// A picture of `size` pixels.
+    /// Creates the pass for a picture of `size` pixels.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, size: [u32; 2], settings: LightingSettings) -> Result<Self> {
         Self::with(context, size, settings, false)
     }
 
-    /// For frames whose mean converges: without the diffuse light of the sky (A = 0), which [`crate::passes::dome::gather::Dome`] adds, and
-    /// with hard shadows of the map of [`crate::passes::sun_shadow::map::Shadow::perspective`].
+    /// Creates the pass for converging frames: without diffuse sky light (A = 0), which [`crate::passes::dome::gather::Dome`] adds,
+    /// and with hard shadows from the map of [`crate::passes::sun_shadow::map::Shadow::perspective`].
     ///
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn converging(
         context: &Arc<Context>,
         size: [u32; 2],
@@ -268,7 +268,7 @@ impl Lighting {
         })
     }
 
-    /// Lights the surfaces; other pixels are left to [`crate::passes::light::background::Background`]. The fourth channel is the
+    /// Lights the surfaces; [`crate::passes::light::background::Background`] fills the other pixels. The fourth channel is the
     /// illuminance of the surface, klx.
     pub fn record(
         &mut self,
@@ -279,7 +279,7 @@ impl Lighting {
         light: &Light<'_>,
         view: &View,
     ) -> &Image {
-        // A scene without textures has no albedo image; its pipeline reads none, but the binding must be written.
+        // Without an albedo image the pipeline reads none, but the binding must be written.
         let albedo = surfaces.albedo.as_ref().unwrap_or(materials);
         recorder
             .pass("lighting", &self.pipeline)
@@ -314,7 +314,7 @@ impl Lighting {
             max_radiance: self.settings.precision.max_radiance(),
             specular_scale: self.settings.specular_scale,
             planes: shadow.planes().to_cols_array_2d(),
-            // Parts of a picture share the occlusion of the whole.
+            // Tiles share the occlusion image of the whole picture.
             occlusion_from: view.window.map_or(IVec2::ZERO, |w| w.origin.as_ivec2()),
         }
     }

@@ -1,4 +1,4 @@
-//! Read-out of one pixel: its luminance, and the surface with its illuminance.
+//! Read-out of one pixel: its radiance, and the surface with its illuminance.
 
 use std::sync::Arc;
 
@@ -9,21 +9,21 @@ use crate::gpu::{Buffer, BufferKind, Context, Image, Recorder, Result, Texel, co
 use crate::passes::light::lighting::Show;
 use crate::passes::surfaces::gbuffer::{Surfaces, unpack_normal};
 
-/// What one pixel shows.
+/// Read-out of one pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
     /// Column and row.
     pub pixel: [u32; 2],
-    /// Radiance of the picture, linear RGB, cd/m² (the quantity shown, in its unit, when that is another).
+    /// Radiance, linear RGB, cd/m²; if another quantity is shown, that quantity in its unit.
     pub radiance: [f32; 3],
-    /// The surface, where there is one.
+    /// The surface, if any.
     pub surface: Option<SurfaceReading>,
 }
 
-/// A surface under a pixel: of an average, the one that the newest sample of the pixel hit.
+/// The surface at a pixel; in an average, the one hit by the newest sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceReading {
-    /// Illuminance by sun and sky, lux: the mean over the pixel.
+    /// Illuminance from sun and sky, lux; the mean over the pixel.
     pub illuminance: f32,
     /// World normal on the viewer's side.
     pub normal: [f32; 3],
@@ -35,23 +35,23 @@ pub struct SurfaceReading {
     pub material: u32,
 }
 
-/// Most texels that are copied: of the picture, normal and material, depth, ρ_d.
+/// Maximum number of texels copied: picture, normal and material, depth, ρ_d.
 const TEXELS: usize = 4;
 
-/// Where the texels of a pixel are copied to.
+/// Read-back buffer for the texels of one pixel.
 pub struct Probe {
     buffer: Buffer,
     picked: Option<Picked>,
 }
 
-/// What the texels in the buffer are.
+/// Layout of the texels in the buffer.
 #[derive(Clone, Copy)]
 struct Picked {
     pixel: [u32; 2],
     picture: Texel,
     words: Texel,
     depth: Texel,
-    /// Of scenes with maps.
+    /// Only for scenes with maps.
     albedo: Option<Texel>,
     near: f32,
     shown: Show,
@@ -59,7 +59,7 @@ struct Picked {
 
 impl Probe {
     /// # Errors
-    /// When the device has no memory left.
+    /// Fails when the device is out of memory.
     pub fn new(context: &Arc<Context>) -> Result<Self> {
         let bytes = (TEXELS * Texel::SLOT_BYTES) as u64;
         Ok(Self {
@@ -68,7 +68,7 @@ impl Probe {
         })
     }
 
-    /// Copies a pixel of a picture, whose fourth channel is the illuminance, and of its surfaces. `near` is the distance of the
+    /// Copies one pixel of a picture, whose fourth channel is the illuminance, and of its G-buffer. `near` is the distance of the
     /// near plane, metres.
     pub fn pick(
         &mut self,
@@ -94,13 +94,13 @@ impl Probe {
         });
     }
 
-    /// The pixel that was picked, once, when the work is done. `diffuse` is ρ_d of a material.
+    /// Returns the picked pixel, once; the GPU must have finished. `diffuse` returns ρ_d of a material.
     pub fn reading(&mut self, diffuse: impl FnOnce(u32) -> Vec3) -> Option<Reading> {
         let picked = self.picked.take()?;
         let read = |texel: Texel| texel.read(&self.buffer);
         let [r, g, b, illuminance] = read(picked.picture);
         let (words, depth) = (read(picked.words), read(picked.depth)[0]);
-        // Halves of the words.
+        // `words` holds the halves of the 32-bit words.
         let material = words[2] as u32;
         let albedo = match picked.albedo {
             Some(texel) => Vec3::from_slice(&read(texel)),

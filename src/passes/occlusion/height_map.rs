@@ -1,4 +1,4 @@
-//! Height map: depth of the scene seen from the zenith. Ambient occlusion finds roofs in it that the picture does not show.
+//! Height map: scene depth as seen from the zenith. With it, ambient occlusion accounts for roofs that are not on screen.
 
 use std::sync::Arc;
 
@@ -22,18 +22,18 @@ gpu_struct! {
     }
 }
 
-/// Texels of the map's edge.
+/// Edge of the map, texels.
 const EDGE: u32 = 512;
-/// Rays of a slice that look for roofs.
+/// Rays per slice that search for roofs.
 const RAYS: i32 = 4;
-/// Fewest texels to a radius: a coarser map shows no roofs.
+/// Minimum number of texels per occlusion radius: a coarser map does not resolve roofs.
 const TEXELS_OF_RADIUS: f32 = 8.0;
-/// Depth, in texels, by which a point must lie below the map to be under a roof: slopes rise within a texel.
+/// How far below the map a point must lie to count as under a roof, texels: a slope rises within a texel.
 const SLACK_TEXELS: f32 = 2.0;
-/// Texels by which points are lifted off their surface.
+/// Normal offset of points, texels.
 const LIFT_TEXELS: f32 = 1.5;
 
-/// The pass and its map, which is drawn once.
+/// The height map pass and its map, which is drawn once.
 pub struct HeightMap {
     casters: Casters,
     depth: Image,
@@ -42,10 +42,10 @@ pub struct HeightMap {
 }
 
 impl HeightMap {
-    /// For a scene.
+    /// Creates the pass for a scene.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, geometry: &Geometry) -> Result<Self> {
         let desc = ImageDesc::flat("height map", Format::D32_SFLOAT, [EDGE; 2]);
         Ok(Self {
@@ -56,12 +56,12 @@ impl HeightMap {
         })
     }
 
-    /// Whether it is fine enough for occlusion within `radius` metres.
+    /// Whether the map is fine enough for occlusion within `radius` metres.
     fn serves(&self, radius: f32) -> bool {
         radius > 0.0 && self.view.texel * TEXELS_OF_RADIUS <= radius
     }
 
-    /// Draws the map of the whole scene, once, when occlusion within `radius` metres first needs it.
+    /// Draws the map of the whole scene once, when occlusion within `radius` metres first needs it.
     pub fn record(&mut self, recorder: &mut Recorder, geometry: &Geometry, radius: f32) -> &Self {
         if self.serves(radius) && !std::mem::replace(&mut self.is_drawn, true) {
             let tile = Tile {
@@ -76,12 +76,12 @@ impl HeightMap {
         self
     }
 
-    /// The map: reversed depth, 1 is highest.
+    /// The map; reversed depth: 1 is highest.
     pub fn image(&self) -> &Image {
         &self.depth
     }
 
-    /// The shader's block, for occlusion within `radius` metres.
+    /// The shader's uniform block, for occlusion within `radius` metres.
     pub fn block(&self, view: &View, radius: f32) -> HeightBlock {
         let from_view = self.view.shadow_from_world * view.camera.world_from_view();
         HeightBlock {

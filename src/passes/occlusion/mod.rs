@@ -1,4 +1,4 @@
-//! Ambient occlusion: an estimate of the sky's visibility for pictures that move.
+//! Ambient occlusion: a single-frame estimate of the sky's visibility.
 
 pub mod height_map;
 pub mod ssao;

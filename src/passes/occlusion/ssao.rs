@@ -1,4 +1,4 @@
-//! Screen-space ambient occlusion: the share A of the sky that surfaces within a radius leave visible.
+//! Screen-space ambient occlusion: the fraction A of the sky that surfaces within a radius leave visible.
 
 use std::sync::Arc;
 
@@ -27,25 +27,25 @@ gpu_struct! {
     }
 }
 
-/// How the occlusion is computed.
+/// Settings of the ambient occlusion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SsaoSettings {
-    /// Metres; 0 turns it off (A = 1).
+    /// Radius, metres; 0 turns it off (A = 1).
     pub radius: f32,
-    /// Pixels of the picture to an occluder, each way; A is computed at every second one.
+    /// Pixels per occluder, along each axis; A is computed at every second occluder.
     pub downscale: u32,
     /// Samples on each side of the slice.
     pub steps: u32,
 }
 
-/// Occluders to a point at which A is computed, each way.
+/// Occluders per point at which A is computed, along each axis.
 const SPACING: u32 = 2;
-/// Thickness that occludes, in thicknesses of bodies: what stands behind a body hides too. Measured: the least bias against
-/// path-traced views. Of a solid, whose thickness is 0.8 mean chords, that is 1.52; a sphere's diameter is 1.5.
+/// Factor on the thickness of bodies, because surfaces behind a body occlude too. Chosen for the least bias against path-traced
+/// views. For a solid, whose thickness is 0.8 mean chords, it gives 1.52 mean chords; a sphere's diameter is 1.5.
 const CHORDS: f32 = 1.9;
 
 impl SsaoSettings {
-    /// Pixels of the picture to a texel of A, each way.
+    /// Pixels per texel of A, along each axis.
     pub fn pixels_per_texel(&self) -> u32 {
         self.downscale * SPACING
     }
@@ -61,7 +61,7 @@ impl Default for SsaoSettings {
     }
 }
 
-/// The passes and their images.
+/// The occlusion passes and their images.
 pub struct Ssao {
     settings: SsaoSettings,
     pack: Pipeline,
@@ -69,23 +69,23 @@ pub struct Ssao {
     trace: Pipeline,
     blur: Pipeline,
     occluders: Image,
-    /// Depth at the points at which A is computed; 0 is background.
+    /// Depth at the points where A is computed; 0 is background.
     points: Image,
     noisy: Image,
     smooth: Image,
 }
 
-/// Two numbers to a texel, see `include/occlusion.glsl`.
+/// Two packed values per texel, see `include/occlusion.glsl`.
 const FORMAT: Format = Format::R32_UINT;
 const DEPTH: Format = Format::D32_SFLOAT;
-/// 0 is A = 1 at no distance.
+/// A word of 0 is A = 1 at distance 0.
 const OPEN: [f32; 4] = [0.0; 4];
 
 impl Ssao {
-    /// For pictures of `size` pixels.
+    /// Creates the passes for pictures of `size` pixels.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, size: [u32; 2], settings: SsaoSettings) -> Result<Self> {
         let constants = [
             ("STEPS", settings.steps),
@@ -136,17 +136,17 @@ impl Ssao {
         })
     }
 
-    /// A as it was last computed, for use after the passes are gone.
+    /// The last computed A; consumes the passes.
     pub fn into_image(self) -> Image {
         self.smooth
     }
 
-    /// A as it was last computed.
+    /// The last computed A.
     pub fn image(&self) -> &Image {
         &self.smooth
     }
 
-    /// Computes A of the surfaces in view. `phase` (0..1) varies the noise from frame to frame.
+    /// Computes A of the surfaces in view. `phase` (0..1) varies the noise between frames.
     pub fn record(
         &mut self,
         recorder: &mut Recorder,
@@ -156,7 +156,7 @@ impl Ssao {
         phase: f32,
     ) -> &Image {
         if self.settings.radius <= 0.0 {
-            // A = 1 everywhere; the distance only guides filters.
+            // A = 1 everywhere; the distance is used by filters only.
             recorder.clear(&self.smooth, OPEN);
             return &self.smooth;
         }

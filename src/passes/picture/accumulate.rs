@@ -1,4 +1,4 @@
-//! Running mean of frames in 32-bit floats: anti-aliasing, soft shadows, less noise.
+//! Temporal accumulation: the running mean of frames in 32-bit floats, for anti-aliasing, soft shadows and less noise.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ gpu_struct! {
     }
 }
 
-/// The pass; it alternates between two images.
+/// The accumulation pass; it alternates between two images.
 pub struct Accumulate {
     pipeline: Pipeline,
     means: [Image; 2],
@@ -26,7 +26,7 @@ impl Accumulate {
     /// Creates the pass for pictures of `size` pixels.
     ///
     /// # Errors
-    /// A device error, or no memory left.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, size: [u32; 2]) -> Result<Self> {
         let format = Format::R32G32B32A32_SFLOAT;
         let pipeline = fullscreen(

@@ -1,5 +1,4 @@
-//! The luminance that automatic exposure goes by, and its adaptation over time; [`crate::daylight::exposure`] is the
-//! same on the CPU.
+//! Metering for automatic exposure, and its adaptation over time. [`crate::daylight::exposure`] is the CPU counterpart.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -12,7 +11,7 @@ use crate::gpu::{
 use crate::gpu_struct;
 
 gpu_struct! {
-    /// How a picture is metered, and how far the exposure follows it.
+    /// Metering and adaptation parameters.
     pub struct Push: push of EXPOSURE_COMP {
         black: f32,
         bins_per_stop: f32,
@@ -22,19 +21,19 @@ gpu_struct! {
     }
 }
 
-/// The pass and its image.
+/// The metering pass and its images.
 pub struct Exposure {
     pipeline: Pipeline,
-    /// Luminances of the newest picture and of the one before.
+    /// Luminances of the newest and the previous picture.
     luminances: [Image; 2],
-    /// Index of the newest, once there is one.
+    /// Index of the newest, if any.
     newest: Cell<Option<usize>>,
     share: f32,
 }
 
 impl Exposure {
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>) -> Result<Self> {
         let image = |name| {
             Image::new(
@@ -61,13 +60,13 @@ impl Exposure {
         })
     }
 
-    /// Sets the share of the way, in log luminance, that each following picture moves the exposure toward its own:
-    /// 1 (the default) adapts at once.
+    /// Sets the adaptation rate: the fraction of the difference in log luminance covered with each following picture. 1 (the
+    /// default) adapts at once.
     pub fn set_share(&mut self, share: f32) {
         self.share = share;
     }
 
-    /// Computes the average luminance of a picture: one texel, kcd/m².
+    /// Computes the average luminance of a picture, kcd/m², as one texel.
     pub fn record(&self, recorder: &mut Recorder, radiance: &Image) -> &Image {
         let share = self.newest.get().map_or(1.0, |_| self.share);
         let [previous, new] = match self.newest.get() {
@@ -92,7 +91,7 @@ impl Exposure {
         new
     }
 
-    /// The newest average luminance: one texel, kcd/m².
+    /// The newest average luminance, kcd/m², as one texel.
     pub fn image(&self) -> &Image {
         &self.luminances[self.newest.get().unwrap_or(0)]
     }

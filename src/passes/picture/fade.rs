@@ -1,7 +1,7 @@
-//! Cross-fade from the preview that is shown during movement to the converging picture at rest.
+//! Cross-fade from the preview, shown during movement, to the converging picture at rest.
 //!
-//! The two differ where ambient occlusion is not the sky's true visibility, and in the first frames by noise. The last preview
-//! is kept and fades along a smooth step.
+//! The two differ because ambient occlusion only approximates the sky's visibility and, in the first frames, because of noise.
+//! The last preview is kept and fades out along a smoothstep.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ gpu_struct! {
     }
 }
 
-/// The pass and its image.
+/// The cross-fade pass and its image.
 pub struct Fade {
     pipeline: Pipeline,
     image: Image,
@@ -32,10 +32,10 @@ pub struct Fade {
 }
 
 impl Fade {
-    /// Creates the pass for pictures of `size` pixels that average `samples` frames; the last one shows nothing of the preview.
+    /// Creates the pass for pictures of `size` pixels, averaged over `samples` frames. In the last one the preview has weight 0.
     ///
     /// # Errors
-    /// A device error, or no memory left.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, size: [u32; 2], samples: u32) -> Result<Self> {
         let format = Format::R32G32B32A32_SFLOAT;
         Ok(Self {
@@ -46,7 +46,7 @@ impl Fade {
         })
     }
 
-    /// Draws frame number `index` of an average. `is_previewed`: whether `preview` was on the screen before frame 0.
+    /// Draws frame number `index` of an average. `is_previewed`: whether `preview` was shown before frame 0.
     pub fn record(
         &mut self,
         recorder: &mut Recorder,
@@ -79,7 +79,7 @@ impl Fade {
     }
 }
 
-/// Weight of the preview in frame number `index`: a smooth step from 1 before the first frame to 0 in the last.
+/// Weight of the preview in frame number `index`: a smoothstep from 1 before the first frame to 0 in the last.
 fn share(index: u32, frames: u32) -> f32 {
     let t = ((index + 1) as f32 / frames.max(1) as f32).min(1.0);
     1.0 - t * t * (3.0 - 2.0 * t)

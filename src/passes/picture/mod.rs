@@ -1,4 +1,4 @@
-//! From radiance to a displayed picture: averages over frames, exposure, tone mapping, presentation.
+//! From radiance to the displayed picture: accumulation, exposure, tone mapping, presentation.
 
 pub mod accumulate;
 pub mod exposure;

@@ -18,9 +18,9 @@ gpu_struct! {
     }
 }
 
-/// The pass.
+/// The presentation pass.
 pub struct Present {
-    /// For a linear picture, and for one that is encoded already.
+    /// For a linear and for an already encoded picture.
     pipelines: [Pipeline; 2],
 }
 
@@ -28,7 +28,7 @@ impl Present {
     /// Creates the pass for windows of an sRGB `format`.
     ///
     /// # Errors
-    /// A device error, or no memory left.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, format: Format) -> Result<Self> {
         let pipeline = |encoded: u32| {
             let constants = [("ENCODED", encoded)];
@@ -45,10 +45,10 @@ impl Present {
         })
     }
 
-    /// Draws the display values and the user interface over them.
+    /// Draws the display values, with the user interface on top.
     ///
     /// # Errors
-    /// No memory left for the user interface.
+    /// Fails when there is no memory left for the user interface.
     pub fn record(
         &self,
         recorder: &mut Recorder,

@@ -1,7 +1,7 @@
-//! Radiance to display values: exposure, tone curve, encoding.
+//! Tone mapping from radiance to display values: exposure, tone curve, encoding.
 //!
-//! Without a gamma the target has an sRGB format and the device encodes. With one (the lecture's (s R)^(1/γ)) the shader
-//! applies the power and the target is UNORM.
+//! Without a gamma the render target has an sRGB format and the device encodes. With one (the lecture's (s R)^(1/γ)) the shader
+//! applies the power law and the target is UNORM.
 
 use std::sync::Arc;
 
@@ -37,7 +37,7 @@ pub enum Scale {
 /// Settings of the tone map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ToneSettings {
-    /// Quantity shown; quantities other than light are not exposed.
+    /// Quantity shown; only luminance and illuminance are exposed.
     pub show: Show,
     /// Tone curve.
     pub curve: ToneCurve,
@@ -45,27 +45,27 @@ pub struct ToneSettings {
     pub scale: Scale,
     /// Luminance that Reinhard's curve maps to white, in display values before the curve.
     pub white: f64,
-    /// Gamma of a power law instead of the sRGB encoding.
+    /// Gamma of a power-law encoding; `None`: sRGB.
     pub gamma: Option<f64>,
-    /// Depth that is shown mid-grey, metres.
+    /// Depth shown as mid-grey, metres.
     pub depth_scale: f64,
-    /// Range of false colours, cd/m² (lux of an irradiance); they replace exposure and tone curve and are always sRGB.
+    /// Range of false colours, cd/m² (lux for irradiance). They replace exposure and tone curve and are always sRGB-encoded.
     pub false_colour: Option<Range>,
 }
 
-/// The pass and its picture.
+/// The tone mapping pass and its picture.
 pub struct ToneMap {
     settings: ToneSettings,
     pipeline: Pipeline,
     display: Image,
 }
 
-/// Whether a quantity is light: exposed and tone-mapped.
+/// Whether a quantity is light, which is exposed and tone mapped.
 fn is_light(show: Show) -> bool {
     show.file_unit() != 1.0
 }
 
-/// Factor and offset from log2 of kcd/m² (klx) to the position 0..1 in a range.
+/// Scale and offset from log2 of kcd/m² (klx) to the position 0..1 in a range.
 fn kilo_range(range: Range) -> (f64, f64) {
     let (scale, offset) = range.log2_scale();
     (scale, offset + scale * 1e3f64.log2())
@@ -75,7 +75,7 @@ impl ToneMap {
     /// Creates the pass for pictures of `size` pixels.
     ///
     /// # Errors
-    /// A device error, or no memory left.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, size: [u32; 2], settings: ToneSettings) -> Result<Self> {
         let false_colour = settings.false_colour.is_some();
         let light = is_light(settings.show) && !false_colour;
@@ -116,7 +116,7 @@ impl ToneMap {
         })
     }
 
-    /// Maps a picture. `average_luminance` (one texel, kcd/m²) is read only for automatic exposure.
+    /// Tone maps a picture. `average_luminance` (one texel, kcd/m²) is read only for automatic exposure.
     pub fn record(
         &self,
         recorder: &mut Recorder,
@@ -144,7 +144,7 @@ impl ToneMap {
         }
     }
 
-    /// Factor (from kcd/m² to display values) and offset before the tone curve.
+    /// Scale (from kcd/m² to display values) and offset applied before the tone curve.
     fn exposure(&self) -> (f64, f64) {
         let s = &self.settings;
         match s.show {
@@ -152,7 +152,7 @@ impl ToneMap {
             Show::Depth => (0.5 / s.depth_scale, 0.0),
             Show::Visibility | Show::Occlusion | Show::Albedo => (1.0, 0.0),
             shown => {
-                // An irradiance is shown as the radiance of a white diffuser.
+                // Irradiance is shown as the radiance of a white diffuser.
                 let paper = if shown == Show::Irradiance {
                     std::f64::consts::FRAC_1_PI
                 } else {

@@ -1,4 +1,4 @@
-//! The sky as a cube map: 6 faces of radiance in kcd/m², without the sun's disc, ground below the horizon.
+//! The sky as a cube map: radiance in kcd/m² on 6 faces, with the ground below the horizon and without the sun's disc.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::passes::kilo;
 use crate::passes::sky::route::{CubePipeline, CubeRoute, CubeShaders};
 
 gpu_struct! {
-    /// The guard around a model, see [`crate::daylight::sky`].
+    /// Parameters common to all sky models, see [`crate::daylight::sky`].
     pub struct Push: push of
         SKY_PREETHAM_FRAG, SKY_PREETHAM_COMP, SKY_HOSEK_FRAG, SKY_HOSEK_COMP, SKY_OVERCAST_FRAG, SKY_OVERCAST_COMP
     {
@@ -44,33 +44,33 @@ gpu_struct! {
 }
 
 gpu_struct! {
-    /// The overcast sky needs one number.
+    /// The zenith luminance of the overcast sky, kcd/m².
     pub struct OvercastModel: model of SKY_OVERCAST_FRAG, SKY_OVERCAST_COMP {
         zenith_luminance: f32,
     }
 }
 
-/// Edge of the coarse cube, texels: what the exact sum of the irradiance runs over.
+/// Edge of the coarse cube, texels; the exact irradiance sum runs over its texels.
 pub const COARSE_EDGE: u32 = 32;
 
-/// Edge of the smooth cube, texels: its mip levels are what filtered samples of the irradiance look up.
+/// Edge of the smooth cube, texels; filtered irradiance samples look up its mip levels.
 pub const SMOOTH_EDGE: u32 = 128;
 
-/// What the pass leaves behind.
+/// The outputs of the pass.
 #[derive(Clone, Copy)]
 pub struct SkyImages<'s> {
-    /// The sky that is seen and mirrored, kcd/m², half floats.
+    /// The sky for background and reflections, kcd/m², half floats.
     pub radiance: &'s Image,
-    /// The same at [`SMOOTH_EDGE`] with mip levels, 32-bit floats: a device may cut numbers short when it stores half
-    /// floats, and five levels of that would darken the sky by a fifth of a percent.
+    /// The same at [`SMOOTH_EDGE`] with mip levels, 32-bit floats: a device may truncate when it stores half floats, and five
+    /// levels of truncation would darken the sky by 0.2 %.
     pub smooth: &'s Image,
     /// The same at [`COARSE_EDGE`], 32-bit floats.
     pub coarse: &'s Image,
-    /// Whether they were drawn in this frame.
+    /// Whether the images were drawn in this frame.
     pub is_new: bool,
 }
 
-/// The pipelines of the models, for targets of one format.
+/// Pipelines of the sky models, for targets of one format.
 struct Painter {
     preetham: CubePipeline,
     hosek: CubePipeline,
@@ -128,7 +128,7 @@ impl Painter {
     }
 }
 
-/// The pass and its cubes.
+/// The sky pass and its cubes.
 pub struct SkyCube {
     half: Painter,
     float: Painter,
@@ -139,10 +139,10 @@ pub struct SkyCube {
 }
 
 impl SkyCube {
-    /// A cube with faces of `edge` texels, and what the irradiance needs besides.
+    /// Creates a cube with faces of `edge` texels, and the cubes for the irradiance.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, edge: u32) -> Result<Self> {
         let (half, float) = (Format::R16G16B16A16_SFLOAT, Format::R32G32B32A32_SFLOAT);
         let smooth = ImageDesc::cube("sky radiance, smooth", float, SMOOTH_EDGE).mipmapped();
@@ -157,7 +157,7 @@ impl SkyCube {
         })
     }
 
-    /// Draws the sky if it changed.
+    /// Draws the sky if the daylight has changed.
     pub fn record(&mut self, recorder: &mut Recorder, daylight: &Daylight) -> SkyImages<'_> {
         let is_new = self.drawn.as_ref() != Some(daylight);
         if is_new {
@@ -175,7 +175,7 @@ impl SkyCube {
         }
     }
 
-    /// Forgets what was drawn, so that the next frame draws it again.
+    /// Invalidates the cubes, so that the next frame redraws them.
     pub fn invalidate(&mut self) {
         self.drawn = None;
     }

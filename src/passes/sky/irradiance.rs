@@ -1,11 +1,12 @@
-//! The sky's irradiance as a cube map: E(n) in klx, by four methods.
+//! The sky's irradiance E(n) as a cube map in klx, computed by one of four methods.
 //!
-//! The lecture's layered pass: a geometry shader emits one triangle to the six faces (`gl_Layer`), the fragment shader
-//! integrates the sky cube over a cosine-weighted hemisphere around the texel's direction. Sums are kept in 32-bit
-//! floats and alternate between two cubes: in half floats the mean would stall after a few hundred samples.
+//! The two sampling methods follow the lecture's layered pass: a geometry shader emits one triangle to the six faces
+//! (`gl_Layer`), and the fragment shader integrates the sky cube over a cosine-weighted hemisphere around the texel's
+//! direction. Sums are 32-bit floats and alternate between two cubes; in half floats the mean would stall after a few hundred
+//! samples.
 //!
-//! `exact` sums a coarse sky cube with exact texel solid angles instead, `sh` evaluates nine coefficients that the CPU
-//! projected: both are done in one pass.
+//! `exact` sums a coarse sky cube with exact texel solid angles. `sh` evaluates nine spherical harmonics coefficients that the
+//! CPU computed. Both take one pass.
 
 use std::sync::Arc;
 
@@ -24,7 +25,7 @@ use crate::passes::sky::cube::{COARSE_EDGE, SMOOTH_EDGE, SkyImages};
 use crate::passes::sky::route::{CubePipeline, CubeRoute, CubeShaders};
 
 gpu_struct! {
-    /// Which samples this pass adds.
+    /// The range of samples that this pass adds.
     pub struct Push: push of IRRADIANCE_FRAG, IRRADIANCE_COMP {
         first: u32,
         count: u32,
@@ -32,31 +33,31 @@ gpu_struct! {
 }
 
 gpu_struct! {
-    /// How many texels are summed.
+    /// Number of texels summed.
     pub struct ExactPush: push of IRRADIANCE_EXACT_FRAG, IRRADIANCE_EXACT_COMP {
         count: u32,
     }
 }
 
 gpu_struct! {
-    /// Nine coefficients of the radiance.
+    /// Nine spherical harmonics coefficients of the radiance.
     pub struct ShPush: push of IRRADIANCE_SH_FRAG, IRRADIANCE_SH_COMP {
         coefficients: [[f32; 3]; 9],
     }
 }
 
-/// Settings of the map.
+/// Settings of the irradiance map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IrradianceSettings {
     /// Edge of a face, texels.
     pub edge: u32,
-    /// How E is found.
+    /// How E is computed.
     pub method: IrradianceMethod,
-    /// Samples in all, of the two methods that sample.
+    /// Total number of samples, for the two sampling methods.
     pub samples: u32,
-    /// Samples added by one pass.
+    /// Samples added per pass.
     pub samples_per_pass: u32,
-    /// How the texels are written; None: as the device can.
+    /// How the texels are written; `None`: chosen by what the device supports.
     pub route: Option<CubeRoute>,
 }
 
@@ -72,20 +73,20 @@ impl Default for IrradianceSettings {
     }
 }
 
-/// The pass, its running sums and the map.
+/// The irradiance pass, its running sums and the map.
 pub struct Irradiance {
     settings: IrradianceSettings,
     pipeline: CubePipeline,
-    /// Directions of the low-discrepancy sequence, or the texels of the exact sum.
+    /// Low-discrepancy directions, or the texels of the exact sum.
     table: Buffer,
-    /// Those of the draft.
+    /// Directions of the draft.
     draft: Option<Buffer>,
     sums: [Image; 2],
     irradiance: Image,
     done: u32,
 }
 
-/// Samples of a draft: 0.5 % rms of the largest irradiance, for a sixth of the time of the usual pass.
+/// Samples of a draft: an rms error of 0.5 % of the largest irradiance, in a sixth of the time of a regular pass.
 const DRAFT_SAMPLES: u32 = 64;
 
 const COLORS: [Format; 2] = [Format::R32G32B32A32_SFLOAT, Format::R16G16B16A16_SFLOAT];
@@ -119,10 +120,10 @@ fn pipeline(context: &Arc<Context>, settings: &IrradianceSettings) -> Result<Cub
 }
 
 impl Irradiance {
-    /// Makes the cubes and uploads the table; `recorder` must be recording.
+    /// Creates the cubes and uploads the table. `recorder` must be recording.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(recorder: &mut Recorder, settings: IrradianceSettings) -> Result<Self> {
         let context: Arc<Context> = recorder.context().clone();
         let cube =
@@ -141,8 +142,8 @@ impl Irradiance {
         })
     }
 
-    /// Adds the next samples if some are still wanted; starts anew when the sky is new. Under a sky that moves that is every
-    /// frame: the first is then a draft, whose few samples are filtered for their number and not kept.
+    /// Adds the next samples until the total is reached; restarts when the sky has changed. Since a moving sky changes every frame,
+    /// the first frame is a draft: few samples, filtered accordingly and not kept.
     pub fn record(
         &mut self,
         recorder: &mut Recorder,
@@ -160,7 +161,7 @@ impl Irradiance {
         &self.irradiance
     }
 
-    /// As [`Irradiance::record`], without drafts: for a sky that does not move.
+    /// Like [`Irradiance::record`], without drafts: for a static sky.
     pub fn refine(&mut self, recorder: &mut Recorder, sky: &SkyImages<'_>, daylight: &Daylight) {
         if sky.is_new {
             self.done = 0;
@@ -180,7 +181,7 @@ impl Irradiance {
         &self.settings
     }
 
-    /// Whether all samples are in.
+    /// Whether all samples have been added.
     pub fn is_complete(&self) -> bool {
         let wanted = if self.settings.method.is_sampled() {
             self.settings.samples
@@ -190,7 +191,7 @@ impl Irradiance {
         self.done >= wanted
     }
 
-    /// Samples so far; 1 when a method that does not sample is done.
+    /// Samples so far; for the methods without samples, 1 when done.
     pub fn samples_done(&self) -> u32 {
         self.done
     }
@@ -200,12 +201,12 @@ impl Irradiance {
         &self.irradiance
     }
 
-    /// The 32-bit sums (klx) with the number of samples in the fourth channel: E is their quotient.
+    /// The 32-bit sums (klx), with the number of samples in the fourth channel: E is the quotient.
     pub fn sums(&self) -> &Image {
         &self.sums[0]
     }
 
-    /// The outputs by their names in the shaders.
+    /// The outputs, by their names in the shaders.
     fn cubes(&self) -> [(&'static str, &Image); 2] {
         [("sum", &self.sums[0]), ("sky_irradiance", &self.irradiance)]
     }
@@ -213,13 +214,13 @@ impl Irradiance {
     fn add_samples(&mut self, recorder: &mut Recorder, sky_radiance: &Image) {
         let left = self.settings.samples - self.done;
         let count = left.min(self.settings.samples_per_pass);
-        // The newest sums are always number 0: it becomes what is read.
+        // The newest sums are always at index 0.
         self.sums.swap(0, 1);
         self.add(recorder, sky_radiance, &self.table, [self.done, count]);
         self.done += count;
     }
 
-    /// Draws the sums so far with so many samples more of a table, from the first on.
+    /// Writes the sums so far plus a range (first, count) of the samples of a table.
     fn add(
         &self,
         recorder: &mut Recorder,
@@ -260,7 +261,7 @@ impl Irradiance {
     }
 }
 
-/// What the shader looks up, sample by sample.
+/// Uploads the table that the shader reads per sample.
 fn upload_table(recorder: &mut Recorder, settings: &IrradianceSettings) -> Result<Buffer> {
     let edge = COARSE_EDGE as usize;
     let numbers: Vec<f32> = match settings.method {
@@ -274,14 +275,14 @@ fn upload_table(recorder: &mut Recorder, settings: &IrradianceSettings) -> Resul
                     .to_array()
             })
             .collect(),
-        // These two need no table; a declared binding must be there all the same.
+        // These two need no table, but the declared binding must be written.
         IrradianceMethod::MonteCarlo | IrradianceMethod::Sh => vec![0.0; 4],
     };
     let bytes = bytemuck::cast_slice(&numbers);
     upload_buffer(recorder, "irradiance table", BufferKind::Storage, bytes)
 }
 
-/// The few samples of a draft, where fewer than all would be drawn in a frame.
+/// Uploads the samples of a draft, if one frame does not draw all samples.
 fn upload_draft(recorder: &mut Recorder, settings: &IrradianceSettings) -> Result<Option<Buffer>> {
     let is_wanted =
         settings.method == IrradianceMethod::Quasi && settings.samples > settings.samples_per_pass;
@@ -298,7 +299,7 @@ fn upload_draft(recorder: &mut Recorder, settings: &IrradianceSettings) -> Resul
         .transpose()
 }
 
-/// The low-discrepancy directions, each with the mip level of its lookup.
+/// Low-discrepancy directions, each with the mip level of its lookup.
 fn sample_table(count: u32) -> Vec<f32> {
     filtered_samples(count)
         .into_iter()

@@ -1,4 +1,4 @@
-//! Two ways to write all texels of a cube: the lecture's layered rendering by a geometry shader, and compute for devices
+//! Two ways to write all texels of a cube: layered rendering with a geometry shader, as in the lecture, and compute for devices
 //! without geometry shaders.
 
 use std::sync::Arc;
@@ -11,14 +11,14 @@ use crate::gpu::{
 /// How the texels of a cube are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CubeRoute {
-    /// A geometry shader emits one triangle to the six faces (`gl_Layer`); the lecture's way.
+    /// A geometry shader emits one triangle to the six faces (`gl_Layer`), as in the lecture.
     Geometry,
-    /// A compute shader, one invocation for each texel.
+    /// A compute shader with one invocation per texel.
     Compute,
 }
 
 impl CubeRoute {
-    /// The lecture's way where the device has geometry shaders.
+    /// `Geometry` if the device has geometry shaders, otherwise `Compute`.
     pub fn of(context: &Context) -> Self {
         if context.summary().has(Optional::GeometryShader) {
             Self::Geometry
@@ -28,12 +28,12 @@ impl CubeRoute {
     }
 }
 
-/// What a cube is filled with: the same function in two stages.
+/// The shaders that fill a cube: the same function as a fragment and as a compute shader.
 #[derive(Clone, Copy)]
 pub(in crate::passes) struct CubeShaders {
     /// For [`CubeRoute::Geometry`].
     pub(in crate::passes) fragment: &'static Shader,
-    /// For [`CubeRoute::Compute`]: stores to images called as the outputs of the fragment shader.
+    /// For [`CubeRoute::Compute`]; its storage images have the names of the fragment shader's outputs.
     pub(in crate::passes) compute: &'static Shader,
 }
 
@@ -44,7 +44,7 @@ pub(in crate::passes) struct CubePipeline {
 }
 
 impl CubePipeline {
-    /// For cubes of these formats.
+    /// Creates a pipeline for cubes of these formats.
     pub(in crate::passes) fn new(
         context: &Arc<Context>,
         route: CubeRoute,
@@ -76,7 +76,7 @@ impl CubePipeline {
         })
     }
 
-    /// Starts the pass: bind what the shader declares, then [`CubePipeline::fill`].
+    /// Starts the pass. Bind the shader's inputs, then call [`CubePipeline::fill`].
     pub(in crate::passes) fn pass<'r>(
         &'r self,
         recorder: &'r mut Recorder,
@@ -85,7 +85,7 @@ impl CubePipeline {
         recorder.pass(name, &self.pipeline)
     }
 
-    /// Ends the pass: writes every texel of the cubes, in the order of the fragment shader's outputs, by name.
+    /// Ends the pass: writes every texel of the cubes, given by name in the order of the fragment shader's outputs.
     pub(in crate::passes) fn fill<'r>(&self, pass: Pass<'r>, cubes: &[(&str, &'r Image)]) {
         match self.route {
             CubeRoute::Geometry => cubes

@@ -1,7 +1,7 @@
-//! The sun's shadow maps: one, or for large scenes several cascades around the viewer, each a few times as wide as the one before.
+//! Cascaded shadow maps of the sun. Small scenes use one map; large ones several, each a few times as wide as the one before.
 //!
-//! Each cascade covers what is seen within a cube around the eye and follows the view in the steps of [`fit::fit`], so that
-//! shadows do not swim. A point takes the finest cascade whose cube it is in, and blends into the next toward the cube's side.
+//! Each cascade covers the receivers in view within a cube around the eye. It follows the view in the steps of [`fit::fit`], so
+//! that shadows do not swim. A point uses the finest cascade whose cube contains it; near the cube's side it blends into the next.
 
 use arrayvec::ArrayVec;
 use glam::Vec3;
@@ -13,17 +13,17 @@ use crate::scene::Bounds;
 use crate::passes::sun_shadow::fit::{self, ShadowView};
 use crate::passes::view::View;
 
-/// How the sun's shadow is looked up.
+/// Settings of the sun's shadow lookup.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Shadows {
-    /// Number of cascades, 1 to 4; 0: by the extent of the scene, which [`crate::frame::Frame`] knows.
+    /// Number of cascades, 1 to 4; 0: [`crate::frame::Frame`] chooses it by the extent of the scene.
     pub cascades: u32,
-    /// Penumbrae as wide as the sun's disc makes them, in a single frame.
+    /// Whether a single frame has penumbrae of physical width, from the sun's angular radius.
     pub penumbrae: bool,
 }
 
 impl Shadows {
-    /// Radius of the lookups around a receiver, texels: penumbrae, and around them the tent after the offset along the normal.
+    /// Radius of the lookups around a receiver, texels, including filter and normal offset.
     pub(in crate::passes) fn filter_radius(&self) -> f32 {
         if self.penumbrae {
             MAX_RADIUS + 4.0
@@ -33,21 +33,21 @@ impl Shadows {
     }
 }
 
-/// Most cascades of a scene.
+/// Largest number of cascades.
 pub const MAX_CASCADES: usize = 4;
-/// Texels of a single map that are larger than this call for cascades, metres.
+/// Largest texel of a single map, metres; a scene that would need larger ones gets cascades.
 const MAX_SINGLE_MAP_TEXEL: f32 = 0.08;
 /// Extent of a scene above which there are four cascades instead of three, metres.
 const FOUR_CASCADES_EXTENT: f32 = 1000.0;
-/// From the eye to the side of the nearest cascade's cube, metres.
+/// Distance from the eye to the side of the nearest cascade's cube, metres.
 const NEAREST_REACH: f32 = 20.0;
-/// Texel of a cascade over that of the next, up to which it is worth its drawing.
+/// Largest ratio of a cascade's texel to the next one's for which the cascade is worth drawing.
 const MAX_TEXEL_RATIO: f32 = 0.75;
-/// Share of a cube from which on its cascade is blended into the next.
+/// Fraction of a cube's half-width beyond which its cascade is blended into the next.
 pub(in crate::passes) const BLEND: f32 = 0.85;
-/// Largest radius of penumbrae, texels: taps farther apart miss thin casters.
+/// Largest penumbra radius, texels: with taps farther apart, thin casters would be missed.
 pub(in crate::passes) const MAX_RADIUS: f32 = 48.0;
-/// Texels by which receivers are lifted off their surface, along the normal, at grazing light.
+/// Normal offset of receivers at grazing light, texels.
 pub(in crate::passes) const NORMAL_OFFSET_TEXELS: f32 = 1.5;
 
 gpu_struct! {
@@ -59,7 +59,7 @@ gpu_struct! {
     }
 }
 
-/// How many cascades a scene within `bounds` has, of `resolution` texels a side.
+/// Number of cascades, `resolution` texels on a side, for a scene within `bounds`. An image may be `most_texels` wide.
 pub fn count(bounds: &Bounds, resolution: u32, most_texels: u32) -> u32 {
     let extent = bounds.extent().max_element();
     let wanted = match extent {
@@ -67,7 +67,7 @@ pub fn count(bounds: &Bounds, resolution: u32, most_texels: u32) -> u32 {
         _ if extent <= FOUR_CASCADES_EXTENT => 3,
         _ => MAX_CASCADES as u32,
     };
-    // They lie side by side in one image.
+    // The cascades lie side by side in one image.
     if wanted * resolution <= most_texels {
         wanted
     } else {
@@ -79,13 +79,13 @@ pub fn count(bounds: &Bounds, resolution: u32, most_texels: u32) -> u32 {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SunViews {
     views: [ShadowView; MAX_CASCADES],
-    /// From the eye to the sides of the cube that each covers, metres.
+    /// Distance from the eye to the sides of the cube that each covers, metres.
     reach: [f32; MAX_CASCADES],
     count: usize,
 }
 
 impl SunViews {
-    /// One map.
+    /// A single map.
     pub fn one(view: ShadowView) -> Self {
         Self {
             views: [view; MAX_CASCADES],
@@ -94,8 +94,8 @@ impl SunViews {
         }
     }
 
-    /// Fits up to `count` cascades of `resolution` texels a side; see [`fit::fit`]. A cascade that would hardly be finer than the
-    /// next is left out: where the view is narrow, or from far away, one shows as much as several.
+    /// Fits up to `count` cascades of `resolution` texels on a side; see [`fit::fit`]. A cascade that would hardly be finer than the
+    /// next is omitted: in a narrow or distant view, one map resolves as much as several.
     pub fn fit(
         sun_direction: Vec3,
         bounds: &Bounds,
@@ -115,14 +115,14 @@ impl SunViews {
                 min: bounds.min.max(view.camera.eye - reach),
                 max: bounds.max.min(view.camera.eye + reach),
             };
-            // Or nothing is that near.
+            // Empty if no part of the scene is that near.
             let map = (!around.is_empty()).then(|| of(&around));
             if let Some(map) = map.filter(|map| map.texel <= MAX_TEXEL_RATIO * coarser.texel) {
                 coarser = map;
                 maps.push((map, reach));
             }
         }
-        // The cascades after these are the whole again, and no point takes them.
+        // The remaining cascades stay copies of the whole map; no point uses them.
         for (k, (map, reach)) in maps.into_iter().rev().enumerate() {
             fitted.views[k] = map;
             fitted.reach[k] = reach;
@@ -130,7 +130,7 @@ impl SunViews {
         fitted
     }
 
-    /// Numbers of the cascades in which receivers in a box are looked up while the eye is within `slack` metres of `eye`.
+    /// Indices of the cascades in which receivers in a box are looked up while the eye is within `slack` metres of `eye`.
     pub(in crate::passes) fn looked_up(
         &self,
         receivers: &Bounds,
@@ -140,7 +140,7 @@ impl SunViews {
         let &Bounds { min, max } = receivers;
         let farthest = (max - eye).abs().max((eye - min).abs()).max_element() + slack;
         let nearest = (min - eye).max(eye - max).max_element() - slack;
-        // A cascade begins where the one before is blended into it; after the whole, which reaches without end, none does.
+        // A cascade begins where the previous one blends into it. The whole map has infinite reach, so none begins after it.
         let reach = self.reach;
         let mut finer = 0.0;
         (0..MAX_CASCADES).filter(move |&k| {
@@ -160,7 +160,7 @@ impl SunViews {
         &self.views[0]
     }
 
-    /// Whether the maps are those of other views.
+    /// Whether both have the same maps.
     pub(in crate::passes) fn are_those_of(&self, other: &Self) -> bool {
         self.iter().eq(other.iter())
     }
@@ -170,7 +170,7 @@ impl SunViews {
         self.views[k].texel
     }
 
-    /// What the shader needs to know.
+    /// The uniform block for the shader.
     pub fn block(&self) -> CascadesBlock {
         let size = |view: &ShadowView, reach: f32| {
             let metres_of_depth = view.texel / view.texel_depth;
@@ -184,12 +184,12 @@ impl SunViews {
     }
 }
 
-/// From the eye to the sides of the cubes, metres, in equal ratios up to the cube that holds the scene.
+/// Distances from the eye to the sides of the cubes, metres, in equal ratios up to the cube that contains the scene.
 fn reaches(bounds: &Bounds, eye: Vec3, count: usize) -> [f32; MAX_CASCADES] {
     let beside = (bounds.min - eye).max(eye - bounds.max).max(Vec3::ZERO);
     let nearest = beside.max_element() + NEAREST_REACH;
     let farthest = (bounds.max - eye).abs().max((eye - bounds.min).abs());
-    // In powers of two: a walking camera seldom changes them.
+    // Rounded up to a power of two, so that it seldom changes as the camera moves.
     let farthest = farthest.max_element().max(nearest).log2().ceil().exp2();
     let steps = (count - 1).max(1) as f32;
     std::array::from_fn(|k| nearest * (farthest / nearest).powf(k as f32 / steps))
@@ -248,7 +248,7 @@ mod tests {
     #[test]
     fn cascades_that_are_hardly_finer_than_the_next_are_left_out() {
         let (sun, bounds) = (Vec3::new(0.5, 0.7, 0.2).normalize(), square(200.0));
-        // From far away all that is seen is about as far.
+        // Seen from far away, everything in view is at about the same distance.
         let mut view = view(Vec3::new(300.0, 300.0, 400.0));
         view.camera.target = Vec3::ZERO;
         view.camera.fov_deg = 5.0;
@@ -262,7 +262,7 @@ mod tests {
             .filter(|t| t[0] <= MAX_TEXEL_RATIO * t[1])
             .count();
         assert_eq!(finer, views.reach.iter().filter(|r| r.is_finite()).count());
-        // Those after the whole are never looked up.
+        // Cascades after the whole map are never looked up.
         let used = views.looked_up(&bounds, view.camera.eye, 0.0).count();
         assert_eq!(used, finer + 1, "{kept:?}");
     }
@@ -298,7 +298,7 @@ mod tests {
         for step in 0..100 {
             let [before, after] = [0.0, 0.02].map(|d| fit(0.02 * step as f32 + d));
             changes += usize::from(before.views[0] != after.views[0]);
-            // What moves, moves by whole texels: the edges of shadows stay where they are.
+            // A map moves by whole texels only, so that shadow edges stay in place.
             let texel = after.views[0].texel;
             if before.views[0].texel == texel {
                 let origin = |v: &SunViews| {

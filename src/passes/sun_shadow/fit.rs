@@ -1,4 +1,4 @@
-//! The orthographic view of a shadow map: fitted to the receivers in view, deep enough for all their casters.
+//! Orthographic shadow views, fitted to the receivers in view and deep enough for all casters.
 
 use arrayvec::ArrayVec;
 use glam::{Mat4, Vec2, Vec3, Vec4};
@@ -8,20 +8,20 @@ use crate::scene::Bounds;
 use crate::passes::surfaces::culling::Cull;
 use crate::passes::view::View;
 
-/// The extent of a map is rounded up to a power of this, so that its scale seldom changes.
+/// A map's extent is rounded up to a power of this, so that its scale seldom changes.
 const SCALE_STEP: f32 = 1.25;
-/// Step in which the centre follows the view, as a share of the extent; the map has as much margin. Between two steps a moving
-/// camera needs no new map.
+/// Step in which the centre follows the view, as a fraction of the extent. The map has the same margin, so a moving camera needs
+/// no new map between two steps.
 const CENTRE_STEP: f32 = 1.0 / 16.0;
 
-/// A fitted map.
+/// A fitted shadow view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShadowView {
     /// World to the map's clip space: depth 1 nearest the sun, 0 farthest.
     pub shadow_from_world: Mat4,
-    /// Edge of a texel, metres; of a perspective map at the viewer's end.
+    /// Edge of a texel, metres; for a perspective map, at the viewer's end.
     pub texel: f32,
-    /// The same in units of the map's depth.
+    /// Edge of a texel in units of the map's depth.
     pub texel_depth: f32,
     /// Unit vector toward the light.
     pub toward: Vec3,
@@ -30,18 +30,18 @@ pub struct ShadowView {
 }
 
 impl ShadowView {
-    /// Takes planes from the world to the map's clip space.
+    /// Transforms planes from world space to the map's clip space.
     pub fn planes(&self) -> Mat4 {
         self.shadow_from_world.inverse().transpose()
     }
 
-    /// Culls what it does not see.
+    /// The culling tests for this view.
     pub fn cull(&self) -> Cull {
         Cull::light(self)
     }
 }
 
-/// Axes of the map in the world: right, up, and toward the light.
+/// World-space axes of the map: right, up, and toward the light.
 pub(in crate::passes) fn axes(sun_direction: Vec3) -> [Vec3; 3] {
     let hint = if sun_direction.y.abs() > 0.99 {
         Vec3::NEG_Z
@@ -52,16 +52,16 @@ pub(in crate::passes) fn axes(sun_direction: Vec3) -> [Vec3; 3] {
     [right, sun_direction.cross(right), sun_direction]
 }
 
-/// Coordinates of a point along axes.
+/// Coordinates of a point along the axes.
 fn along(axes: [Vec3; 3], p: Vec3) -> Vec3 {
     Vec3::from_array(axes.map(|axis| axis.dot(p)))
 }
 
-/// Fits a map of `resolution` texels a side to the receivers: the part of `bounds` that is in view and that something within
+/// Fits a map, `resolution` texels on a side, to the receivers: the part of `bounds` that is in view and that something within
 /// `casters` may shadow.
 ///
-/// The centre is snapped to whole texels and the extent grows in steps, so that shadows do not swim under a moving camera and
-/// the map seldom changes. A map of the whole scene never moves.
+/// The centre is snapped to whole texels and the extent is quantized, so that shadows do not swim when the camera moves and the
+/// map seldom changes. A map of the whole scene never moves.
 pub fn fit(
     sun_direction: Vec3,
     bounds: &Bounds,
@@ -73,7 +73,7 @@ pub fn fit(
     let to_light = |p| along(axes, p);
     let casters = Bounds::of(casters.corners().map(to_light));
     let receivers = Bounds::of(visible_points(bounds, view).into_iter().map(to_light));
-    // Sunlight is parallel: what lies beside the casters, as the sun sees it, is not in their shadow.
+    // Sunlight is parallel: receivers beside the casters, as seen from the sun, are not in shadow.
     let receivers = Bounds {
         min: receivers
             .min
@@ -111,7 +111,7 @@ pub fn fit(
     square(axes, &casters, centre, side, step, resolution)
 }
 
-/// The map of all of `casters`, whatever the view.
+/// Fits a map to all of `casters`, independent of the view.
 pub fn fit_all(direction: Vec3, casters: &Bounds, resolution: u32) -> ShadowView {
     let axes = axes(direction);
     let casters = Bounds::of(casters.corners().map(|p| along(axes, p)));
@@ -120,7 +120,7 @@ pub fn fit_all(direction: Vec3, casters: &Bounds, resolution: u32) -> ShadowView
     square(axes, &casters, centre, side, 1.0, resolution)
 }
 
-/// A square map deep enough for `casters` (in the axes), its centre snapped to steps of so many texels.
+/// A square map deep enough for `casters` (in light space), with its centre snapped to steps of `step` texels.
 fn square(
     axes: [Vec3; 3],
     casters: &Bounds,
@@ -130,7 +130,7 @@ fn square(
     resolution: u32,
 ) -> ShadowView {
     let [right, up, toward] = axes;
-    // Two texels of margin on each side for the filter and the rounding.
+    // Two texels of margin on each side, for filter and rounding.
     let side = side * (1.0 + 4.0 / resolution as f32);
     let texel = side / resolution as f32;
     let step = step * texel;
@@ -144,7 +144,7 @@ fn square(
     }
 }
 
-/// Far end and depth of a map of `casters` (in the light's axes), metres along the axis toward the light.
+/// Far end and depth range of a map of `casters` (in light space), metres along the axis toward the light.
 pub(in crate::passes) fn depth_range(casters: &Bounds) -> (f32, f32) {
     let deep = (casters.max.z - casters.min.z).max(1e-3);
     // A little slack keeps the nearest and farthest casters inside the clip volume.
@@ -178,7 +178,7 @@ impl Plane {
     }
 }
 
-/// Corners of the hull of the receivers: the view's pyramid cut with the box.
+/// Corners of the receivers' convex hull: the view pyramid intersected with the box.
 pub(in crate::passes) fn visible_points(bounds: &Bounds, view: &View) -> Hull {
     let frustum = frustum(view);
     let mut points = Hull::new();
@@ -193,13 +193,13 @@ pub(in crate::passes) fn visible_points(bounds: &Bounds, view: &View) -> Hull {
     points
 }
 
-/// Corners of a convex polygon. A plane adds one at most: four planes cut squares, six cut triangles.
+/// Corners of a convex polygon. Each clip plane adds at most one: squares are clipped by four planes, triangles by six.
 type Polygon = ArrayVec<Vec3, 10>;
 
-/// Corners of the clipped faces, six of a box and four of a pyramid.
+/// Corners of the clipped faces: six of a box and four of a pyramid.
 pub(in crate::passes) type Hull = ArrayVec<Vec3, 100>;
 
-/// Cuts a convex polygon with half-spaces (Sutherland and Hodgman 1974).
+/// Clips a convex polygon against half-spaces (Sutherland and Hodgman 1974).
 fn clip(corners: &[Vec3], planes: &[Plane]) -> Polygon {
     let mut polygon: Polygon = corners.iter().copied().collect();
     for plane in planes {
@@ -245,7 +245,7 @@ fn frustum(view: &View) -> [Plane; 4] {
 
 fn pyramid_faces(bounds: &Bounds, view: &View) -> [[Vec3; 3]; 4] {
     let eye = view.camera.eye;
-    // Long enough to leave the box from wherever the eye stands.
+    // Long enough to leave the box from any eye position.
     let reach = 4.0 * (bounds.diagonal() + (eye - bounds.centre()).length());
     let ends = edges(view).map(|edge| eye + edge * reach);
     std::array::from_fn(|i| [eye, ends[i], ends[(i + 1) % 4]])

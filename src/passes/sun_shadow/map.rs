@@ -1,4 +1,4 @@
-//! The sun's shadow map: depth of the scene seen from the sun, fitted to what the camera sees, and reused while it serves.
+//! The sun's shadow map: scene depth as seen from the sun, fitted to the camera's view and reused while it stays valid.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ gpu_struct! {
 }
 
 gpu_struct! {
-    /// The sun's view, and the alpha below which a surface has a hole.
+    /// The sun's view, and the alpha below which a fragment is discarded.
     pub struct CutOutPush: push of SHADOW_CUT_OUT_VERT, SHADOW_CUT_OUT_FRAG {
         shadow_from_world: [[f32; 4]; 4],
         cutoff: f32,
@@ -36,28 +36,28 @@ gpu_struct! {
 /// Slope-scaled depth bias of casters, texels.
 const SLOPE_BIAS: f32 = 1.5;
 
-/// Draws casters into maps.
+/// Draws casters into shadow maps.
 pub(in crate::passes) struct Casters {
     solid: Pipeline,
-    /// For surfaces with holes, if there are any.
+    /// For alpha-tested surfaces, if there are any.
     cut_outs: Option<Pipeline>,
 }
 
-/// A map in an atlas of maps.
+/// A shadow map in an atlas.
 #[derive(Debug, Clone)]
 pub(in crate::passes) struct Tile {
-    /// What it shows.
+    /// View of the map.
     pub view: ShadowView,
-    /// The receivers that are looked up in it; anything in the map without one.
+    /// Mask of the receivers looked up in the map; `None`: the whole map is used.
     pub mask: Option<Arc<ReceiverMask>>,
     /// Its first texel.
     pub origin: [u32; 2],
-    /// Texels of its edge.
+    /// Edge length, texels.
     pub edge: u32,
 }
 
 impl Tile {
-    /// First texel and size of the rectangle that is looked up.
+    /// First texel and size of the rectangle that receivers use.
     fn rectangle(&self) -> ([u32; 2], [u32; 2]) {
         let whole = [Vec2::ZERO, Vec2::ONE];
         let corners = self.mask.as_ref().map_or(whole, |mask| mask.rectangle());
@@ -74,7 +74,7 @@ impl Tile {
 }
 
 impl Casters {
-    /// With a slope-scaled depth bias, texels.
+    /// Creates the pipelines. `slope_bias` is the slope-scaled depth bias, texels.
     pub fn new(context: &Arc<Context>, geometry: &Geometry, slope_bias: f32) -> Result<Self> {
         let has_holes = geometry.kinds().any(|kind| kind.cut_out);
         Ok(Self {
@@ -85,7 +85,7 @@ impl Casters {
         })
     }
 
-    /// Draws maps of an atlas. What lies beside the rectangle around all that is looked up is not even cleared.
+    /// Draws the maps of an atlas. Texels outside the bounding rectangle of all lookups are not even cleared.
     pub fn record(
         &self,
         recorder: &mut Recorder,
@@ -114,7 +114,7 @@ impl Casters {
     }
 }
 
-/// First texel and size of the rectangle around those of tiles.
+/// First texel and size of the bounding rectangle of the tiles' rectangles.
 fn around(tiles: &[Tile]) -> ([u32; 2], [u32; 2]) {
     let rectangles = tiles.iter().map(Tile::rectangle);
     let ends = rectangles
@@ -172,28 +172,28 @@ fn pipeline(context: &Arc<Context>, name: &str, slope_bias: f32, holes: bool) ->
 /// How the map is fitted.
 #[derive(Debug, Clone, Copy)]
 enum Fit {
-    /// Cascades that follow the view in steps ([`SunViews::fit`]), each drawn for the receivers in view.
+    /// Cascades that follow the view in steps ([`SunViews::fit`]), with only the casters that the receivers in view need.
     Cascades(Shadows),
-    /// One map warped toward the viewer ([`perspective::fit`]): another one for each frame of an average.
+    /// One map warped toward the viewer ([`perspective::fit`]), a new one for each frame of an average.
     Perspective,
 }
 
-/// The pass and its map: cascades side by side.
+/// The shadow pass and its map. Cascades lie side by side.
 pub struct Shadow {
     fit: Fit,
     casters: Casters,
     depth: Image,
     views: SunViews,
     masks: [Arc<ReceiverMask>; MAX_CASCADES],
-    /// Whether the map shows these views, for these receivers.
+    /// Whether the map has been drawn for these views and receivers.
     is_drawn: bool,
 }
 
 impl Shadow {
-    /// Cascades of `resolution` texels a side for single frames.
+    /// Cascades for single frames, `resolution` texels on a side.
     ///
     /// # Errors
-    /// When the device has no memory left.
+    /// Fails when the device is out of memory.
     pub fn cascades(
         context: &Arc<Context>,
         geometry: &Geometry,
@@ -205,11 +205,11 @@ impl Shadow {
         Self::new(context, geometry, size, fit, SLOPE_BIAS)
     }
 
-    /// One map of `resolution` texels a side for frames that are averaged. It is compared in the plane of the receiver, which
-    /// needs no bias of casters.
+    /// One map for averaged frames, `resolution` texels on a side. Depth is compared in the receiver's plane, so casters need no
+    /// depth bias.
     ///
     /// # Errors
-    /// When the device has no memory left.
+    /// Fails when the device is out of memory.
     pub fn perspective(
         context: &Arc<Context>,
         geometry: &Geometry,
@@ -238,8 +238,8 @@ impl Shadow {
         })
     }
 
-    /// Fits the map to a view. `sun` is the unit vector toward the sun, `shift` (0..1) moves the texels of a map that is one of
-    /// many. The map that is drawn is kept if it is the same and covers every receiver in view.
+    /// Fits the map to a view. `sun` is the unit vector toward the sun; `shift` (0..1) is the sub-texel shift of a map in an average.
+    /// Reuses the drawn map if its views are the same and it covers every receiver in view.
     pub fn fit(&mut self, geometry: &Geometry, view: &View, sun: Vec3, shift: Vec2) {
         let (bounds, resolution) = (geometry.bounds(), self.depth.size()[1]);
         let views = match self.fit {
@@ -267,7 +267,7 @@ impl Shadow {
         };
     }
 
-    /// Whether the map that is drawn has the casters of every receiver in view; `radius` is that of lookups, texels.
+    /// Whether the drawn map contains the casters of every receiver in view. `radius` is the lookup radius, texels.
     fn reuse_if_covered(&self, geometry: &Geometry, view: &View, radius: f32) -> bool {
         geometry.seen(view).all(|cluster| {
             let receivers = &cluster.bounds;
@@ -276,13 +276,13 @@ impl Shadow {
         })
     }
 
-    /// Masks the cascades by the receivers in view, and by those that come into view while the eye moves a little.
+    /// Builds the cascades' masks from the receivers in view and those that come into view if the eye moves a little.
     fn mask(&mut self, geometry: &Geometry, view: &View, radius: f32) {
         let (eye, slack) = (
             view.camera.eye,
             reuse_distance(geometry.bounds(), view.camera.eye),
         );
-        // Nothing else holds a mask between frames: this makes no copy.
+        // Nothing else holds a mask between frames, so this does not copy.
         let mut masks = self.masks.each_mut().map(Arc::make_mut);
         for (mask, map) in masks.iter_mut().zip(self.views.iter()) {
             mask.reset(map);
@@ -295,12 +295,12 @@ impl Shadow {
         }
     }
 
-    /// The map, if [`Self::record`] will draw it.
+    /// The map, if [`Self::record`] is going to draw it.
     pub fn target(&self) -> Option<&Image> {
         (!self.is_drawn).then_some(&self.depth)
     }
 
-    /// Draws the map if it is not the one that was fitted last; gives it with its views.
+    /// Draws the map unless it is up to date with the last fit. Returns the views and the map.
     pub fn record(&mut self, recorder: &mut Recorder, geometry: &Geometry) -> (&SunViews, &Image) {
         if !std::mem::replace(&mut self.is_drawn, true) {
             let edge = self.depth.size()[1];
@@ -314,7 +314,7 @@ impl Shadow {
             let views = self.views.iter().zip(&self.masks);
             let mut tiles: arrayvec::ArrayVec<Tile, MAX_CASCADES> =
                 views.zip(0..).map(tile).collect();
-            // Cascades without a receiver in view are left out; the first stands in when all are.
+            // Cascades without a receiver in view are skipped; if all would be, the first one is drawn.
             let first = tiles.first().cloned();
             tiles.retain(|tile| tile.mask.as_ref().is_none_or(|mask| !mask.is_empty()));
             if tiles.is_empty() {
@@ -326,7 +326,7 @@ impl Shadow {
         (&self.views, &self.depth)
     }
 
-    /// Forgets what was drawn: the next frame draws it again.
+    /// Invalidates the map, so that the next frame redraws it.
     pub fn invalidate(&mut self) {
         self.is_drawn = false;
     }

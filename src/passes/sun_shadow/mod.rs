@@ -1,4 +1,4 @@
-//! The sun's shadow maps: their fit to the view, their cascades, their casters, and which casters the picture needs.
+//! The sun's shadow maps: fitting to the view, cascades, drawing, and caster culling.
 
 pub mod cascades;
 pub mod fit;

@@ -1,6 +1,6 @@
-//! Light space perspective shadow maps (Wimmer, Scherzer & Purgathofer 2004): views from a direction, fitted to what the camera
-//! sees and warped by a perspective along the line of sight, so that near things get more texels. Rays of the light stay
-//! parallel, planes stay planes.
+//! Light space perspective shadow maps (Wimmer, Scherzer & Purgathofer 2004): views from a light direction, fitted to the
+//! receivers in view and warped by a perspective along the line of sight, so that near receivers get more texels. Light rays
+//! stay parallel and planes stay planes.
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
@@ -9,14 +9,14 @@ use crate::scene::Bounds;
 use crate::passes::sun_shadow::fit::{Hull, ShadowView, depth_range, visible_points};
 use crate::passes::view::View;
 
-/// Texels around what is seen: one for the sub-texel shift, one for rounding.
+/// Margin around the receivers, texels: one for the sub-texel shift, one for rounding.
 const MARGIN: f32 = 2.0;
 
-/// Least distance of the nearest receivers, as a share of that of the farthest: a nearer one would take too many texels from the
-/// rest.
+/// Lower limit of the nearest receiver's distance, as a fraction of the farthest's: a nearer one would take too many texels from
+/// the rest.
 const MIN_NEAR_SHARE: f32 = 0.03;
 
-/// The hull of the receivers in view, and the camera.
+/// The convex hull of the receivers in view, and the camera.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Receivers {
     points: Hull,
@@ -25,7 +25,7 @@ pub struct Receivers {
 }
 
 impl Receivers {
-    /// The part of `bounds` that is in view; all of it when none is.
+    /// The part of `bounds` in view; all of it if nothing is in view.
     pub fn new(bounds: &Bounds, view: &View) -> Self {
         let mut points = visible_points(bounds, view);
         if points.is_empty() {
@@ -38,12 +38,13 @@ impl Receivers {
         }
     }
 
-    /// The middle of the points, which is within their hull.
+    /// The mean of the points, which lies within their hull.
     fn centre(&self) -> Vec3 {
         self.points.iter().sum::<Vec3>() / self.points.len() as f32
     }
 
-    /// Distance of the perspective's centre from the near end, over the sine between light and line of sight (eq. 5 there).
+    /// Distance from the centre of projection to the near end. `sine` is that of the angle between light and line of sight (eq. 5 of
+    /// the paper).
     fn near(&self, sine: f32) -> f32 {
         let distance = |p: &Vec3| (*p - self.eye).dot(self.forward);
         let far = self.points.iter().map(distance).fold(1e-3, f32::max);
@@ -53,15 +54,15 @@ impl Receivers {
     }
 }
 
-/// Smallest and largest of points.
+/// Component-wise minimum and maximum of the points.
 fn extent(points: impl Iterator<Item = Vec2> + Clone) -> (Vec2, Vec2) {
     let low = points.clone().fold(Vec2::INFINITY, Vec2::min);
     (low, points.fold(Vec2::NEG_INFINITY, Vec2::max))
 }
 
-/// Fits a map of `edge` texels a side to the receivers; every caster of `bounds` between light and receivers is in it.
+/// Fits a map, `edge` texels on a side, to the receivers. It contains every caster of `bounds` between light and receivers.
 ///
-/// `shift` (0..1) moves the grid by a part of a texel, so that the errors of its texels average out over many maps.
+/// `shift` (0..1) moves the grid by a fraction of a texel, so that discretization errors average out over many maps.
 pub fn fit(
     toward: Vec3,
     bounds: &Bounds,
@@ -70,7 +71,7 @@ pub fn fit(
     shift: Vec2,
 ) -> ShadowView {
     let sight = receivers.forward - toward * receivers.forward.dot(toward);
-    // Along the line of sight there is nothing to warp, and no direction to do it in.
+    // With light along the line of sight there is no direction to warp in.
     let along = if sight.length() > 1e-3 {
         sight.normalize()
     } else {
@@ -80,7 +81,7 @@ pub fn fit(
     let to_light = |p: Vec3| Vec3::new(across.dot(p), along.dot(p), toward.dot(p));
     let seen = Bounds::of(receivers.points.iter().copied().map(to_light));
     let near = receivers.near(sight.length());
-    // 1 at the near end, growing away from the viewer.
+    // w is 1 at the near end and grows away from the viewer.
     let row_w = (along / near).extend(1.0 - seen.min.y / near);
     let row_x = across.extend(-across.dot(receivers.eye));
     let row_y = along.extend(-seen.min.y);
@@ -91,7 +92,7 @@ pub fn fit(
     let (low, high) = extent(projected);
     let texels = edge as f32;
     let scale = (texels - 2.0 * MARGIN) / (high - low).max(Vec2::splat(1e-4));
-    // Texels from the map's edge, then 0..edge to -1..1.
+    // First to texels from the map's edge, then from 0..edge to -1..1.
     let offset = Vec2::splat(MARGIN - 0.5) + shift - low * scale;
     let clip = |row: Vec4, scale: f32, offset: f32| {
         (row * scale + row_w * offset) * (2.0 / texels) - row_w
@@ -169,7 +170,7 @@ mod tests {
                         "{at}"
                     );
                     assert!((0.0..=1.0).contains(&at.z), "{at}");
-                    // Toward the light nothing moves in the map, and depth grows.
+                    // A point moved toward the light stays at its texel, and its depth grows.
                     let over = view.project_point3(*p + toward * 0.5);
                     assert!((over - at).truncate().length() < 1e-3 && over.z > at.z);
                 }

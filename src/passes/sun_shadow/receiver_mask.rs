@@ -1,5 +1,5 @@
 //! Shadow caster culling by receiver masks (Bittner, Mattausch, Silvennoinen & Wimmer 2011, "Shadow caster culling for efficient
-//! shadow mapping"): a caster is drawn only where a receiver in view lies behind it, as the light sees it.
+//! shadow mapping"): a caster is drawn only if, as seen from the light, a receiver in view lies behind it.
 
 use std::ops::RangeInclusive;
 
@@ -9,39 +9,38 @@ use crate::scene::{Bounds, Cluster};
 
 use crate::passes::sun_shadow::fit::ShadowView;
 
-/// Cells along an edge of a map.
+/// Mask cells along an edge of a map.
 const CELLS: usize = 128;
-/// Cells along an edge of the blocks in which the farthest depth is kept.
+/// Edge of a block, cells; the farthest depth is stored per block.
 const BLOCK: usize = 4;
 /// Blocks along an edge of a map.
 const BLOCKS: usize = CELLS / BLOCK;
-/// Share of the distance to the far end of the scene that the eye may move while a map is reused.
+/// How far the eye may move while a map is reused, as a fraction of the distance to the far end of the scene.
 const REUSE_SHARE: f32 = 1.0 / 24.0;
 
-/// How far the eye may move before a map that was drawn for the receivers in view is drawn anew, metres.
+/// How far the eye may move, metres, before a map drawn for the receivers in view must be redrawn.
 pub fn reuse_distance(bounds: &Bounds, eye: Vec3) -> f32 {
     let corners = bounds.corners().map(|corner| corner.distance(eye));
     REUSE_SHARE * corners.into_iter().fold(0.0, f32::max)
 }
 
-/// The cells of a map in which receivers are seen, and how far from the light the farthest of them lies.
+/// The cells of a map that contain receivers in view, and the depth of the farthest ones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReceiverMask {
-    /// From the world to cells from the map's corner, to the right and up, and to metres toward the light; the fourth row is
-    /// zero.
+    /// From world space to mask space: x and y in cells from the map's corner, z in metres toward the light; the fourth row is zero.
     cells_from_world: Mat4,
-    /// A metre in any direction there.
+    /// One metre along each axis of mask space.
     metre: Vec4,
-    /// Rows of cells, a bit for each.
+    /// Rows of cells, one bit per cell.
     rows: [u128; CELLS],
-    /// Lowest coordinate toward the light in each block, metres; infinity without a receiver.
+    /// Lowest receiver coordinate toward the light in each block, metres; infinity without a receiver.
     farthest: [[f32; BLOCKS]; BLOCKS],
 }
 
-/// The cells that a box covers, as the light sees it.
+/// The cells that a box covers, as seen from the light.
 struct Footprint {
     rows: RangeInclusive<usize>,
-    /// Its columns, a bit for each.
+    /// Its columns, one bit per column.
     columns: u128,
     /// Columns of blocks.
     blocks: RangeInclusive<usize>,
@@ -56,7 +55,7 @@ impl Footprint {
 }
 
 impl Default for ReceiverMask {
-    /// Without a receiver, of no map.
+    /// An empty mask without a map.
     fn default() -> Self {
         Self {
             cells_from_world: Mat4::ZERO,
@@ -68,14 +67,14 @@ impl Default for ReceiverMask {
 }
 
 impl ReceiverMask {
-    /// Without a receiver, of an orthographic map.
+    /// An empty mask of an orthographic map.
     pub fn new(map: &ShadowView) -> Self {
         let mut mask = Self::default();
         mask.reset(map);
         mask
     }
 
-    /// Forgets all receivers, and takes up another map.
+    /// Removes all receivers and sets another map.
     pub fn reset(&mut self, map: &ShadowView) {
         let half = 0.5 * CELLS as f32;
         let axes = [0, 1].map(|i| map.shadow_from_world.row(i).truncate());
@@ -93,12 +92,12 @@ impl ReceiverMask {
         self.farthest = [[f32::INFINITY; BLOCKS]; BLOCKS];
     }
 
-    /// Whether it has no receiver.
+    /// Whether the mask has no receiver.
     pub fn is_empty(&self) -> bool {
         self.rows.iter().all(|row| *row == 0)
     }
 
-    /// What a box covers that is `margin` metres larger on all sides; nothing beside the map.
+    /// The footprint of a box enlarged by `margin` metres on all sides; `None` outside the map.
     fn footprint(&self, bounds: &Bounds, margin: f32) -> Option<Footprint> {
         let half = 0.5 * bounds.extent();
         let at = self.cells_from_world * bounds.centre().extend(1.0);
@@ -119,7 +118,7 @@ impl ReceiverMask {
         })
     }
 
-    /// Adds receivers in a box, around which lookups reach `radius` metres.
+    /// Adds the receivers in a box. `radius` is the lookup radius around them, metres.
     pub fn add(&mut self, receivers: &Bounds, radius: f32) {
         let Some(footprint) = self.footprint(receivers, radius) else {
             return;
@@ -135,13 +134,13 @@ impl ReceiverMask {
         }
     }
 
-    /// Whether something of a cluster may stand between a receiver and the light.
+    /// Whether a part of a cluster may lie between a receiver and the light.
     pub fn is_shadowed_by(&self, caster: &Cluster) -> bool {
         let Some(footprint) = self.footprint(&caster.bounds, 0.0) else {
             return false;
         };
         let block = u128::MAX >> (CELLS - BLOCK);
-        // However near the light: the caster shadows what is behind it.
+        // The caster's distance to the light does not matter: it shadows everything behind it.
         let is_before = |y: usize, x: usize| self.farthest[y / BLOCK][x] <= footprint.toward[1];
         footprint.rows.clone().any(|y| {
             let covered = self.rows[y] & footprint.columns;
@@ -150,7 +149,7 @@ impl ReceiverMask {
         })
     }
 
-    /// First and last corner of the rectangle around all receivers, each 0 to 1 over the map; the whole map without one.
+    /// Lower and upper corner of the receivers' bounding rectangle, 0..1 over the map; the whole map if there are no receivers.
     pub fn rectangle(&self) -> [Vec2; 2] {
         let columns = self.rows.iter().fold(0, |all, row| all | row);
         let first = self.rows.iter().position(|row| *row != 0);
@@ -165,7 +164,8 @@ impl ReceiverMask {
         ]
     }
 
-    /// Whether receivers in a box, around which lookups reach `radius` metres, are in it already: adding them would change nothing.
+    /// Whether the mask already contains the receivers in a box, so that adding them would change nothing. `radius` is the lookup
+    /// radius around them, metres.
     pub fn covers(&self, receivers: &Bounds, radius: f32) -> bool {
         self.footprint(receivers, radius).is_none_or(|footprint| {
             let mut rows = self.rows[footprint.rows.clone()].iter();
@@ -247,11 +247,11 @@ mod tests {
         }
         assert!(!mask.is_shadowed_by(&at(TOWARD)));
         assert!(mask.is_shadowed_by(&at(TOWARD + right * 10.0)));
-        // What is beside the map is not looked up in it.
+        // Receivers outside the map are not looked up in it.
         let before = mask.clone();
         mask.add(&around(right * 500.0), 0.0);
         assert_eq!(mask, before);
-        // Another map begins anew.
+        // Setting another map clears the mask.
         mask.reset(&map());
         assert_eq!(mask, empty());
     }

@@ -1,5 +1,5 @@
-//! Culling: clusters outside of a view's frustum, back-facing clusters of solids, and for a light the casters that shade no
-//! receiver in the picture. What is left is drawn in runs of indices.
+//! Cluster culling: by view frustum, by back-facing clusters of solids and, for a light, of casters that shadow no receiver in
+//! view. The remaining clusters are drawn in runs of indices.
 
 use std::sync::Arc;
 
@@ -12,28 +12,28 @@ use crate::passes::sun_shadow::fit::ShadowView;
 use crate::passes::sun_shadow::receiver_mask::ReceiverMask;
 use crate::passes::view::View;
 
-/// Where a view looks from.
+/// The viewpoint of a view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Viewer {
-    /// A point; the near plane cuts what lies within `reach` metres of it.
+    /// A point; the near plane clips only geometry within `reach` metres of it.
     At { eye: Vec3, reach: f32 },
-    /// Infinitely far away in a direction, unit.
+    /// Infinitely far away in a direction (unit vector).
     Toward(Vec3),
 }
 
 /// The culling tests of a view.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cull {
-    /// Left, right, bottom, top, a row each: inside where the product with (p, 1) is not negative.
+    /// Left, right, bottom and top plane, one per row: a point is inside where the product with (p, 1) is not negative.
     sides: Mat4,
     viewer: Viewer,
     front: Winding,
-    /// Of a light: the receivers in the picture; all of the map without one.
+    /// For a light, the receivers in view; `None`: the whole map.
     mask: Option<Arc<ReceiverMask>>,
 }
 
 impl Cull {
-    /// For a camera.
+    /// Culling tests for a camera.
     pub fn camera(view: &View) -> Self {
         let clip_from_world = view.clip_from_world();
         let eye = view.camera.eye;
@@ -45,19 +45,19 @@ impl Cull {
             eye,
             reach: view.camera.near * corner,
         };
-        // Far enough from the eye: rounding in the matrix would swallow a point near an eye that is far from the origin.
+        // The point must be far enough from the eye: with an eye far from the origin, rounding in the matrix would dominate near it.
         let away = 1.0 + 0.01 * eye.length();
         let ahead = eye + view.camera.forward() * away;
         Self::new(clip_from_world, viewer, ahead, 0.1 * away)
     }
 
-    /// For a directional light.
+    /// Culling tests for a directional light.
     pub fn light(map: &ShadowView) -> Self {
         let viewer = Viewer::Toward(map.toward);
         Self::new(map.shadow_from_world, viewer, map.inside, map.texel)
     }
 
-    /// Leaves out casters that shadow none of these receivers.
+    /// Also culls casters that shadow none of these receivers.
     pub fn masked(self, mask: Option<Arc<ReceiverMask>>) -> Self {
         Self { mask, ..self }
     }
@@ -75,13 +75,13 @@ impl Cull {
         }
     }
 
-    /// Whether a part of a cluster may be visible, or for a light may cast a visible shadow.
+    /// Whether a part of a cluster may be visible or, for a light, cast a visible shadow.
     pub fn sees(&self, cluster: &Cluster) -> bool {
         let casts = |mask: &Arc<ReceiverMask>| mask.is_shadowed_by(cluster);
         self.holds(cluster) && !self.is_behind(cluster) && self.mask.as_ref().is_none_or(casts)
     }
 
-    /// Whether a part of it is within the sides of the frustum.
+    /// Whether a part of the cluster lies within the sides of the frustum.
     pub fn holds(&self, cluster: &Cluster) -> bool {
         reaches(&self.sides, &cluster.bounds)
     }
@@ -95,7 +95,7 @@ impl Cull {
         }
     }
 
-    /// Whether all triangles of a solid are back-facing: to a point, for the whole cone of directions to the cluster's sphere.
+    /// Whether all triangles of a solid are back-facing; for a viewpoint, over the whole cone of directions to the cluster's sphere.
     fn is_behind(&self, cluster: &Cluster) -> bool {
         let Some(solid) = &cluster.solid else {
             return false;
@@ -125,14 +125,13 @@ impl Cull {
     }
 }
 
-/// The sides of a view by its matrix to clip space (Gribb and Hartmann 2001): -w <= x <= w and -w <= y <= w, as products with
-/// (p, 1).
+/// Frustum planes from the clip-space matrix (Gribb and Hartmann 2001): -w <= x <= w and -w <= y <= w, as products with (p, 1).
 fn sides(clip_from_world: &Mat4) -> Mat4 {
     let [x, y, w] = [0, 1, 3].map(|i| clip_from_world.row(i));
     Mat4::from_cols(w + x, w - x, w + y, w - y).transpose()
 }
 
-/// Whether a part of a box is on the inner side of all four, or so near that rounding decides.
+/// Whether a part of a box is inside each of the four planes, within rounding error.
 fn reaches(sides: &Mat4, bounds: &Bounds) -> bool {
     let (centre, half) = (bounds.centre(), 0.5 * bounds.extent());
     let sizes = sides.abs();
@@ -141,7 +140,8 @@ fn reaches(sides: &Mat4, bounds: &Bounds) -> bool {
     farthest.cmpge(-slack).all()
 }
 
-/// How triangles that are counter-clockwise seen from the viewer wind in the picture: by one of `size` metres at a point.
+/// Winding in the picture of triangles that are counter-clockwise as seen by the viewer, from a test triangle of `size` metres
+/// at a point.
 fn front(clip_from_world: Mat4, toward: Vec3, at: Vec3, size: f32) -> Winding {
     let clip_from_world = clip_from_world.as_dmat4();
     let u = toward.any_orthonormal_vector();
@@ -150,7 +150,7 @@ fn front(clip_from_world: Mat4, toward: Vec3, at: Vec3, size: f32) -> Winding {
         let clip = clip_from_world * (at.as_dvec3() + offset.as_dvec3()).extend(1.0);
         DVec2::new(clip.x, clip.y) / clip.w
     });
-    // Rows run down, so the sign of the area is mirrored; Vulkan's definition of winding mirrors it back.
+    // Rows run down, which flips the sign of the area; Vulkan's definition of winding flips it back.
     if (b - a).perp_dot(c - a) > 0.0 {
         Winding::Clockwise
     } else {
@@ -158,7 +158,7 @@ fn front(clip_from_world: Mat4, toward: Vec3, at: Vec3, size: f32) -> Winding {
     }
 }
 
-/// A run of indices that is drawn at once.
+/// A run of indices drawn with one draw call.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::passes) struct Run {
     first: u32,
@@ -173,16 +173,16 @@ impl Run {
         draws.indexed(self.first, self.count);
     }
 
-    /// Whether both are cheaper as one draw, with what lies between them.
+    /// Whether one draw of both runs, including the indices in between, is cheaper than two.
     fn is_followed_by(&self, next: &Self) -> bool {
         self.faces == next.faces && next.first - (self.first + self.count) <= BRIDGED
     }
 }
 
-/// Culled indices that are drawn all the same to save a draw: one costs a CPU 10 to 30 µs, as much as 200 triangles.
+/// Largest number of culled indices drawn anyway to save a draw call, which costs a CPU 10 to 30 µs, as much as 200 triangles.
 const BRIDGED: u32 = 3 * 200;
 
-/// Runs of the visible clusters: those that nearly follow each other are one.
+/// Runs of the visible clusters; nearly adjacent runs are merged.
 pub(in crate::passes) struct Runs<'c, I> {
     clusters: I,
     cull: &'c Cull,
@@ -190,7 +190,7 @@ pub(in crate::passes) struct Runs<'c, I> {
 }
 
 impl<'c, I: Iterator<Item = &'c Cluster>> Runs<'c, I> {
-    /// Of the clusters of a part, in the order of their indices.
+    /// Runs of the clusters of a part, in index order.
     pub fn new(
         clusters: impl IntoIterator<Item = &'c Cluster, IntoIter = I>,
         cull: &'c Cull,
@@ -237,7 +237,7 @@ mod tests {
     use crate::passes::sun_shadow::fit;
     use crate::scene::{Bodies, Camera, Clusters, Scene};
 
-    /// A box of 2 m around a point, as one cluster of a solid.
+    /// A box of 2 m around a point, as a single cluster of a solid.
     fn solid(centre: Vec3) -> (Scene, Cluster) {
         let corner = |i: u32| Vec3::from_array([0, 1, 2].map(|k| ((i >> k & 1) * 2) as f32 - 1.0));
         let mut scene = Scene {
@@ -278,7 +278,7 @@ mod tests {
         }
     }
 
-    /// Which faces of the box wind as `faces` says, of those that look toward the viewer and of those that do not.
+    /// Checks the winding of the box's faces against `faces`, for those toward the viewer and those away from it.
     fn drawn(scene: &Scene, clip: Mat4, faces: Faces, is_toward: impl Fn(Vec3, Vec3) -> bool) {
         for triangle in scene.indices.chunks_exact(3) {
             let corners = [0, 1, 2].map(|i| Vec3::from(scene.positions[triangle[i] as usize]));
@@ -339,7 +339,7 @@ mod tests {
         let (_, cluster) = solid(Vec3::ZERO);
         let inside = Cull::camera(&view(Vec3::ZERO, Vec3::new(0.5, 0.2, 0.0), 0.01));
         assert!(!inside.faces(&cluster).fronts_only);
-        // The near plane cuts the box although the eye stands before it.
+        // The near plane clips the box although the eye is in front of it.
         let before = |near| Cull::camera(&view(Vec3::ZERO, Vec3::Z * 1.2, near)).faces(&cluster);
         assert!(!before(0.5).fronts_only);
         assert!(before(0.01).fronts_only);

@@ -1,4 +1,4 @@
-//! The G-buffer: normal, diffuse reflectance, material and depth of the nearest surface. Positions follow from depth.
+//! The G-buffer: normal, diffuse reflectance, material and depth of the nearest surface. Positions are reconstructed from depth.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use crate::passes::surfaces::geometry::{Bound, Geometry, Kind};
 use crate::passes::view::View;
 
 gpu_struct! {
-    /// What all draws share.
+    /// Uniforms shared by all draws.
     pub struct CameraBlock: camera of
         GBUFFER_VERT, GBUFFER_VERT_DETAILED, GBUFFER_FRAG, GBUFFER_FRAG_ALBEDO, GBUFFER_FRAG_DETAILED, GBUFFER_FRAG_DETAILED_ALBEDO
     {
@@ -27,7 +27,7 @@ gpu_struct! {
 }
 
 gpu_struct! {
-    /// Material of a draw.
+    /// Material of a draw call.
     pub struct Push: push of
         GBUFFER_FRAG, GBUFFER_FRAG_ALBEDO, GBUFFER_FRAG_DETAILED, GBUFFER_FRAG_DETAILED_ALBEDO
     {
@@ -51,13 +51,14 @@ impl Push {
     }
 }
 
-/// The images.
+/// The images of the G-buffer.
 pub struct Surfaces {
-    /// The world normal on the viewer's side (octahedral, 16 bits a component), and a word with the number of the material (lower
-    /// half) and the thickness of the body behind the surface (upper half of a float's bits, metres), see `include/materials.glsl`.
-    /// Frames that converge have a third word, the slopes of the face, see `include/face.glsl`, and a fourth that fills the texel.
+    /// First word: the world normal on the viewer's side (octahedral encoding, 16 bits per component). Second word: the material
+    /// number (lower half) and the thickness of the body behind the surface (upper half of a float's bits, metres), see
+    /// `include/materials.glsl`. Converging frames have a third word, the slopes of the face, see `include/face.glsl`, and a
+    /// fourth as padding.
     pub normal_material: Image,
-    /// ρ_d, and a factor on ρ_s; none of a scene without maps, whose table of materials has them.
+    /// ρ_d, and a factor on ρ_s; `None` for a scene without maps, where the table of materials has ρ_d.
     pub albedo: Option<Image>,
     /// Reversed depth: near / distance; 0 is background.
     pub depth: Image,
@@ -74,14 +75,14 @@ impl Surfaces {
         })
     }
 
-    /// All of them.
+    /// All images.
     pub fn images(&self) -> impl Iterator<Item = &Image> {
         [&self.normal_material, &self.depth]
             .into_iter()
             .chain(&self.albedo)
     }
 
-    /// Makes them the attachments of a pass.
+    /// Adds the images as attachments of a pass.
     fn attach<'r>(&'r self, pass: Pass<'r>, load: Load) -> Pass<'r> {
         let images = std::iter::once(&self.normal_material).chain(&self.albedo);
         images
@@ -90,12 +91,12 @@ impl Surfaces {
     }
 }
 
-/// Twin of `normal_unpack`: the halves of the first word of [`Surfaces::normal_material`] as a unit vector.
+/// CPU counterpart of `normal_unpack`: decodes the halves of the first word of [`Surfaces::normal_material`] to a unit vector.
 pub fn unpack_normal(halves: [u16; 2]) -> [f32; 3] {
     decode_normal(halves.map(|half| (f32::from(half.cast_signed()) / 32767.0).max(-1.0)))
 }
 
-/// Twin of `octahedral_decode`.
+/// CPU counterpart of `octahedral_decode`.
 fn decode_normal([x, y]: [f32; 2]) -> [f32; 3] {
     let z = 1.0 - x.abs() - y.abs();
     let folded = |a: f32, b: f32| {
@@ -110,24 +111,24 @@ fn decode_normal([x, y]: [f32; 2]) -> [f32; 3] {
         .to_array()
 }
 
-/// Targets of the G-buffer, and whether they keep the slopes of faces.
+/// Formats of the G-buffer's render targets, and whether they store face slopes.
 struct Targets {
     formats: Vec<Format>,
     faces: bool,
 }
 
-/// The pass and its images.
+/// The G-buffer pass and its images.
 pub struct Gbuffer {
-    /// For surfaces without maps whose normals match their winding: most of them.
+    /// For surfaces without maps whose normals match their winding, the most common case.
     untextured: Pipeline,
-    /// For the others without details, by kind.
+    /// For other surfaces that are not detailed, by kind.
     textured: BTreeMap<Kind, Pipeline>,
-    /// For surfaces with holes, normal maps, or colours at their vertices, by kind.
+    /// For surfaces with alpha test, normal maps or vertex colours, by kind.
     detailed: BTreeMap<Kind, Pipeline>,
     surfaces: Surfaces,
 }
 
-/// Position, normal with thickness, texture coordinates; of detailed surfaces colour and tangent.
+/// Position, normal with thickness, texture coordinates; for detailed surfaces also colour and tangent.
 const VERTEX: [Format; 5] = [
     Format::R32G32B32_SFLOAT,
     Format::R32G32B32A32_SFLOAT,
@@ -136,7 +137,7 @@ const VERTEX: [Format; 5] = [
     Format::R16G16B16A16_SNORM,
 ];
 
-/// The stages for a kind of surfaces and the number of its vertex streams.
+/// The shader stages for a kind of surface, and the number of its vertex streams.
 fn stages(kind: Kind, has_albedo: bool) -> ([&'static Shader; 2], usize) {
     match (kind.is_detailed(), has_albedo) {
         (false, false) => ([&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG], 3),
@@ -159,7 +160,7 @@ fn stages(kind: Kind, has_albedo: bool) -> ([&'static Shader; 2], usize) {
 }
 
 impl Targets {
-    /// A pipeline for a kind of surfaces.
+    /// Creates a pipeline for a kind of surface.
     fn pipeline(
         &self,
         context: &Arc<Context>,
@@ -195,17 +196,17 @@ impl Targets {
 }
 
 impl Gbuffer {
-    /// Images of `size` pixels, and the pipelines that `geometry` needs; `faces`: with the slopes of the face under each pixel.
+    /// Creates images of `size` pixels and the pipelines that `geometry` needs. `faces`: store the slopes of the face at each pixel.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// Fails when the device cannot create the resources.
     pub fn new(
         context: &Arc<Context>,
         geometry: &Geometry,
         size: [u32; 2],
         faces: bool,
     ) -> Result<Self> {
-        // One target of several words: a software device pays for each target more than for what is written.
+        // One target of several words: on a software device the number of targets costs more than the amount written.
         let mut formats = vec![if faces {
             Format::R32G32B32A32_UINT
         } else {
@@ -229,7 +230,7 @@ impl Gbuffer {
         })
     }
 
-    /// The images as they were last drawn.
+    /// The images as last drawn.
     pub fn surfaces(&self) -> &Surfaces {
         &self.surfaces
     }
@@ -276,7 +277,7 @@ impl Gbuffer {
     }
 }
 
-/// Takes the pipeline of a kind, if it is not the current one.
+/// Binds the pipeline of a kind, if it is not the current one.
 fn switch<'r>(
     draws: &mut Draws<'_, 'r>,
     pipelines: &'r BTreeMap<Kind, Pipeline>,

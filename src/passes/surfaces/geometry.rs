@@ -1,4 +1,4 @@
-//! The scene on the device: one arena of vertices and indices, textures, a table of materials.
+//! The scene on the device: vertex and index buffers, textures, and a table of materials.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -14,20 +14,20 @@ use crate::passes::surfaces::upload::{
 };
 use crate::passes::view::View;
 
-/// What is drawn with one material.
+/// The geometry of one material.
 #[derive(Debug, Clone)]
 pub struct Part {
-    /// Numbers of its clusters.
+    /// Indices of its clusters.
     pub clusters: Range<usize>,
     /// Number of the material.
     pub material: u32,
-    /// How it is drawn.
+    /// Shader features and pipeline.
     pub kind: Kind,
-    /// Whether the shadow map needs it.
+    /// Whether it casts shadows.
     pub casts: bool,
 }
 
-/// What the shaders of a part do; each kind has a pipeline.
+/// Shader features of a part; each kind has a pipeline.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Kind {
     /// Read vertex colours.
@@ -43,13 +43,13 @@ pub struct Kind {
 }
 
 impl Kind {
-    /// Whether it needs more than textures of ρ_d and ρ_s.
+    /// Whether it needs more than maps of ρ_d and ρ_s.
     pub fn is_detailed(&self) -> bool {
         self.colours || self.normal_map || self.cut_out
     }
 }
 
-/// A material as draws need it.
+/// A material with the data that draw calls need.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::passes) struct Surface {
     pub diffuse: Vec3,
@@ -61,14 +61,14 @@ pub(in crate::passes) struct Surface {
     pub cutoff: Option<f32>,
 }
 
-/// What a draw binds: a material with its maps.
+/// The bindings of a draw call: a material with its maps.
 #[derive(Clone, Copy)]
 pub struct Bound<'g> {
-    /// How it is drawn.
+    /// Shader features and pipeline.
     pub kind: Kind,
     /// Number of the material.
     pub material: u32,
-    /// ρ_d, multiplies its map.
+    /// ρ_d, 0..1; a factor on its map.
     pub diffuse: Vec3,
     /// Map of ρ_d.
     pub diffuse_map: Option<&'g Image>,
@@ -76,30 +76,30 @@ pub struct Bound<'g> {
     pub specular_map: Option<&'g Image>,
     /// Normal map.
     pub normal_map: Option<&'g Image>,
-    /// Factor on its slopes.
+    /// Factor on the slopes of the normal map.
     pub normal_scale: f32,
     /// Whether it has a ρ_s.
     pub is_specular: bool,
-    /// Alpha of the map of ρ_d below which there is a hole; 0 without holes.
+    /// Alpha of the map of ρ_d below which fragments are discarded; 0: no alpha test.
     pub cutoff: f32,
-    /// Stands for a map that is not there.
+    /// Placeholder for missing maps.
     pub white: &'g Image,
 }
 
 /// The uploaded scene.
 pub struct Geometry {
     positions: Buffer,
-    /// Normal, and how thick the body is behind the surface, metres.
+    /// Normal, and thickness of the body behind the surface, metres.
     normals: Buffer,
     texcoords: Buffer,
     indices: Buffer,
-    /// In the order of their indices.
+    /// In index order.
     clusters: Vec<Cluster>,
     /// Colours and tangents, if any part is detailed.
     details: Option<[Buffer; 2]>,
     /// Sorted by kind.
     parts: Vec<Part>,
-    /// Clusters of what casts a shadow and has no holes, in the order of their indices.
+    /// Cluster ranges of opaque casters, in index order.
     casting: Vec<Range<usize>>,
     surfaces: Vec<Surface>,
     textures: Vec<Image>,
@@ -114,7 +114,7 @@ impl Geometry {
     /// Uploads a scene; `recorder` must be recording.
     ///
     /// # Errors
-    /// When the device has no memory left.
+    /// Fails when the device is out of memory.
     pub fn new(recorder: &mut Recorder, scene: &Scene) -> Result<Self> {
         let (indices, layout) = arranged(scene);
         let vertex = |recorder: &mut Recorder, name, bytes| {
@@ -166,23 +166,23 @@ impl Geometry {
         })
     }
 
-    /// The box around everything.
+    /// Bounding box of the scene.
     pub fn bounds(&self) -> &Bounds {
         &self.bounds
     }
 
-    /// The box around everything that may cast a shadow.
+    /// Bounding box of all shadow casters.
     pub fn casters(&self) -> &Bounds {
         &self.casters
     }
 
-    /// Clusters visible in the whole picture of which this view is a part.
+    /// Clusters that may be visible in the whole picture that this view is part of.
     pub fn seen(&self, view: &View) -> impl Iterator<Item = &Cluster> {
         let cull = Cull::camera(&view.whole());
         self.clusters.iter().filter(move |c| cull.sees(c))
     }
 
-    /// Clusters within the frustum of a view, back-facing ones too.
+    /// Clusters within the frustum of a view, including back-facing ones.
     pub fn around(&self, view: &View) -> impl Iterator<Item = &Cluster> {
         let cull = Cull::camera(&view.whole());
         self.clusters.iter().filter(move |c| cull.holds(c))
@@ -193,14 +193,14 @@ impl Geometry {
         &self.materials
     }
 
-    /// ρ_d of a material, without its map.
+    /// ρ_d of a material, 0..1, without its map.
     pub fn diffuse(&self, material: u32) -> Vec3 {
         self.surfaces
             .get(material as usize)
             .map_or(Vec3::ZERO, |s| s.diffuse)
     }
 
-    /// Whether ρ_d and the factor on ρ_s vary over any material.
+    /// Whether ρ_d or the factor on ρ_s varies within any material.
     pub fn has_albedo(&self) -> bool {
         let varies = |k: Kind| k.diffuse_map || k.specular_map || k.colours;
         self.kinds().any(varies)
@@ -219,7 +219,7 @@ impl Geometry {
         }
     }
 
-    /// The kinds of its parts, in the order in which they are drawn.
+    /// The kinds of the parts, in draw order.
     pub fn kinds(&self) -> impl Iterator<Item = Kind> {
         let mut kinds: Vec<Kind> = self.parts.iter().map(|p| p.kind).collect();
         kinds.dedup();
@@ -231,7 +231,7 @@ impl Geometry {
         self.is_specular
     }
 
-    /// Draws surfaces without maps whose normals match their winding; `bind` is called with each new material.
+    /// Draws surfaces without maps whose normals match their winding. `bind` is called for each new material.
     pub fn draw_untextured<'g, 'r>(
         &'g self,
         draws: &mut Draws<'_, 'r>,
@@ -242,7 +242,7 @@ impl Geometry {
         self.draw_parts(draws, is_untextured, cull, bind);
     }
 
-    /// Draws the other parts that are not detailed; `bind` is called with each new material.
+    /// Draws the other parts that are not detailed. `bind` is called for each new material.
     pub fn draw_textured<'g, 'r>(
         &'g self,
         draws: &mut Draws<'_, 'r>,
@@ -259,7 +259,7 @@ impl Geometry {
         [&self.positions, &self.normals, &self.texcoords]
     }
 
-    /// Draws the detailed parts; `bind` is called with each new material.
+    /// Draws the detailed parts. `bind` is called for each new material.
     pub fn draw_detailed<'g, 'r>(
         &'g self,
         draws: &mut Draws<'_, 'r>,
@@ -275,7 +275,7 @@ impl Geometry {
         self.draw_parts(draws, |part, _| part.kind.is_detailed(), cull, bind);
     }
 
-    /// Draws positions and texture coordinates of the parts with holes; `bind` is called with each new material.
+    /// Draws positions and texture coordinates of alpha-tested parts. `bind` is called for each new material.
     pub fn draw_cut_outs<'g, 'r>(
         &'g self,
         draws: &mut Draws<'_, 'r>,
@@ -325,12 +325,12 @@ impl Geometry {
     }
 }
 
-/// Whether a cluster needs neither maps nor the side of its normals found out.
+/// Whether a cluster needs no maps and no test for the side of its normals.
 fn is_untextured(part: &Part, cluster: &Cluster) -> bool {
     part.kind == Kind::default() && cluster.normals_match_winding
 }
 
-/// A scene's indices and layout: those of its file, or new ones for a scene that was made in memory.
+/// A scene's indices and layout: those of its file, or new ones for a scene built in memory.
 fn arranged(scene: &Scene) -> (Cow<'_, [u32]>, Cow<'_, Layout>) {
     match &scene.layout {
         Some(layout) => (Cow::Borrowed(&scene.indices), Cow::Borrowed(layout)),
@@ -341,7 +341,7 @@ fn arranged(scene: &Scene) -> (Cow<'_, [u32]>, Cow<'_, Layout>) {
     }
 }
 
-/// The parts of a scene in the order in which they are drawn.
+/// The parts of a scene, in draw order.
 fn parts(scene: &Scene, layout: &Layout, surfaces: &[Surface]) -> Vec<Part> {
     let casting = scene.casting();
     let all = scene.parts.iter().zip(&layout.of_part).zip(casting);
@@ -352,12 +352,12 @@ fn parts(scene: &Scene, layout: &Layout, surfaces: &[Surface]) -> Vec<Part> {
         casts,
     };
     let mut parts: Vec<Part> = all.map(part).collect();
-    // Parts of one kind share a pipeline: as few changes as possible.
+    // Sorted by kind to minimize pipeline changes.
     parts.sort_by_key(|part| (part.kind, part.material));
     parts
 }
 
-/// Clusters of what casts a shadow and has no holes, in the order of their indices: runs go on from part to part.
+/// Cluster ranges of opaque casters, in index order, so that runs continue from part to part.
 fn casting(parts: &[Part]) -> Vec<Range<usize>> {
     let solid = parts.iter().filter(|p| p.casts && !p.kind.cut_out);
     let mut ranges: Vec<Range<usize>> = solid.map(|p| p.clusters.clone()).collect();

@@ -1,4 +1,4 @@
-//! The G-buffer: what is seen in each pixel, and the scene's geometry that it is drawn from.
+//! The G-buffer, the scene's geometry on the device, and culling.
 
 pub mod culling;
 pub mod gbuffer;

@@ -1,4 +1,4 @@
-//! A scene's vertices, textures and materials as the device has them.
+//! Uploads of a scene's vertices, textures and materials.
 
 use crate::gpu::{
     Buffer, BufferKind, Format, Image, ImageDesc, Recorder, Result, upload_buffer, upload_texture,
@@ -7,7 +7,7 @@ use crate::scene::{Encoding, Layout, Material, Scene, Texture};
 
 use crate::passes::surfaces::geometry::Surface;
 
-/// Colours and tangents for every vertex: white and none where the scene has none.
+/// Uploads colours and tangents for every vertex; a scene without them gets white and zero tangents.
 pub(in crate::passes) fn upload_details(
     recorder: &mut Recorder,
     scene: &Scene,
@@ -40,10 +40,10 @@ pub(in crate::passes) fn normals_and_thickness(scene: &Scene, layout: &Layout) -
         .collect()
 }
 
-/// Materials in a row of the table of materials.
+/// Materials per row of the table of materials.
 pub(in crate::passes) const MATERIAL_COLUMNS: u32 = 1024;
 
-/// The table of `include/materials.glsl`.
+/// Uploads the table of `include/materials.glsl`.
 pub(in crate::passes) fn upload_materials(
     recorder: &mut Recorder,
     materials: &[Material],
@@ -70,7 +70,7 @@ pub(in crate::passes) fn surface(material: &Material) -> Surface {
         normal_map: material.normal_texture,
         normal_scale: material.normal_scale,
         is_specular: material.specular != [0.0; 3],
-        // The opacity of the material multiplies that of the map: the same test with one factor less.
+        // The material's opacity multiplies that of the map; dividing the cutoff by it gives the same test.
         cutoff: material
             .alpha_cutoff
             .map(|c| c / material.dissolve.max(1e-6)),

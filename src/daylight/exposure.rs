@@ -44,9 +44,9 @@ const BINS: usize = 256;
 /// Metered luminance of automatic exposure, from luminances in cd/m²: Reinhard et al. 2002, eq. 1 (log average, the geometric
 /// mean), made robust as a Huber (1964) location estimate: each pixel is clamped to [`BOUND`] stops around the median.
 ///
-/// So the sun's disc or a lamp affects the exposure only by its area. The weight of darker pixels fades to 0 over [`FADE`]
-/// stops, since black says nothing about the light. If no pixel reaches a bound, the result is the log average. `None` if
-/// every pixel is black or NaN.
+/// So the sun's disc or a lamp affects the exposure only by its area. Below the lower bound a pixel's weight fades to 0 over
+/// [`FADE`] stops, since black says nothing about the light. If no pixel reaches a bound, the result is the log average.
+/// `None` if every pixel is black or NaN.
 pub fn robust_log_average(luminances: &[f64]) -> Option<f64> {
     let is_counted = |l: &&f64| **l >= BLACK;
     let logs = || {

@@ -183,7 +183,7 @@ struct Texel {
 impl ExactIrradiance {
     /// Prepares the texels of `map`, which hold the radiance at their centres.
     ///
-    /// Texel *averages* would be worse (1.6e-4 rms instead of 1.4e-4 at 32 texels): L and the cosine are anticorrelated at the
+    /// Texel *averages* would be worse (1.6e-4 rms instead of 1.4e-4 at 32 texels): L and the cosine are correlated at the
     /// horizon, and the mean of the product is closer to the product at the centre than to the product of the means.
     pub fn new(map: &CubeMap) -> Self {
         let size = map.size();
@@ -258,7 +258,7 @@ fn clip(corners: &[DVec3; 4], heights: &[f64; 4]) -> Vec<DVec3> {
             kept.push(corners[k]);
         }
         if (heights[k] > 0.0 && heights[next] < 0.0) || (heights[k] < 0.0 && heights[next] > 0.0) {
-            // The arc crosses the plane in the same direction as the chord.
+            // The point where the chord crosses the plane, normalised, is where the arc does.
             let crossing = corners[k] * heights[next] - corners[next] * heights[k];
             kept.push(crossing.normalize() * (heights[next] - heights[k]).signum());
         }

@@ -128,7 +128,7 @@ fn coordinates(text: &str) -> Result<Place, String> {
     Place::new(latitude, longitude)
 }
 
-/// Splits a text into its two coordinates: at a comma or semicolon, else after a hemisphere letter or at a blank.
+/// Splits a text into its two coordinates: at a comma or semicolon, else at a hemisphere letter or a blank.
 fn halves(text: &str) -> Option<(&str, &str)> {
     let text = text.trim();
     if let Some((a, b)) = text.split_once([',', ';']) {

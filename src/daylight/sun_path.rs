@@ -404,7 +404,7 @@ mod tests {
             .flat_map(|l| [l[0], l[l.len() - 1]])
             .map(elevation)
             .collect();
-        // Midnight in local time, sunset, sunrise, midnight.
+        // Midnight at that offset, sunset, sunrise, midnight.
         assert!(ends[0] > 40.0 && ends[1].abs() < 1e-4 && ends[2].abs() < 1e-4 && ends[3] > 40.0);
     }
 

@@ -1,16 +1,16 @@
-//! The options: every name, accepted value, default and help text of the command line and of scene files.
+//! The options: names, accepted values, defaults and help texts of the command line and of scene files.
 //!
-//! [`Options`] is what a picture is made with. It is read from the values that four sources set, each over the ones before
-//! it: the preset, the scene file, the camera or moment of the scene file that is asked for by name, the user
-//! ([`OptionValues`], [`Options::resolve`]). [`Options::values`] is the way back: metadata of files, `--resume` and
-//! [`Options::command_line`] come from it.
+//! [`Options`] holds the settings of a render. They are resolved from four sources, each overriding the ones before it: the
+//! preset, the scene file, the camera or moment that is selected from the scene file by name, and the user
+//! ([`OptionValues`], [`Options::resolve`]). [`Options::values`] is the inverse: file metadata, `--resume` and
+//! [`Options::command_line`] are made from it.
 //!
 //! A new option takes three edits:
 //!
-//! 1. its field in [`Options`] below, with help text, default and parser, in the group of its help heading and of the tables
-//!    of a scene file in which it may stand;
+//! 1. its field in [`Options`] below, with help text, default and parser, in the group with its help heading and the tables
+//!    of a scene file in which it may appear;
 //! 2. the code that uses the field;
-//! 3. only if it has a type of its own: the names of an enum's variants in `choices.rs`, or its text form in `values.rs`.
+//! 3. if it has a type of its own: the names of an enum's variants in `choices.rs`, or its text form in `values.rs`.
 
 mod choices;
 mod command_line;
@@ -49,17 +49,17 @@ use crate::passes::sky::irradiance::IrradianceSettings;
 use crate::scene::{DEFAULT_FOV_DEG, LoadOptions};
 use values::Written;
 
-/// A value or a name that makes no sense: one line that names it and the remedy.
+/// An invalid value or name. The message is one line that names it and says how to fix it.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct OptionsError(pub String);
 
-/// What is known of a struct of options besides its fields.
+/// Metadata of a struct of options.
 trait OptionGroup {
-    /// Identifier of each field, and the tables of a scene file in which the option may stand.
+    /// Each field's identifier, with the tables of a scene file in which the option may appear.
     const TABLES: &'static [(&'static str, &'static [&'static str])];
 
-    /// Name and text of every option that has a value, in the order of the fields.
+    /// Name and text of every option that has a value, in field order.
     fn written(&self) -> Vec<(String, String)>;
 }
 
@@ -318,11 +318,11 @@ options! {
 }
 
 impl Options {
-    /// Every option that has a value, by name: reading them gives these options again.
+    /// Every option that has a value, by name. Resolving them gives equal options.
     pub fn values(&self) -> OptionValues {
         let mut list = self.sun.written();
         list.extend(self.written());
-        // What another option puts out of force is as good as not set.
+        // An option that another one overrides counts as not set.
         let colours = self.false_colour.is_some_and(|q| self.show.holds(q));
         list.retain(|(name, _)| match name.as_str() {
             "exposure" => self.ev100.is_none(),
@@ -332,43 +332,43 @@ impl Options {
         OptionValues::from(list)
     }
 
-    /// Those of [`Options::values`] that decide a daylight and how its irradiance is integrated; the others decide a picture.
+    /// The subset of [`Options::values`] that determines a daylight and how its irradiance is integrated.
     pub fn light(&self) -> Vec<(String, String)> {
         let all = self.values().into_pairs().into_iter();
         all.filter(|(name, _)| decides_light(name)).collect()
     }
 }
 
-/// Whether an option has a part in a daylight without a picture. The irradiance's error limit has not: there the number of
-/// samples is that of `--irradiance-samples`.
+/// Whether an option affects a daylight on its own, without a picture. The irradiance error limit does not: there
+/// `--irradiance-samples` alone sets the number of samples.
 pub(crate) fn decides_light(name: &str) -> bool {
     let mut tables = tables(name).iter();
     name != "irradiance-error" && tables.any(|table| ["sun", "sky"].contains(table))
 }
 
-/// Identifiers of all options with the tables of a scene file in which they may stand.
+/// Identifiers of all options, with the tables of a scene file in which they may appear.
 fn all_tables() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
     let groups = [SunInput::TABLES, Options::TABLES];
     groups.into_iter().flatten().copied()
 }
 
-/// The tables of a scene file in which an option may stand.
+/// The tables of a scene file in which an option may appear.
 fn tables(name: &str) -> &'static [&'static str] {
     all_tables()
         .find(|(field, _)| long(field) == name)
         .map_or(&[], |(_, tables)| tables)
 }
 
-/// Name of the option of a field.
+/// Option name of a field.
 fn long(field: &str) -> String {
     field.replace('_', "-")
 }
 
-/// The definition that reads values which are no command line.
+/// The clap definition that parses values from sources other than the command line.
 static DEFINITION: LazyLock<Command> =
     LazyLock::new(|| Options::augment_args(Command::new("options").no_binary_name(true)));
 
-/// Whether there is an option of this name.
+/// Whether an option of this name exists.
 #[cfg(test)]
 pub(crate) fn is_option(name: &str) -> bool {
     DEFINITION
@@ -376,13 +376,13 @@ pub(crate) fn is_option(name: &str) -> bool {
         .any(|arg| arg.get_long() == Some(name))
 }
 
-/// Whether an option is without a value on the command line.
+/// Whether an option takes no value on the command line.
 fn is_flag(name: &str) -> bool {
     let mut args = DEFINITION.get_arguments();
     args.any(|arg| arg.get_long() == Some(name) && matches!(arg.get_action(), ArgAction::SetTrue))
 }
 
-/// Whether two options cannot be given together.
+/// Whether two options conflict.
 fn exclude_each_other(name: &str, other: &str) -> bool {
     let excludes = |a: &str, b: &str| {
         let mut args = DEFINITION.get_arguments();
@@ -393,7 +393,7 @@ fn exclude_each_other(name: &str, other: &str) -> bool {
     excludes(name, other) || excludes(other, name)
 }
 
-/// A message of `clap` (several lines with usage and hints) as one line.
+/// A clap message (several lines with usage and hints) as one line.
 pub(crate) fn one_line(error: &clap::Error) -> String {
     let text = error.render().to_string();
     let lines = text

@@ -1,4 +1,4 @@
-//! FLIP: the difference that a viewer sees when alternating between two pictures, per pixel, 0 (none) to 1.
+//! FLIP: the difference a viewer perceives when alternating between two pictures, per pixel, 0 (none) to 1.
 //!
 //! Andersson et al. 2020, "FLIP: A Difference Evaluator for Alternating Images", and, for scene-linear pictures, Andersson
 //! et al. 2021, "Visualizing Errors in Rendered High Dynamic Range Images". Tested against the authors' `flip-evaluator`.
@@ -29,7 +29,7 @@ const Q_FEATURE: f32 = 0.5;
 /// Width of the feature detectors, degrees.
 const FEATURE_WIDTH: f32 = 0.082;
 
-/// Linear BT.709 to XYZ (IEC 61966-2-1), each row over the white point's: white is (1, 1, 1).
+/// Linear BT.709 to XYZ (IEC 61966-2-1), each row divided by the white point's value: white is (1, 1, 1).
 const XYZ_FROM_RGB: [[f32; 3]; 3] = [
     [0.433_895_5, 0.376_242_3, 0.189_862_1],
     [0.212_636_8, 0.715_183, 0.072_180_2],
@@ -44,7 +44,7 @@ struct Plane {
 }
 
 impl Plane {
-    /// Convolution with the product of two kernels of odd length; the border pixels are repeated.
+    /// Convolution with the product of two kernels of odd length; border pixels are repeated.
     fn convolved(&self, across: &[f32], down: &[f32]) -> Self {
         let [width, height] = self.size;
         let mut rows = vec![0.0; width * height];
@@ -89,7 +89,7 @@ fn kernel(radius: usize, f: impl Fn(f32) -> f32) -> Vec<f32> {
         .collect()
 }
 
-/// Scales the positive weights to the sum 1 and the negative ones to −1.
+/// Scales the positive weights to a sum of 1 and the negative ones to −1.
 fn normalised(kernel: &[f32]) -> Vec<f32> {
     let sum = |sign: f32| kernel.iter().map(|w| (w * sign).max(0.0)).sum::<f32>();
     let (positive, negative) = (sum(1.0), sum(-1.0));
@@ -106,7 +106,7 @@ fn xyz([r, g, b]: [f32; 3]) -> [f32; 3] {
 
 /// The inverse of [`xyz`].
 fn rgb([x, y, z]: [f32; 3]) -> [f32; 3] {
-    // Columns scaled by the white point (0.950429, 1, 1.0889).
+    // Columns are scaled by the white point (0.950429, 1, 1.0889).
     [
         3.080_342 * x - 1.537_399 * y - 0.542_943 * z,
         -0.921_178 * x + 1.875_93 * y + 0.045_248 * z,
@@ -125,7 +125,7 @@ fn from_opponent([luma, cx, cz]: [f32; 3]) -> [f32; 3] {
     rgb([y + cx / 500.0, y, y - cz / 200.0])
 }
 
-/// CIELAB of linear RGB, its chroma scaled by lightness (the Hunt effect).
+/// CIELAB of linear RGB, with chroma scaled by lightness (the Hunt effect).
 fn hunt_lab(colour: [f32; 3]) -> [f32; 3] {
     const EDGE: f32 = 6.0 / 29.0;
     let f = |t: f32| {
@@ -189,7 +189,7 @@ fn filtered(plane: &Plane, gaussians: &[[f32; 2]], radius: usize) -> Vec<f32> {
     result
 }
 
-/// Magnitude of edges and of points at each pixel.
+/// Magnitudes of edges and of points at each pixel.
 fn features(luma: &Plane) -> Vec<[f32; 2]> {
     let deviation = 0.5 * FEATURE_WIDTH * PIXELS_PER_DEGREE;
     let radius = (3.0 * deviation).ceil() as usize;
@@ -346,7 +346,7 @@ mod tests {
         }
     }
 
-    // The numbers of the authors' program on the same pictures (flip-evaluator 1.7 from PyPI, 67.0206 pixels a degree).
+    // Results of the authors' program for the same pictures (flip-evaluator 1.7 from PyPI, 67.0206 pixels per degree).
     #[test]
     fn display_referred_pictures_as_the_authors_program_has_them() {
         let [a, b] = [0.0, 0.3].map(|s| pattern(s, |_| 1.0, Referred::Display));

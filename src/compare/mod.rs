@@ -7,10 +7,10 @@ pub use read::read;
 
 use crate::error::{Error, Result};
 
-/// Weights of linear BT.709 in luminance.
+/// Luminance weights of linear BT.709.
 const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
 
-/// Lower limit of the divisor of relative errors, relative to the mean of the reference: black pixels must not dominate.
+/// Lower limit of the divisor in relative errors, relative to the mean of the reference, so that black pixels do not dominate.
 const DARKEST: f64 = 0.02;
 
 /// What the values of a picture refer to.
@@ -109,18 +109,18 @@ pub fn check_comparable(reference: &Picture, test: &Picture) -> Result<()> {
     Ok(())
 }
 
-/// Errors of luminance over the compared pixels.
+/// Luminance errors over the compared pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistics {
     /// Number of pixels.
     pub pixels: usize,
-    /// Mean of the test / mean of the reference.
+    /// Mean of the test over mean of the reference.
     pub mean_ratio: f64,
-    /// Root of the mean squared difference / mean of the reference.
+    /// Root mean square difference over mean of the reference.
     pub rmse_over_mean: f64,
-    /// Median of the relative errors; relative to at least 2 % of the reference's mean.
+    /// Median of the relative errors; their divisor is at least 2 % of the reference's mean.
     pub median: f64,
-    /// Their 95th percentile.
+    /// 95th percentile of the relative errors.
     pub p95: f64,
 }
 
@@ -128,7 +128,7 @@ impl Statistics {
     /// Statistics of the pixels where `mask` is true.
     ///
     /// # Errors
-    /// There are none, or the reference is black there.
+    /// No pixel is selected, or the reference is black there.
     pub fn new(reference: &Picture, test: &Picture, mask: &[bool]) -> Result<Self> {
         let pairs: Vec<(f64, f64)> = reference
             .luminance()
@@ -169,7 +169,7 @@ fn quantile(sorted: &[f64], q: f64) -> f64 {
     sorted[low] + (sorted[high] - sorted[low]) * at.fract()
 }
 
-/// Exposure factor that brings the 75th percentile of the luminance to 0.5.
+/// Exposure factor that maps the 75th percentile of the luminance to 0.5.
 pub fn exposure_of(reference: &Picture, mask: &[bool]) -> f32 {
     let mut luminance: Vec<f64> = reference
         .luminance()

@@ -7,7 +7,7 @@ use exr::prelude::{ReadChannels as _, ReadLayers as _};
 use super::{Picture, Referred};
 use crate::error::{Error, Result};
 
-/// Reads a picture: the channels R, G, B of an .exr (or Y, or the depth, as grey), the sRGB values of other formats.
+/// Reads a picture: the channels R, G, B of an .exr (or Y, or the depth, as grey), or the sRGB values of other formats.
 ///
 /// # Errors
 /// The file is missing, not a picture, or has none of these channels.

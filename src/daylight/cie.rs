@@ -1,7 +1,7 @@
 //! Standard skies of the CIE: overcast (Moon & Spencer 1942) and clear (Kittler 1967).
 //!
-//! They give relative luminances only; a horizontal diffuse illuminance in lux scales them. Where none is
-//! measured, [`daylight_availability`] supplies one from the sun's elevation. Both are white (D65, R = G = B).
+//! They define relative luminances only; a horizontal diffuse illuminance in lux scales them. If none is measured,
+//! [`daylight_availability`] estimates one from the sun's elevation. Both skies are white (D65, R = G = B).
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,8 @@ use super::colour::D65_WHITE;
 use super::preetham::{PerezSky, angle_between, perez};
 use super::quadrature::horizontal_irradiance;
 
-/// IES Lighting Handbook, "Daylight availability" (Gillette, Pierpoint & Treado 1984): horizontal diffuse illuminance of a sky.
+/// Sky types of the IES Lighting Handbook, "Daylight availability" (Gillette, Pierpoint & Treado 1984): horizontal diffuse
+/// illuminance by the sun's elevation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SkyCover {
     /// 800 + 15 500 √(sin el) lux.
@@ -53,7 +54,7 @@ impl Overcast {
 /// CIE standard clear sky (Kittler 1967; CIE S 011/E:2003 type 12 is the same function).
 ///
 /// L/L_z = f(γ) φ(θ) / (f(θ_s) φ(0)), φ = 1 - exp(-0.32 / cos θ), f = 0.91 + 10 exp(-3γ) + 0.45 cos² γ.
-/// Divided by 0.91 (exactly: 1 - 10 exp(-3π/2)) that is Perez' form, so the shader of [`super::preetham`] draws it too.
+/// Divided by 0.91 (exactly: 1 - 10 exp(-3π/2)), this is Perez' form, so the shader of [`super::preetham`] evaluates it as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CieClear {
     sun_direction: DVec3,
@@ -78,7 +79,7 @@ impl CieClear {
         }
     }
 
-    /// The numbers a shader evaluates; its chromaticity is constant (F = 1).
+    /// The coefficients for a shader; the chromaticity is constant (F = 1).
     pub fn perez(&self) -> PerezSky {
         self.perez
     }

@@ -1,6 +1,6 @@
 //! Cities by name, with their time zones.
 //!
-//! Names are compared without case and accents: `sao` finds São Paulo, `koln` Cologne.
+//! Names match regardless of case and accents: `sao` finds São Paulo, `koln` Cologne.
 
 use chrono_tz::Tz;
 use deunicode::deunicode;
@@ -16,7 +16,7 @@ const EARTH_RADIUS_KM: f64 = 6371.0;
 pub struct City {
     /// English name.
     pub name: &'static str,
-    /// A second name that finds it, such as the local or a former one; may be empty.
+    /// An alternative name, such as the local or a former one; may be empty.
     pub other_name: &'static str,
     /// ISO 3166-1 code of the country or territory, two letters.
     pub country: &'static str,
@@ -37,13 +37,13 @@ impl City {
     }
 }
 
-/// A name without case, accents and surrounding blanks.
+/// A name in lower case, without accents and surrounding blanks.
 fn folded(text: &str) -> String {
     deunicode(text.trim()).to_lowercase()
 }
 
-/// Cities whose names begin with `text`, then those with a word that begins with it, then those that contain it; each group by
-/// name. All cities for an empty text.
+/// Cities whose names begin with `text`, then those with a word that begins with it, then those that contain it; each group
+/// sorted by name. All cities if the text is empty.
 pub fn search(text: &str) -> Vec<&'static City> {
     let wanted = folded(text);
     let rank = |city: &City| {
@@ -65,7 +65,7 @@ pub fn search(text: &str) -> Vec<&'static City> {
 /// The city of this name.
 ///
 /// # Errors
-/// One line that suggests the most similar name.
+/// One line that suggests the most similar city name.
 pub fn named(text: &str) -> Result<&'static City, String> {
     let wanted = folded(text);
     if let Some(city) = CITIES
@@ -85,7 +85,7 @@ pub fn named(text: &str) -> Result<&'static City, String> {
     ))
 }
 
-/// The city whose name is spelled most like `text` (Jaro-Winkler similarity).
+/// The city whose name is most similar to `text` (Jaro-Winkler similarity).
 pub fn alike(text: &str) -> &'static City {
     let wanted = folded(text);
     let likeness = |city: &City| {
@@ -101,7 +101,7 @@ pub fn alike(text: &str) -> &'static City {
 
 /// The city nearest to a place (degrees), and its distance, km.
 pub fn nearest(latitude: f64, longitude: f64) -> (&'static City, f64) {
-    // Longitude and latitude are an azimuth and an elevation over the plane of the equator.
+    // Longitude and latitude map to a direction like azimuth and elevation.
     let here = direction(longitude, latitude);
     let distance = |city: &City| {
         let there = direction(city.longitude, city.latitude);
@@ -144,7 +144,7 @@ mod tests {
                 );
                 assert_eq!(named(&name), Ok(city));
             }
-            // The meridian of a zone is at most some 45° from its cities: a slip of sign or column is farther.
+            // A zone's meridian is within some 45° of its cities; a wrong sign or column would be farther off.
             let noon = DateTime::parse_from_rfc3339("2026-01-01T12:00:00Z").unwrap();
             let offset = noon.with_timezone(&city.zone).offset().fix();
             let offset_h = f64::from(offset.local_minus_utc()) / 3600.0;
@@ -187,7 +187,7 @@ mod tests {
 
     #[test]
     fn beginnings_come_first() {
-        // Beginnings of names, of words, then insides.
+        // Matches at the start of names, then at the start of words, then inside words.
         let found = names("port");
         let at = |name: &str| found.iter().position(|n| *n == name).expect(name);
         assert_eq!(&found[..3], ["Port Louis", "Port Moresby", "Portland"]);

@@ -1,7 +1,7 @@
 //! Colour: CIE XYZ, xyY, linear BT.709 RGB, the sRGB transfer function, correlated colour temperature.
 //!
-//! Linear RGB and XYZ are both [`DVec3`]. Their unit is that of the quantity they hold: the Y of a radiance is
-//! in cd/m², the Y of an irradiance in lux, and RGB is scaled so that [`luminance`] gives that Y back.
+//! Linear RGB and XYZ are both [`DVec3`], in the unit of the quantity they hold: the Y of a radiance is in cd/m², that of an
+//! irradiance in lux. RGB is scaled so that [`luminance`] returns the same Y.
 
 use glam::{DMat3, DVec3};
 
@@ -10,12 +10,12 @@ use super::spectrum;
 /// Chromaticities (x, y) of the BT.709 primaries red, green and blue (ITU-R BT.709-6, table 1).
 pub const BT709_PRIMARIES: [[f64; 2]; 3] = [[0.640, 0.330], [0.300, 0.600], [0.150, 0.060]];
 
-/// Chromaticity (x, y) of the white point D65 as BT.709 states it.
+/// Chromaticity (x, y) of the white point D65 as given in BT.709.
 pub const D65_WHITE: [f64; 2] = [0.3127, 0.3290];
 
 type Rows = [[f64; 3]; 3];
 
-/// XYZ from linear BT.709 RGB: multiply a column vector. Not rounded: follows from the primaries and the white.
+/// XYZ from linear BT.709 RGB (multiplies a column vector). Not rounded: computed from the primaries and the white point.
 pub const XYZ_FROM_RGB: DMat3 = matrix(XYZ_FROM_RGB_ROWS);
 
 /// Linear BT.709 RGB from XYZ: the inverse of [`XYZ_FROM_RGB`].
@@ -34,7 +34,7 @@ const fn matrix(r: Rows) -> DMat3 {
     ])
 }
 
-/// SMPTE RP 177-1993: scale the primaries so that R = G = B = 1 is the white with Y = 1.
+/// SMPTE RP 177-1993: the primaries are scaled so that R = G = B = 1 is the white point with Y = 1.
 const fn xyz_from_rgb_rows() -> Rows {
     let [r, g, b] = BT709_PRIMARIES;
     let p = [
@@ -57,7 +57,7 @@ const fn xyz_from_rgb_rows() -> Rows {
     m
 }
 
-/// Inverse by cofactors, usable in constants.
+/// Inverse by cofactors, as a `const fn`.
 const fn inverse(m: Rows) -> Rows {
     let mut out = [[0.0; 3]; 3];
     let mut i = 0;
@@ -86,7 +86,7 @@ pub fn xyz_from_rgb(rgb: DVec3) -> DVec3 {
     XYZ_FROM_RGB * rgb
 }
 
-/// XYZ from the chromaticity (x, y) and the luminance Y (any unit; kept).
+/// XYZ from the chromaticity (x, y) and the luminance Y, in any unit.
 pub fn xyz_from_xyy(x: f64, y: f64, luminance: f64) -> DVec3 {
     DVec3::new(x / y, 1.0, (1.0 - x - y) / y) * luminance
 }
@@ -105,10 +105,10 @@ pub fn luminance(rgb: DVec3) -> f64 {
     LUMINANCE_WEIGHTS.dot(rgb)
 }
 
-/// The nearest thing to `rgb` that a display can show: negative channels become 0 and the rest is
-/// scaled to keep the luminance. A colour without positive luminance becomes black.
+/// Clips `rgb` to the displayable gamut: negative channels become 0, and the rest is scaled to keep the luminance. A colour
+/// without positive luminance becomes black.
 ///
-/// Clamping alone would brighten: a setting sun has G and B below zero.
+/// Clamping alone would raise the luminance: a setting sun has negative G and B.
 pub fn clip_negative(rgb: DVec3) -> DVec3 {
     if rgb.min_element() >= 0.0 {
         return rgb;
@@ -144,10 +144,10 @@ pub fn srgb_eotf(encoded: f64) -> f64 {
 
 /// Correlated colour temperature, K, in 1 000..=1 000 000 of a colour in XYZ.
 ///
-/// CIE 15:2004, 9.5: the temperature of the black body whose chromaticity is nearest in the CIE 1960 (u, v)
-/// diagram. Found by golden-section search over the reciprocal temperature on the Planckian locus itself, not by a
-/// fit such as McCamy's, because the blue sky lies far beyond the range of that fit (12 500 K).
-/// `None` where the standard calls the quantity meaningless: farther than 0.05 from the locus.
+/// CIE 15:2004, 9.5: the temperature of the black body with the nearest chromaticity in the CIE 1960 (u, v) diagram, found by
+/// golden-section search over the reciprocal temperature on the Planckian locus itself. A fit such as McCamy's is not used,
+/// because the blue sky is far beyond its range (12 500 K). `None` where the standard calls the quantity meaningless: farther
+/// than 0.05 from the locus.
 pub fn correlated_colour_temperature(xyz: DVec3) -> Option<f64> {
     let target = uv_1960(xyz);
     let distance = |mired: f64| {

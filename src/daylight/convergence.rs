@@ -1,4 +1,4 @@
-//! How fast each way of computing irradiance converges: error against samples over a set of normals.
+//! Convergence of the irradiance methods: error against number of samples over a set of normals.
 
 use glam::{DVec2, DVec3};
 
@@ -9,16 +9,16 @@ use super::irradiance::{
 use super::quadrature::SphereQuadrature;
 use super::sample_count::normals;
 
-/// Numbers of samples of the two sampling methods.
+/// Sample counts of the two sampling methods.
 pub const SAMPLES: [u32; 9] = [16, 32, 64, 128, 256, 512, 1024, 2048, 4096];
 
-/// Texels along an edge of the cubes that the exact sum is taken over.
+/// Edges of the cubes for the exact sum, texels.
 pub const CUBE_SIZES: [usize; 5] = [4, 8, 16, 32, 64];
 
-/// Independent runs of the random method of which the mean square is taken: one run would be its own accident.
+/// Independent runs of the random method whose mean square is taken, since a single run varies too much.
 const RUNS: u32 = 16;
 
-/// The error of one method with one number of samples.
+/// Error of one method with one sample count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Convergence {
     /// The method.
@@ -29,7 +29,7 @@ pub struct Convergence {
     pub rms: f64,
 }
 
-/// E at each of `normals` by 256 × 512 nodes per hemisphere: within 1e-5 of E(up) of 512 × 1024 for the skies of this crate.
+/// E at each of `normals`, by 256 × 512 nodes per hemisphere: within 1e-5 of E(up) of 512 × 1024 for the skies of this crate.
 pub fn reference(radiance: impl Fn(DVec3) -> DVec3, normals: &[DVec3]) -> Vec<DVec3> {
     let nodes: Vec<_> = SphereQuadrature::sphere(256, 512)
         .nodes
@@ -43,7 +43,7 @@ pub fn reference(radiance: impl Fn(DVec3) -> DVec3, normals: &[DVec3]) -> Vec<DV
     normals.iter().map(at).collect()
 }
 
-/// Every method with every number of samples for one sky.
+/// Every method with every sample count, for one sky.
 pub fn study(radiance: impl Fn(DVec3) -> DVec3) -> Vec<Convergence> {
     let normals = normals().collect::<Vec<_>>();
     let expected = reference(&radiance, &normals);
@@ -86,7 +86,7 @@ fn reference_up(normals: &[DVec3], expected: &[DVec3]) -> f64 {
     up.map_or(1.0, |k| expected[k].max_element())
 }
 
-/// Exponent p of error ∝ samples^p.
+/// Exponent p in error ∝ samples^p.
 pub fn exponent(rows: &[Convergence], method: IrradianceMethod) -> f64 {
     let points: Vec<(f64, f64)> = rows
         .iter()
@@ -96,8 +96,8 @@ pub fn exponent(rows: &[Convergence], method: IrradianceMethod) -> f64 {
     power(&points)
 }
 
-/// Exponent p of y ∝ x^p: the slope of a straight line through the logarithms, by least squares. Points that have none are
-/// left out; NaN for less than two places.
+/// Exponent p in y ∝ x^p: slope of the least-squares line through the logarithms. Points without a logarithm are skipped; NaN
+/// if fewer than two distinct x remain.
 pub fn power(points: &[(f64, f64)]) -> f64 {
     let points: Vec<(f64, f64)> = points
         .iter()

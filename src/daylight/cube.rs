@@ -1,8 +1,8 @@
 //! Cube maps: Vulkan's face convention, texel directions and solid angles, and a cube map on the CPU.
 //!
-//! Faces are layers +X -X +Y -Y +Z -Z. (s, t) run over 0..=1 of a face, t downward, as in the Vulkan specification,
-//! "Cube Map Face Selection". The lecture's faces "left, right, top, bottom, front, back" are these six in another
-//! order, and its `2 i / res - 1` is a texel's corner; texels here are centred at (i + ½)/N.
+//! Faces are layers +X -X +Y -Y +Z -Z. (s, t) are in 0..=1 on a face, t downward, as in the Vulkan specification, "Cube Map
+//! Face Selection". The lecture's faces "left, right, top, bottom, front, back" are the same six in another order. Its
+//! `2 i / res - 1` is a texel's corner; here texel centres are at (i + ½)/N.
 
 use glam::DVec3;
 
@@ -35,7 +35,7 @@ pub fn texel_direction(face: usize, i: usize, j: usize, size: usize) -> DVec3 {
     direction(face, (i as f64 + 0.5) / n, (j as f64 + 0.5) / n)
 }
 
-/// (face, s, t) of a direction; Vulkan 1.3, "Cube Map Face Selection" with z before y before x in ties.
+/// (face, s, t) of a direction; Vulkan 1.3, "Cube Map Face Selection"; ties go to z, then y, then x.
 pub fn face_of(direction: DVec3) -> (usize, f64, f64) {
     let DVec3 { x, y, z } = direction;
     let a = direction.abs();
@@ -67,7 +67,7 @@ pub fn texel_solid_angle(i: usize, j: usize, size: usize) -> f64 {
     corner(x0, y0) - corner(x0, y1) - corner(x1, y0) + corner(x1, y1)
 }
 
-/// Unit directions of the four corners of texel (`i`, `j`), in order around it.
+/// Unit directions of the four corners of texel (`i`, `j`), in cyclic order.
 pub fn texel_corners(face: usize, i: usize, j: usize, size: usize) -> [DVec3; 4] {
     let n = size as f64;
     [(0, 0), (1, 0), (1, 1), (0, 1)]
@@ -82,7 +82,7 @@ pub struct CubeMap {
 }
 
 impl CubeMap {
-    /// One value per texel, at its centre: `f` of the unit direction. `size` texels along an edge.
+    /// A map with `size` texels per edge; each texel is `f` of the unit direction through its centre.
     pub fn from_fn(size: usize, f: impl Fn(DVec3) -> DVec3) -> Self {
         let texels = texels(size)
             .map(|(face, i, j)| f(texel_direction(face, i, j, size)))
@@ -105,7 +105,7 @@ impl CubeMap {
         texels(self.size).zip(self.texels.iter().copied())
     }
 
-    /// The map at half its size: each texel the mean of four, weighted by their solid angles.
+    /// The map at half the resolution: each texel is the mean of four, weighted by solid angle.
     pub fn halved(&self) -> Self {
         let size = self.size / 2;
         let mean = |(face, i, j): (usize, usize, usize)| {
@@ -123,7 +123,7 @@ impl CubeMap {
         }
     }
 
-    /// Bilinear lookup in a direction, as a sampler with seamless faces does it (three-texel corners aside).
+    /// Bilinear lookup in a direction, like a seamless cube-map sampler (except at three-texel corners).
     pub fn bilinear(&self, direction: DVec3) -> DVec3 {
         let (face, s, t) = face_of(direction);
         let size = self.size as f64;
@@ -135,13 +135,13 @@ impl CubeMap {
             .lerp(at(0.0, 1.0).lerp(at(1.0, 1.0), u), v)
     }
 
-    /// The texel in column `i`, row `j`, which may lie one beyond the face: then it is the neighbouring face's.
+    /// The texel in column `i`, row `j`; one step beyond the face's edge it is a texel of the neighbouring face.
     fn across(&self, face: usize, i: f64, j: f64) -> DVec3 {
         let size = self.size as f64;
         self.nearest(face_vector(face, (i + 0.5) / size, (j + 0.5) / size))
     }
 
-    /// Nearest texel in a direction (any length but zero).
+    /// Nearest texel in a direction (any length except zero).
     pub fn nearest(&self, direction: DVec3) -> DVec3 {
         let (face, s, t) = face_of(direction);
         // s and t lie in 0..=1; the cast truncates.

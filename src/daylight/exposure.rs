@@ -1,21 +1,21 @@
 //! Exposure: from cd/m² to the unit of the tone curves.
 //!
-//! EV100 is the exposure value at ISO 100: it says which luminance a camera just saturates at. Sunny 16 is EV100 15.
+//! EV100 is the exposure value at ISO 100: it sets the luminance at which a camera saturates. Sunny 16 is EV100 15.
 
-/// Value to which [`automatic`] brings the log-average luminance (Reinhard et al. 2002, 3.1: a = 0.36 for a high-key picture).
+/// Target of [`automatic`] for the log-average luminance (Reinhard et al. 2002, 3.1: a = 0.36 for a high-key picture).
 ///
-/// Middle grey, 0.18, suits a picture without a sky. In daylight the sky is a large and bright part of the average, and
-/// what stands in the sun came out a stop too dark.
+/// Middle grey, 0.18, suits a picture without a sky. In daylight the sky is a large and bright part of the average, which
+/// made sunlit surfaces a stop too dark.
 pub const KEY: f64 = 0.36;
 
-/// Lagarde & de Rousiers 2014, *Moving Frostbite to PBR*, 5.1.2: luminance that maps to 1, cd/m²: 1.2 · 2^EV100.
+/// Lagarde & de Rousiers 2014, *Moving Frostbite to PBR*, 5.1.2: the luminance that maps to 1, 1.2 · 2^EV100 cd/m².
 ///
-/// Saturation-based sensitivity of ISO 12232, lens transmission and vignetting q = 0.65.
+/// Assumes the saturation-based sensitivity of ISO 12232, with q = 0.65 for lens transmission and vignetting.
 pub fn max_luminance(ev100: f64) -> f64 {
     1.2 * ev100.exp2()
 }
 
-/// Exposure factor, 1/(cd/m²): multiply a luminance with it to get the unit of the tone curves.
+/// Exposure factor, 1/(cd/m²): a luminance times this factor is in the unit of the tone curves.
 pub fn factor_from_ev100(ev100: f64) -> f64 {
     1.0 / max_luminance(ev100)
 }
@@ -30,24 +30,23 @@ pub fn ev100_from_camera(aperture: f64, shutter_s: f64, iso: f64) -> f64 {
     (aperture * aperture / shutter_s * 100.0 / iso).log2()
 }
 
-/// Luminance below which a pixel is black and does not count, cd/m²: the smallest step of a half float in kcd/m².
+/// Luminance below which a pixel counts as black and is ignored, cd/m²: the smallest step of a half float in kcd/m².
 pub const BLACK: f64 = 1e3 / (1 << 24) as f64;
-/// Resolution of the histogram that finds the median, bins per stop.
+/// Resolution of the histogram for the median, bins per stop.
 pub const BINS_PER_STOP: f64 = 4.0;
-/// Distance from the median to which a pixel is limited, stops.
+/// Largest distance of a pixel from the median, stops; farther pixels are clamped.
 pub const BOUND: f64 = 4.0;
 /// Distance beyond [`BOUND`], toward black, over which a pixel's weight goes from 1 to 0, stops.
 pub const FADE: f64 = 4.0;
-/// Bins of the histogram: [`BLACK`] and 64 stops more.
+/// Number of histogram bins: 64 stops from [`BLACK`] up.
 const BINS: usize = 256;
 
-/// Luminance that automatic exposure goes by, of luminances in cd/m²: Reinhard et al. 2002, eq. 1 (log average, the
-/// geometric mean), made robust as a Huber (1964) location estimate: each pixel is limited to [`BOUND`] stops around
-/// the median.
+/// Metered luminance of automatic exposure, from luminances in cd/m²: Reinhard et al. 2002, eq. 1 (log average, the geometric
+/// mean), made robust as a Huber (1964) location estimate: each pixel is clamped to [`BOUND`] stops around the median.
 ///
-/// So the sun's disc or a lamp moves the exposure by its area only. Pixels still darker lose their weight over
-/// [`FADE`] stops: black says nothing about the light. Without limits reached this is the log average itself. `None` if
-/// every pixel is black or not a number.
+/// So the sun's disc or a lamp affects the exposure only by its area. Below the lower bound a pixel's weight fades to 0 over
+/// [`FADE`] stops, since black says nothing about the light. If no pixel reaches a bound, the result is the log average.
+/// `None` if every pixel is black or NaN.
 pub fn robust_log_average(luminances: &[f64]) -> Option<f64> {
     let is_counted = |l: &&f64| **l >= BLACK;
     let logs = || {
@@ -66,7 +65,7 @@ pub fn robust_log_average(luminances: &[f64]) -> Option<f64> {
     Some((median + sum / weights).exp2())
 }
 
-/// Median of log2 luminances by a histogram, linear within a bin.
+/// Median of log2 luminances from a histogram, interpolated within a bin.
 fn median(logs: impl Iterator<Item = f64>) -> Option<f64> {
     let mut bins = [0u32; BINS];
     for log in logs {
@@ -86,18 +85,18 @@ fn median(logs: impl Iterator<Item = f64>) -> Option<f64> {
     None
 }
 
-/// Time constant of adaptation, seconds: nine tenths of a change are made in half a second.
+/// Time constant of adaptation, seconds: 90 % of a change are done in half a second.
 const ADAPTATION_S: f64 = 0.22;
 
-/// Share of the way to a new exposure that is made in some `seconds`: 1 - e^(-t/τ), the exponential adaptation of
-/// Krawczyk et al. 2005, *Perceptual effects in real-time tone mapping*, eq. 5, here of log luminance.
+/// Fraction of the way to a new exposure after `seconds`: 1 - e^(-t/τ), the exponential adaptation of Krawczyk et al. 2005,
+/// *Perceptual effects in real-time tone mapping*, eq. 5, here of log luminance.
 ///
-/// Steps compose: two of half the time go as far as one.
+/// Steps compose: two steps of half the time equal one.
 pub fn adaptation(seconds: f64) -> f64 {
     -(-seconds / ADAPTATION_S).exp_m1()
 }
 
-/// EV100 that exposes the log-average luminance (cd/m²) to the [`KEY`] (Reinhard et al. 2002, eq. 2).
+/// EV100 that maps the log-average luminance (cd/m²) to [`KEY`] (Reinhard et al. 2002, eq. 2).
 pub fn automatic(log_average_luminance: f64) -> f64 {
     ev100_from_factor(KEY / log_average_luminance)
 }
@@ -129,7 +128,7 @@ mod tests {
         assert_eq!(robust_log_average(&[]), None);
     }
 
-    /// Stops by which `share` of all pixels moves the average when it changes from the picture's grey to `luminance`.
+    /// Change of the average, stops, when a fraction `share` of all pixels goes from the picture's grey to `luminance`.
     fn moved_by(share: f64, luminance: f64) -> f64 {
         let grey = 2000.0;
         let mut pixels = vec![grey; 3000];
@@ -142,9 +141,9 @@ mod tests {
         for share in [0.01, 1.0 / 3.0, 0.9] {
             assert!(moved_by(share, 0.0).abs() < 1e-9);
         }
-        // A log average up to the bound..
+        // Up to the bound it acts as a log average.
         assert!((moved_by(0.3, 2000.0 / 8.0) + 3.0 * 0.3).abs() < 1e-9);
-        // ..never more than that beyond it, and nothing at last.
+        // Beyond the bound the effect does not grow, and finally vanishes.
         for stops in [5, 6, 7, 8, 12, 20] {
             let moved = moved_by(0.3, 2000.0 * 0.5f64.powi(stops));
             assert!(moved <= 1e-9 && moved > -4.2 * 0.3, "{stops} {moved}");

@@ -1,27 +1,27 @@
 //! False colours: luminance or illuminance on a logarithmic colour scale ([`turbo`]) with a legend.
 //!
-//! Values outside of the [`Range`] have the colour of its nearer end; pixels without light or surface are black.
+//! Values outside the [`Range`] have the colour of its nearer end; pixels without light or surface are black.
 
 use glam::DVec3;
 
 use super::colour::srgb_eotf;
 
-/// Fraction of the picture's values that an automatic range leaves out at each end.
+/// Fraction of the picture's values that an automatic range ignores at each end.
 const OUTLIERS: f64 = 0.01;
-/// The ends of an automatic range are whole multiples of this, decades.
+/// The ends of an automatic range are multiples of this, decades.
 const STEP_DECADES: f64 = 0.5;
 
 /// The quantity that false colours show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
-    /// Of the light toward the eye, cd/m².
+    /// Luminance toward the eye, cd/m².
     Luminance,
-    /// Of the surface under the pixel, lux.
+    /// Illuminance of the surface in the pixel, lux.
     Illuminance,
 }
 
 impl Quantity {
-    /// Its unit.
+    /// Unit of the quantity.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Luminance => "cd/m²",
@@ -29,7 +29,7 @@ impl Quantity {
         }
     }
 
-    /// A fixed range from shadows to a sunny day, for moving pictures.
+    /// A fixed range from shadows to a sunny day, for animations.
     pub fn daytime(self) -> Range {
         match self {
             Self::Luminance => Range {
@@ -44,7 +44,7 @@ impl Quantity {
     }
 }
 
-/// The values of the first and the last colour.
+/// The values of the first and last colours.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// Value of the first colour, positive, in the quantity's unit.
@@ -62,16 +62,16 @@ impl std::fmt::Display for Range {
 /// A labelled value of a legend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tick {
-    /// In the quantity's unit.
+    /// Value, in the quantity's unit.
     pub value: f64,
-    /// Position on the scale: 0 the first colour, 1 the last.
+    /// Position on the scale: 0 for the first colour, 1 for the last.
     pub share: f64,
     /// The value as text.
     pub label: String,
 }
 
 impl Range {
-    /// The half decades around `values` less one percent at each end; `None` without a positive value.
+    /// Smallest range of half decades around `values` without one percent at each end; `None` if no value is positive.
     pub fn around(values: impl Iterator<Item = f64>) -> Option<Self> {
         let mut values: Vec<f64> = values.filter(|v| v.is_finite() && *v > 0.0).collect();
         let last = values.len().checked_sub(1)?;
@@ -80,7 +80,7 @@ impl Range {
             let (_, value, _) = values.select_nth_unstable_by(index, f64::total_cmp);
             value.log10() / STEP_DECADES
         };
-        // Keeps a value on a half decade there despite rounding errors.
+        // A value on a half decade stays there despite rounding errors.
         let (low, high) = (at(OUTLIERS) + 1e-9, at(1.0 - OUTLIERS) - 1e-9);
         let low = low.floor();
         let high = high.ceil().max(low + 1.0);
@@ -97,7 +97,7 @@ impl Range {
         (value.log2() * scale + offset).clamp(0.0, 1.0)
     }
 
-    /// (a, b) with position = a log₂(value) + b, as a shader evaluates it.
+    /// (a, b) in position = a log₂(value) + b, for a shader.
     pub fn log2_scale(&self) -> (f64, f64) {
         let scale = 1.0 / (self.max.log2() - self.min.log2());
         (scale, -self.min.log2() * scale)
@@ -112,7 +112,7 @@ impl Range {
         }
     }
 
-    /// The values 1, 2 and 5 of every decade within the range; its ends where those are fewer than two.
+    /// The values 1, 2 and 5 of every decade within the range; its ends if those are fewer than two.
     pub fn ticks(&self) -> Vec<Tick> {
         let decades = self.min.log10().floor() as i32..=self.max.log10().ceil() as i32;
         let round = decades.flat_map(|decade| [1, 2, 5].map(|digit| (digit, decade)));
@@ -134,7 +134,7 @@ impl Range {
     }
 }
 
-/// `digit` times a power of ten, as the nearest number to its decimal text.
+/// `digit` times a power of ten, as the float nearest to its decimal text.
 fn decimal(digit: i32, decade: i32) -> f64 {
     format!("{digit}e{decade}")
         .parse()
@@ -160,11 +160,11 @@ fn label(value: f64) -> String {
     grouped
 }
 
-/// Mikhailov 2019, *Turbo, An Improved Rainbow Colormap for Visualization*: Du's polynomial of it, linear BT.709. `share` is
-/// 0..1.
+/// Mikhailov 2019, *Turbo, An Improved Rainbow Colormap for Visualization*, by Du's polynomial fit, linear BT.709. `share` is
+/// in 0..1.
 ///
-/// Hues tell values apart that a map of one hue would blend, while lightness changes smoothly, without the bands of older rainbows.
-/// The polynomial is of sRGB values, which are decoded here.
+/// Different hues separate values that would blend in a single-hue map, while lightness varies smoothly, without the bands of
+/// older rainbow maps. The polynomial yields sRGB values, which are decoded here.
 pub fn turbo(share: f64) -> DVec3 {
     const TERMS: [DVec3; 6] = [
         DVec3::new(0.135_721_38, 0.091_402_61, 0.106_673_30),
@@ -210,7 +210,7 @@ mod tests {
         let worst = errors.into_iter().fold(0.0, f64::max);
         let mean = errors.iter().sum::<f64>() / errors.len() as f64;
         println!("turbo: {worst:.3} from its table at worst, {mean:.3} in the mean");
-        // What the published coefficients give, evaluated apart from this code.
+        // Errors of the published coefficients, evaluated independently.
         assert!(worst < 0.13 && mean < 0.085, "{errors:?}");
         for i in 0..=1000 {
             let c = turbo(f64::from(i) / 1000.0);
@@ -244,7 +244,7 @@ mod tests {
     fn ranges_are_half_decades_around_all_but_the_outliers() {
         let around = |low: f64, high: f64| {
             let values = (0..=1000).map(move |i| low + (high - low) * f64::from(i) / 1000.0);
-            // One in a thousand far off at each end does not count.
+            // Outliers, one in a thousand at each end, do not count.
             let values = values.chain([1e-9, 1e9, 0.0, -5.0, f64::NAN]);
             Range::around(values).expect("light")
         };

@@ -1,6 +1,6 @@
 //! The clear sky of Hošek & Wilkie 2012, *An Analytic Model for Full Spectral Sky-Dome Radiance*: its RGB fit (1.4a).
 //!
-//! The tables come with the crate `hw-skymodel` in f32. Native radiances times 683 lm/W are cd/m².
+//! The tables are from the crate `hw-skymodel`, in f32. Native radiances times 683 lm/W are cd/m².
 
 use glam::DVec3;
 use hw_skymodel::rgb::{SkyParams, SkyState};
@@ -8,16 +8,16 @@ use hw_skymodel::rgb::{SkyParams, SkyState};
 use super::preetham::angle_between;
 use super::spectrum::LUMINOUS_EFFICACY;
 
-/// Turbidities over which the model was fitted.
+/// Turbidities for which the model was fitted.
 pub const TURBIDITY_RANGE: (f64, f64) = (1.0, 10.0);
 
-/// The sky for one turbidity, ground albedo and position of the sun, in the form that a shader evaluates.
+/// The sky for one turbidity, ground albedo and sun position, in the form that a shader evaluates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hosek {
     /// Unit vector toward the sun.
     pub sun_direction: DVec3,
-    /// The nine coefficients of R, of G and of B, in the order stored by the authors: A B C D E F G I H of the paper
-    /// (the eighth multiplies √cos θ, the ninth is the anisotropy of the glow around the sun).
+    /// The nine coefficients of R, G and B, in the authors' storage order: A B C D E F G I H of the paper (the eighth
+    /// multiplies √cos θ, the ninth is the anisotropy of the glow around the sun).
     pub coefficients: [[f64; 9]; 3],
     /// Mean radiance of R, G and B, cd/m²: radiance = `mean_radiance` · [`distribution`].
     pub mean_radiance: DVec3,
@@ -32,7 +32,7 @@ impl Hosek {
             turbidity: (turbidity as f32).clamp(1.0, 10.0),
             albedo: [(ground_albedo as f32).clamp(0.0, 1.0); 3],
         };
-        // All three were clamped to the ranges that `new` checks; a NaN leaves a black sky.
+        // All three are clamped to the ranges that `new` checks; NaN gives a black sky.
         let (coefficients, mean) =
             SkyState::new(&params).map_or(([0.0; 27], [0.0; 3]), |s| s.raw());
         let channel = |i: usize| std::array::from_fn(|k| f64::from(coefficients[9 * i + k]));

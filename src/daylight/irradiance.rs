@@ -1,13 +1,13 @@
 //! Irradiance E(n) = ∫ L(ω) (n·ω)⁺ dω of a radiance function: lux for cd/m².
 //!
-//! Four ways behind one interface, [`IrradianceEstimator`]:
+//! Four methods behind one interface, [`IrradianceEstimator`]:
 //!
 //! - [`monte_carlo`]: the lecture's estimator, random directions of density cos θ/π. Its mean of L estimates E/π; the
 //!   functions here return **E**.
 //! - [`quasi`]: the same with the R2 sequence instead of random numbers; the error falls about as 1/N instead of 1/√N.
-//! - [`ExactIrradiance`]: a sum over the texels of a cube map. The radiance is taken as constant within a texel; the
-//!   cosine is then integrated *exactly* over each texel, clipped at the horizon of n, by Lambert's formula.
-//! - [`SphericalHarmonics`]: order 2, nine coefficients; fast, smooth, and off by percents of E(up).
+//! - [`ExactIrradiance`]: a sum over the texels of a cube map. The radiance is constant within a texel; the cosine is
+//!   integrated *exactly* over each texel, clipped at the horizon of n, by Lambert's formula.
+//! - [`SphericalHarmonics`]: order 2, nine coefficients; fast and smooth, with errors of some percent of E(up).
 //!
 //! # How fast they converge
 //!
@@ -46,7 +46,7 @@
 //! monte-carlo: error falls as samples^-0.50
 //! quasi: error falls as samples^-0.93
 //!
-//! # How the device's methods of the same names differ
+//! # Differences from the device's methods of the same names
 //!
 //! - `quasi` here: the first N points of R2, the radiance evaluated in each direction, one tangent frame per normal. On the
 //!   device: Hammersley points in golden-ratio order, lookups in the mip level of each sample's solid angle
@@ -80,16 +80,16 @@ pub enum IrradianceMethod {
 }
 
 impl IrradianceMethod {
-    /// Whether it draws directions, so that more of them lower its error.
+    /// Whether the method samples directions, so that more samples lower its error.
     pub fn is_sampled(self) -> bool {
         matches!(self, Self::MonteCarlo | Self::Quasi)
     }
 }
 
-/// Texels along an edge of the cube that [`IrradianceMethod::Exact`] sums here: 2e-5 of E(up) rms, 1.3e-4 at worst.
+/// Edge of the cube for [`IrradianceMethod::Exact`] on the CPU, texels: the error is 2e-5 of E(up) rms, 1.3e-4 at worst.
 pub const EXACT_CUBE_SIZE: usize = 64;
 
-/// Irradiance of a radiance function by any of the methods: prepared once, evaluated for many normals.
+/// Irradiance of a radiance function by any of the methods. Prepared once, evaluated for many normals.
 pub enum IrradianceEstimator<L> {
     /// Radiance and number of samples.
     MonteCarlo(L, u32),
@@ -126,7 +126,7 @@ impl<L: Fn(DVec3) -> DVec3> IrradianceEstimator<L> {
     }
 }
 
-/// Lecture, "Integrating skylight": E(n) by `samples` random directions of density cos θ/π; `seed` picks the sequence.
+/// Lecture, "Integrating skylight": E(n) from `samples` random directions of density cos θ/π; `seed` selects the sequence.
 pub fn monte_carlo(
     radiance: impl Fn(DVec3) -> DVec3,
     normal: DVec3,
@@ -140,7 +140,7 @@ pub fn monte_carlo(
     })
 }
 
-/// E(n) by the first `samples` points of R2, shifted on the torus by `shift` (0 for none).
+/// E(n) from the first `samples` points of R2, shifted on the torus by `shift` (0 for none).
 pub fn quasi(
     radiance: impl Fn(DVec3) -> DVec3,
     normal: DVec3,
@@ -168,7 +168,7 @@ fn mean_cosine(
     sum * (PI / f64::from(samples.max(1)))
 }
 
-/// A cube map prepared for exact sums: every texel with the vector ∫ ω dω over it.
+/// A cube map prepared for exact sums: each texel with its vector ∫ ω dω.
 pub struct ExactIrradiance {
     texels: Vec<Texel>,
 }
@@ -183,8 +183,8 @@ struct Texel {
 impl ExactIrradiance {
     /// Prepares the texels of `map`, which hold the radiance at their centres.
     ///
-    /// Texel *averages* would be worse (1.6e-4 rms instead of 1.4e-4 at 32 texels): L and the cosine vary against each other
-    /// at the horizon, and the mean of a product is nearer to the product at the centre than to the product of the means.
+    /// Texel *averages* would be worse (1.6e-4 rms instead of 1.4e-4 at 32 texels): L and the cosine are correlated at the
+    /// horizon, and the mean of the product is closer to the product at the centre than to the product of the means.
     pub fn new(map: &CubeMap) -> Self {
         let size = map.size();
         let prepare = |((face, i, j), radiance)| {
@@ -258,7 +258,7 @@ fn clip(corners: &[DVec3; 4], heights: &[f64; 4]) -> Vec<DVec3> {
             kept.push(corners[k]);
         }
         if (heights[k] > 0.0 && heights[next] < 0.0) || (heights[k] < 0.0 && heights[next] > 0.0) {
-            // Where the chord meets the plane, the arc does too.
+            // The point where the chord crosses the plane, normalised, is where the arc does.
             let crossing = corners[k] * heights[next] - corners[next] * heights[k];
             kept.push(crossing.normalize() * (heights[next] - heights[k]).signum());
         }
@@ -268,7 +268,7 @@ fn clip(corners: &[DVec3; 4], heights: &[f64; 4]) -> Vec<DVec3> {
 
 /// Ramamoorthi & Hanrahan 2001, *An Efficient Representation for Irradiance Environment Maps*: nine coefficients.
 ///
-/// Off by 0.4..1.5 % of E(up) for a high sun, 4.5 % at turbidity 2 with the sun at 10°; may be slightly negative downward.
+/// Error 0.4..1.5 % of E(up) for a high sun, 4.5 % at turbidity 2 with the sun at 10°; may be slightly negative downward.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphericalHarmonics {
     /// Coefficients L_lm of the radiance, linear RGB in cd/m² · sr½, in the order 00, 1-1, 10, 11, 2-2, 2-1, 20, 21, 22.
@@ -350,7 +350,7 @@ mod tests {
 
     #[test]
     fn a_linear_radiance_gives_two_thirds_pi_along_its_axis() {
-        // L = 1 + ω·a has E(n) = π + 2π/3 n·a, also beyond the horizon of a.
+        // L = 1 + ω·a has E(n) = π + 2π/3 n·a, also for n below the horizon of a.
         let axis = DVec3::new(0.2, 0.5, -0.3);
         let radiance = |d: DVec3| DVec3::splat(1.0 + d.dot(axis));
         for (method, tolerance) in METHODS.into_iter().zip([5e-2, 3e-3, 1e-3, 1e-10]) {
@@ -369,7 +369,7 @@ mod tests {
         assert!((e.at(DVec3::Y).x - PI).abs() < 1e-12);
         assert!((e.at(DVec3::X).x - PI / 2.0).abs() < 1e-12);
         assert!(e.at(DVec3::NEG_Y).x.abs() < 1e-12);
-        // A slope of angle a sees (1 + cos a)/2 of the sky.
+        // A slope with the angle a sees (1 + cos a)/2 of the sky.
         let slope = DVec3::new(0.6, 0.8, 0.0);
         assert!((e.at(slope).x - PI * 0.9).abs() < 1e-12);
     }

@@ -1,24 +1,24 @@
 //! The physics of daylight in `f64` on the CPU: the reference against which the shaders are tested.
 //!
-//! # A tour, in the order of the light
+//! # Overview, in the order of the light
 //!
-//! 1. [`sun_position`]: a place and a moment give the direction of the sun, by SPA or by the lecture's formulas.
-//!    [`place`] and [`moment`] parse both; [`cities`] has places by name; [`sun_path`] the lines of a sun-path diagram.
-//! 2. [`sunlight`]: the sun's spectrum through five transmittances of the air gives its disc in cd/m² and its
+//! 1. [`sun_position`]: the direction of the sun from a place and a moment, by SPA or by the lecture's formulas.
+//!    [`place`] and [`moment`] parse both; [`cities`] has places by name; [`sun_path`] has the lines of a sun-path diagram.
+//! 2. [`sunlight`]: the sun's spectrum times five transmittances of the air gives the luminance of its disc in cd/m² and its
 //!    illuminance in lux. [`spectrum`] integrates, [`colour`] turns XYZ into linear BT.709 RGB.
 //! 3. [`preetham`], [`hosek`], [`cie`]: the sky's radiance in a direction.
-//! 4. [`sky`]: all of it as one [`Daylight`] with the ground below the horizon; finite and not negative for any input.
+//! 4. [`sky`]: sun, sky and the ground below the horizon as one [`Daylight`]; finite and not negative for any input.
 //! 5. [`cube`]: cube maps in Vulkan's convention. [`irradiance`]: E(n) of a radiance, by four methods, with the points of
 //!    [`sampling`] in the bases of [`tangent_frame`]; [`quadrature`] is their reference, [`convergence`] compares them, and
 //!    [`sample_count`] has the samples of the device's map.
 //! 6. [`sky_sampler`]: directional lights drawn from the sky by luminance, one shadow map each.
-//! 7. [`exposure`] and [`tone_curve`]: from cd/m² to a picture; [`false_colour`]: to a picture of readable values.
+//! 7. [`exposure`] and [`tone_curve`]: from cd/m² to a picture; [`false_colour`]: to a picture with readable values.
 //!
 //! # Conventions
 //!
-//! World: right-handed, +Y up, +X east, -Z north. Angles in degrees where a name ends in `_deg`, else radians; azimuth clockwise
-//! from north. Colours are linear RGB (BT.709, D65) as [`glam::DVec3`]: radiance in cd/m², irradiance in lux. Directions are
-//! unit vectors *toward* what they name.
+//! World: right-handed, +Y up, +X east, -Z north. Angles are in degrees if a name ends in `_deg`, else in radians; azimuth is
+//! clockwise from north. Colours are linear RGB (BT.709, D65) as [`glam::DVec3`]: radiance in cd/m², irradiance in lux.
+//! Directions are unit vectors *toward* what they name.
 
 // A test may panic.
 #![cfg_attr(test, allow(clippy::unwrap_used))]

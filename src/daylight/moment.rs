@@ -1,4 +1,4 @@
-//! Moments as people write them: with a UTC offset, with a time zone, or by the clock of the place.
+//! Moments in the forms that people write: with a UTC offset, with a time zone, or in local time of the place.
 
 use std::str::FromStr;
 
@@ -10,7 +10,7 @@ use super::sun_position::{SunPositionError, YEARS};
 const FORM: &str = "write a date and a time, for instance 2026-06-21T15:00+02:00, 2026-06-21 15:00 Europe/Copenhagen, or \
                     2026-06-21 15:00 (local time of the place)";
 
-/// The moment that is shown where none is given: 15:00 on 21 June 2026 by the clocks of the place.
+/// The default moment: 15:00 local time on 21 June 2026.
 pub fn default_moment(place: Place) -> DateTime<FixedOffset> {
     let date = NaiveDate::from_ymd_opt(2026, 6, 21).unwrap_or_default();
     let time = NaiveTime::from_hms_opt(15, 0, 0).unwrap_or_default();
@@ -22,7 +22,7 @@ pub fn default_moment(place: Place) -> DateTime<FixedOffset> {
 pub enum When {
     /// With a UTC offset or a time zone.
     Moment(DateTime<FixedOffset>),
-    /// Without either: by the clocks of the place.
+    /// Without either: local time of the place.
     Local(NaiveDateTime),
 }
 
@@ -30,7 +30,7 @@ impl When {
     /// The moment, at this place.
     ///
     /// # Errors
-    /// One line with both readings of a local time that the change of the clocks repeats or skips.
+    /// One line with both readings of a local time that a clock change repeats or skips.
     pub fn at(self, place: Place) -> Result<DateTime<FixedOffset>, String> {
         match self {
             Self::Moment(moment) => Ok(moment),
@@ -42,8 +42,8 @@ impl When {
 impl FromStr for When {
     type Err = String;
 
-    /// `DATE TIME [ZONE]`: RFC 3339, of which the seconds, the `T` and the offset's minutes may be missing, or a time zone's
-    /// name in place of the offset, or nothing. A leap second is second 60 of 23:59 UTC.
+    /// `DATE TIME [ZONE]`: RFC 3339, where the seconds, the `T` and the offset's minutes are optional, and the offset may be
+    /// omitted or replaced by the name of a time zone. A leap second is second 60 of 23:59 UTC.
     fn from_str(text: &str) -> Result<Self, String> {
         let text = text.trim();
         let at = text.find(['T', 't', ' ']).unwrap_or(text.len());
@@ -73,7 +73,7 @@ impl FromStr for When {
     }
 }
 
-/// The moment of a local time in a zone: a name, an offset, or both as RFC 9557 writes them, `+09:00[Asia/Tokyo]`.
+/// The moment of a local time in a zone: a name, an offset, or both as in RFC 9557, `+09:00[Asia/Tokyo]`.
 fn zoned(local: NaiveDateTime, text: &str) -> Result<DateTime<FixedOffset>, String> {
     let in_brackets = text.strip_suffix(']').and_then(|text| text.split_once('['));
     let (offset, name) = in_brackets.unwrap_or((text, ""));
@@ -105,7 +105,7 @@ fn date(text: &str) -> Result<NaiveDate, String> {
     date.ok_or_else(|| format!("{text} is a date that does not exist"))
 }
 
-/// `15`, `15:00`, `15:00:30.5`, and whether it is a leap second (second 60, given back as 59).
+/// `15`, `15:00`, `15:00:30.5`, and whether it is a leap second (second 60, returned as 59).
 fn time(text: &str) -> Result<(NaiveTime, bool), String> {
     let (clock, fraction) = text.split_once('.').unwrap_or((text, ""));
     let numbers: Option<Vec<i32>> = clock.split(':').map(digits).collect();
@@ -129,7 +129,7 @@ fn digits(text: &str) -> Option<i32> {
     is_number.then(|| text.parse().ok()).flatten()
 }
 
-/// Second 60 after the second 59 that is given.
+/// The leap second (second 60) after the given second 59.
 fn leap_second(given: When, text: &str) -> Result<When, String> {
     let longer = |time: NaiveTime| time.with_nanosecond(time.nanosecond() + 1_000_000_000);
     let When::Moment(before) = given else {

@@ -1,11 +1,11 @@
-//! Places on the earth: coordinates as people write them, and the clock that a place goes by.
+//! Places on the earth: coordinates in the forms that people write, and the time zone of a place.
 
 use chrono::{DateTime, Duration, FixedOffset, NaiveDateTime, Offset, TimeZone};
 use chrono_tz::{TZ_VARIANTS, Tz};
 
 use super::cities;
 
-/// A listed city so near gives a place its time zone, km.
+/// Largest distance of a listed city that determines a place's time zone, km.
 const MAX_ZONE_KM: f64 = 1000.0;
 
 /// A place on the earth.
@@ -48,7 +48,7 @@ impl Place {
     /// From `55.79,12.52`, `33.87° S, 151.21° E`, `S33.87 E151.21`, `33°52'S 151°12'E` or the name of a city.
     ///
     /// # Errors
-    /// One line: what is wrong, or the city whose name is most like the text.
+    /// One line that says what is wrong, or names the city most similar to the text.
     pub fn parse(text: &str) -> Result<Self, String> {
         if text.contains(|c: char| c.is_ascii_digit()) {
             return coordinates(text);
@@ -57,10 +57,10 @@ impl Place {
         Self::new(city.latitude, city.longitude)
     }
 
-    /// The time zone that clocks go by here: that of the nearest listed city within 1000 km, else the whole hour of
-    /// the longitude (round(longitude / 15°)).
+    /// The time zone: that of the nearest listed city within 1000 km, else the whole hour of the longitude
+    /// (round(longitude / 15°)).
     ///
-    /// By area this gives 75 % of the land its legal UTC offset in June and 93 % within an hour (without the cities: 42 % and
+    /// By area, 75 % of the land gets its legal UTC offset in June, and 93 % is within an hour (without the cities: 42 % and
     /// 87 %), compared with the zones' polygons at 18 000 random points.
     pub fn zone(&self) -> Zone {
         let (city, km) = cities::nearest(self.latitude, self.longitude);
@@ -82,7 +82,7 @@ impl std::fmt::Display for Place {
 
 const FORM: &str = "write LAT,LON in degrees, for instance 55.79,12.52 or 33.87 S, 151.21 E";
 
-/// Which of the two coordinates.
+/// One of the two coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
     /// North (N) and south (S) of the equator.
@@ -92,7 +92,7 @@ pub enum Axis {
 }
 
 impl Axis {
-    /// An angle (degrees) with its hemisphere instead of a sign, to a thousandth: `33.87° S` of −33.87.
+    /// An angle (degrees) with a hemisphere letter instead of a sign, to three decimals: `33.87° S` for −33.87.
     pub fn written(self, degrees: f64) -> String {
         let rounded = (degrees * 1e3).round() / 1e3;
         let letter = match (self, rounded < 0.0) {
@@ -104,7 +104,7 @@ impl Axis {
         format!("{}° {letter}", rounded.abs())
     }
 
-    /// The degrees of a text such as `-33.87`, `33.87° S` or `33°52'S`; `None` where it is none of this axis.
+    /// The degrees of a text such as `-33.87`, `33.87° S` or `33°52'S`; `None` if it is not an angle of this axis.
     pub fn parse(self, text: &str) -> Option<f64> {
         let (degrees, axis) = angle(text).ok()?;
         axis.is_none_or(|axis| axis == self).then_some(degrees)
@@ -114,7 +114,7 @@ impl Axis {
 fn coordinates(text: &str) -> Result<Place, String> {
     let (first, second) = halves(text).ok_or(FORM)?;
     let (a, b) = (angle(first)?, angle(second)?);
-    // Letters tell which is which; without them latitude comes first.
+    // Letters tell the axes apart; without them latitude comes first.
     let (latitude, longitude) = match (a.1, b.1) {
         (Some(a), Some(b)) if a == b => {
             return Err(format!(
@@ -128,7 +128,7 @@ fn coordinates(text: &str) -> Result<Place, String> {
     Place::new(latitude, longitude)
 }
 
-/// The two coordinates of a text: parted by a comma or semicolon, else by a hemisphere letter or a blank.
+/// Splits a text into its two coordinates: at a comma or semicolon, else at a hemisphere letter or a blank.
 fn halves(text: &str) -> Option<(&str, &str)> {
     let text = text.trim();
     if let Some((a, b)) = text.split_once([',', ';']) {
@@ -143,7 +143,7 @@ fn halves(text: &str) -> Option<(&str, &str)> {
     Some(text.split_at(at))
 }
 
-/// One coordinate, degrees, and its axis where a letter tells it.
+/// One coordinate, degrees, and its axis if a letter tells it.
 fn angle(text: &str) -> Result<(f64, Option<Axis>), String> {
     let text = text.trim();
     let wrong = || format!("\"{text}\" is not a coordinate; {FORM}");
@@ -162,7 +162,7 @@ fn angle(text: &str) -> Result<(f64, Option<Axis>), String> {
     let minus = number.strip_prefix(['-', '−']);
     let unsigned = minus.or(number.strip_prefix('+')).unwrap_or(number);
     let degrees = sexagesimal(unsigned).ok_or_else(wrong)?;
-    // "-33.87 N" is 33.87 S, but "-33.87 S" may be meant either way.
+    // "-33.87 N" is 33.87 S, but "-33.87 S" is ambiguous.
     if minus.is_some() && is_negative {
         return Err(format!(
             "\"{text}\" has a minus and {letter}; write {degrees} {letter} or -{degrees}"
@@ -201,7 +201,7 @@ fn sexagesimal(text: &str) -> Option<f64> {
     None
 }
 
-/// What turns a clock's time into a moment.
+/// Rule that converts local time to a moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Zone {
     /// A time zone of the IANA database, with its history and summer times.
@@ -214,7 +214,7 @@ impl Zone {
     /// From an IANA name (`Asia/Tokyo`, in any case), `Z`, `UTC`, or an offset (`+02:00`, `+0200`, `+02`, `UTC+2`).
     ///
     /// # Errors
-    /// One line, with the zone that is meant where one can be guessed.
+    /// One line, with the zone that was probably meant if it can be guessed.
     pub fn parse(text: &str) -> Result<Self, String> {
         let text = text.trim();
         let is_utc = |word: &str| {
@@ -235,7 +235,7 @@ impl Zone {
         zone.map(Self::Civil).ok_or_else(|| unknown_zone(text))
     }
 
-    /// `when` by the clocks of this zone; offsets are whole minutes, as RFC 3339 writes them (local mean times were not).
+    /// `when` in local time of this zone. The offset is in whole minutes, as RFC 3339 requires (local mean times were not).
     pub fn clock(self, when: DateTime<FixedOffset>) -> DateTime<FixedOffset> {
         match self {
             Self::Civil(zone) => when.with_timezone(&whole_minutes(
@@ -245,15 +245,15 @@ impl Zone {
         }
     }
 
-    /// Whether clocks here have the UTC offset of `when`, at that moment.
+    /// Whether the zone has the UTC offset of `when` at that moment.
     pub fn has_offset_of(self, when: DateTime<FixedOffset>) -> bool {
         self.clock(when).offset() == when.offset()
     }
 
-    /// The moment at which clocks show `local`.
+    /// The moment at which the local time is `local`.
     ///
     /// # Errors
-    /// One line with both readings, where the change of the clocks makes `local` occur twice or not at all.
+    /// One line with both readings, if a clock change makes `local` occur twice or not at all.
     pub fn moment(self, local: NaiveDateTime) -> Result<DateTime<FixedOffset>, String> {
         let readings = self.readings(local);
         let [first, second] = readings;
@@ -274,12 +274,12 @@ impl Zone {
         ))
     }
 
-    /// As [`Self::moment`], with the offset before the change where that has two readings.
+    /// As [`Self::moment`], but an ambiguous time takes the offset before the change.
     pub fn nearest_moment(self, local: NaiveDateTime) -> DateTime<FixedOffset> {
         self.clock(self.readings(local)[0])
     }
 
-    /// `local` by the offset before and after the change of the clocks; twice the same where there is no change.
+    /// `local` with the offsets before and after a clock change; equal if there is no change.
     fn readings(self, local: NaiveDateTime) -> [DateTime<FixedOffset>; 2] {
         let by = |offset: FixedOffset| at_offset(local, offset);
         let zone = match self {
@@ -309,7 +309,7 @@ impl std::fmt::Display for Zone {
     }
 }
 
-/// A moment as the command line takes it, to the minute where it has no seconds.
+/// A moment in the form of the command line, without seconds if they are zero.
 fn written(when: DateTime<FixedOffset>) -> String {
     let seconds = if when.format("%S").to_string() == "00" {
         ""
@@ -320,7 +320,7 @@ fn written(when: DateTime<FixedOffset>) -> String {
         .to_string()
 }
 
-/// The moment of a local time at an offset; chrono's range is far wider than the years that are accepted.
+/// The moment of a local time at an offset. Cannot overflow: chrono's range is far wider than the accepted years.
 fn at_offset(local: NaiveDateTime, offset: FixedOffset) -> DateTime<FixedOffset> {
     let utc = local.checked_sub_offset(offset).unwrap_or(local);
     DateTime::from_naive_utc_and_offset(utc, offset)
@@ -412,7 +412,7 @@ mod tests {
             "S 33.87°; E 151.21°",
             "151.21 E, 33.87 S",
             "E151.21, -33.87",
-            // A minus turns N round.
+            // A minus sign inverts N.
             "-33.87° N, 151.21° E",
         ] {
             assert_eq!(place(text), Ok((-33.87, 151.21)), "{text}");
@@ -558,7 +558,7 @@ mod tests {
         ] {
             assert_eq!(copenhagen.nearest_moment(time), moment(first));
         }
-        // A whole day, when Samoa changed sides of the date line.
+        // A whole day was skipped when Samoa crossed the date line.
         let samoa = Zone::parse("Pacific/Apia").unwrap();
         let error = samoa.moment(local(2011, 12, 30, 12, 0)).unwrap_err();
         assert!(

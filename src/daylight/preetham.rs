@@ -3,9 +3,9 @@
 //! Each of Y, x and y is Q(θ, γ) = Q_z F(θ, γ) / F(0, θ_s) with Perez' function F and its own five coefficients.
 //! θ: angle from the zenith; γ: angle from the sun; θ_s: the sun's angle from the zenith.
 //!
-//! Known limits of the published fit (reproduced, not corrected): its sky gives 1.5 to 2 times the horizontal illuminance of
-//! [`super::hosek`] and of the IES' clear sky ([`super::cie`]), and with a low sun in clear air far more: 15.6 klux at turbidity
-//! 2 with the sun at 1°, where those two have 3.3 and 2.8.
+//! Known limits of the published fit (reproduced, not corrected): its horizontal illuminance is 1.5 to 2 times that of
+//! [`super::hosek`] and of the IES clear sky ([`super::cie`]), and far more with a low sun in clear air: 15.6 klux at turbidity 2
+//! with the sun at 1°, where those two give 3.3 and 2.8.
 
 use std::f64::consts::PI;
 
@@ -13,13 +13,13 @@ use glam::DVec3;
 
 use super::colour;
 
-/// Turbidities over which the model was fitted.
+/// Turbidities for which the model was fitted.
 pub const TURBIDITY_RANGE: (f64, f64) = (2.0, 10.0);
 
 /// Perez et al. 1993 coefficients A to E of one quantity, linear in turbidity: `[slope, constant]` per coefficient.
 type PerezTable = [[f64; 2]; 5];
 
-// Preetham et al. 1999, A.2, the published digits.
+// Preetham et al. 1999, A.2, digits as published.
 const PEREZ_LUMINANCE: PerezTable = [
     [0.1787, -1.4630],
     [-0.3554, 0.4275],
@@ -82,24 +82,24 @@ pub fn perez(coefficients: &[f64; 5], cos_theta: f64, gamma: f64) -> f64 {
         * (1.0 + c * (d * gamma).exp() + e * cos_gamma * cos_gamma)
 }
 
-/// What a shader needs to evaluate a sky of Perez' form: Q = `zenith_over_f` · F(θ, γ) for Q = Y, x, y in this order.
+/// The numbers a shader needs to evaluate a sky of Perez' form: Q = `zenith_over_f` · F(θ, γ) for Q = Y, x, y in this order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PerezSky {
-    /// Coefficients A to E of Y, of x and of y.
+    /// Coefficients A to E of Y, x and y.
     pub coefficients: [[f64; 5]; 3],
     /// Zenith values of Y (cd/m²), x and y, each divided by its own F(0, θ_s).
     pub zenith_over_f: [f64; 3],
 }
 
 impl PerezSky {
-    /// (Y in cd/m², x, y) at the cosine of the angle from the zenith and the angle from the sun (radians).
+    /// (Y in cd/m², x, y) from the cosine of the zenith angle and the angle from the sun (radians).
     pub fn luminance_chromaticity(&self, cos_theta: f64, gamma: f64) -> (f64, f64, f64) {
         let q = |i: usize| self.zenith_over_f[i] * perez(&self.coefficients[i], cos_theta, gamma);
         (q(0), q(1), q(2))
     }
 }
 
-/// The sky for one turbidity and one position of the sun.
+/// The sky for one turbidity and one sun position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preetham {
     sun_direction: DVec3,
@@ -126,7 +126,7 @@ impl Preetham {
         }
     }
 
-    /// The numbers a shader evaluates.
+    /// The numbers for a shader.
     pub fn perez(&self) -> PerezSky {
         self.perez
     }

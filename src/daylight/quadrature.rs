@@ -1,6 +1,6 @@
 //! Gauss-Legendre × uniform quadrature over the hemispheres: the reference for every irradiance.
 //!
-//! The upper and the lower hemisphere have their own nodes, because a radiance jumps at the horizon.
+//! Each hemisphere has its own nodes, because the radiance is discontinuous at the horizon.
 
 use std::f64::consts::PI;
 
@@ -18,7 +18,7 @@ pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
     nodes
 }
 
-/// The `i`-th greatest root of the Legendre polynomial P_n, and P_n' there; Newton from Tricomi's estimate.
+/// The `i`-th largest root of the Legendre polynomial P_n, and P_n' there; by Newton's method from Tricomi's estimate.
 fn legendre_root(n: usize, i: usize) -> (f64, f64) {
     let mut x = (PI * (i as f64 - 0.25) / (n as f64 + 0.5)).cos();
     let mut slope = 1.0;
@@ -46,7 +46,7 @@ pub struct SphereQuadrature {
 }
 
 impl SphereQuadrature {
-    /// Upper hemisphere (+Y): `rings` Gauss-Legendre nodes in the sine of the elevation, `columns` azimuths each.
+    /// Upper hemisphere (+Y): `rings` Gauss-Legendre nodes in the sine of the elevation, times `columns` azimuths.
     pub fn upper(rings: usize, columns: usize) -> Self {
         let step = 2.0 * PI / columns as f64;
         let ring = |(sine, weight): (f64, f64)| {
@@ -72,7 +72,7 @@ impl SphereQuadrature {
         Self { nodes }
     }
 
-    /// Integral of `f` over the nodes' domain.
+    /// Integral of `f` over the domain of the nodes.
     pub fn integrate(&self, f: impl Fn(DVec3) -> DVec3) -> DVec3 {
         self.nodes
             .iter()
@@ -80,7 +80,7 @@ impl SphereQuadrature {
             .sum()
     }
 
-    /// Irradiance E(n) = ∫ L (n·ω)⁺ dω of a radiance over the nodes' domain: lux for cd/m².
+    /// Irradiance E(n) = ∫ L (n·ω)⁺ dω of a radiance over the domain of the nodes: lux for cd/m².
     pub fn irradiance(&self, normal: DVec3, radiance: impl Fn(DVec3) -> DVec3) -> DVec3 {
         self.integrate(|direction| {
             let cosine = normal.dot(direction);
@@ -93,7 +93,7 @@ impl SphereQuadrature {
     }
 }
 
-/// Irradiance of a horizontal plane looking up, by 64 × 128 nodes: lux for a radiance in cd/m².
+/// Irradiance of a horizontal plane that faces up, by 64 × 128 nodes: lux for a radiance in cd/m².
 ///
 /// Within 1e-4 of 512 × 1024 nodes for the skies of this crate.
 pub fn horizontal_irradiance(radiance: impl Fn(DVec3) -> DVec3) -> DVec3 {

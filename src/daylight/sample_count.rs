@@ -1,7 +1,7 @@
-//! The samples of the device's irradiance map, and how many of them an error needs.
+//! The samples of the device's irradiance map, and how many are needed for a given error.
 //!
-//! [`filtered_samples`] is the table that the shader reads for `quasi`. [`ErrorEstimate`] applies it with the lookups of the
-//! device's sampler (trilinear, in a cube of 64 texels instead of the device's), in milliseconds on the CPU.
+//! [`filtered_samples`] is the table that the shader reads for `quasi`. [`ErrorEstimate`] evaluates it on the CPU, in
+//! milliseconds, with lookups like those of the device's sampler (trilinear, but in a cube of 64 texels).
 
 use std::f64::consts::PI;
 
@@ -14,21 +14,21 @@ use super::quadrature::SphereQuadrature;
 use super::sampling::{cosine_hemisphere, hammersley};
 use super::tangent_frame;
 
-/// Edge of the coarsest mip level that is looked up, texels: coarser ones leak light across the horizon and no longer lower
-/// the error.
+/// Edge of the coarsest mip level used for lookups, texels: coarser ones leak light across the horizon without reducing the
+/// error.
 const COARSEST_EDGE: f64 = 8.0;
-/// Edge of the cube on which errors are estimated, texels.
+/// Edge of the cube for error estimates, texels.
 const ESTIMATE_EDGE: usize = 64;
-/// Subtracted from the mip level of a sample's solid angle, since bilinear filtering widens the lookup. Chosen, with
-/// [`MIN_COSINE`], for the least error on the reference normals and skies: 0.10 % with 1024 samples, 0.12 % without both.
+/// Subtracted from the mip level of a sample's solid angle, since bilinear filtering widens the lookup. Together with
+/// [`MIN_COSINE`], chosen for the least error on the reference normals and skies: 0.10 % with 1024 samples, 0.12 % without both.
 const LEVEL_BIAS: f64 = 0.125;
-/// Least cosine in a sample's solid angle, that of 45°: toward the horizon of the normal the samples grow, and wider lookups
-/// around an upward normal would mix the ground into the brightest part of a low sun's sky.
+/// Lower limit of the cosine in a sample's solid angle, that of 45°. Without it samples grow toward the normal's horizon, and
+/// for an upward normal their wide lookups mix the ground into the brightest part of a low sun's sky.
 const MIN_COSINE: f64 = 0.7;
-/// Least number of samples; fewer do not pay for a pass.
+/// Least number of samples; fewer are not worth a pass.
 const MIN_SAMPLES: u32 = 32;
 
-/// A sample direction around +Z with its solid angle.
+/// A sample direction about +Z with its solid angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilteredSample {
     /// Unit direction, cosine-weighted.
@@ -38,8 +38,8 @@ pub struct FilteredSample {
 }
 
 impl FilteredSample {
-    /// Křivánek & Colbert 2008, *Real-time Shading with Filtered Importance Sampling*, eq. 12: the mip level of a cube of
-    /// `edge` texels whose texels have the solid angle of the sample.
+    /// Křivánek & Colbert 2008, *Real-time Shading with Filtered Importance Sampling*, eq. 12: the mip level at which a texel of a
+    /// cube with `edge` texels has the sample's solid angle.
     pub fn level(&self, edge: u32) -> f64 {
         let texel = 4.0 * PI / (6.0 * f64::from(edge) * f64::from(edge));
         let coarsest = (f64::from(edge) / COARSEST_EDGE).log2().max(0.0);
@@ -63,7 +63,7 @@ pub fn filtered_samples(count: u32) -> Vec<FilteredSample> {
     (0..count).map(sample).collect()
 }
 
-/// The largest number below 0.618 `count` that is coprime to it, so that its multiples visit every index.
+/// The largest number below 0.618 `count` that is coprime to it: its multiples visit every index.
 fn golden_stride(count: u32) -> u32 {
     let divisor = |mut a: u32, mut b: u32| {
         while b != 0 {
@@ -78,7 +78,7 @@ fn golden_stride(count: u32) -> u32 {
         .unwrap_or(1)
 }
 
-/// The 26 directions of a cube's faces, edges and corners.
+/// The 26 directions to a cube's faces, edges and corners.
 pub fn normals() -> impl Iterator<Item = DVec3> {
     let steps = || [-1.0, 0.0, 1.0].into_iter();
     steps()
@@ -86,10 +86,10 @@ pub fn normals() -> impl Iterator<Item = DVec3> {
         .filter_map(DVec3::try_normalize)
 }
 
-/// Error of the sampled irradiance of one sky, by number of samples.
+/// Error of the sampled irradiance of one sky, as a function of the number of samples.
 pub struct ErrorEstimate {
     levels: Vec<CubeMap>,
-    /// Normals with E, lux.
+    /// Normals with their E, lux.
     exact: Vec<(DVec3, f64)>,
     /// Mean over the normals of the variance of π L, lux².
     variance: f64,
@@ -97,7 +97,7 @@ pub struct ErrorEstimate {
 }
 
 impl ErrorEstimate {
-    /// Prepares a radiance, cd/m² in a unit direction.
+    /// Prepares a radiance function (unit direction to cd/m²).
     pub fn new(radiance: impl Fn(DVec3) -> DVec3) -> Self {
         let mut levels = vec![CubeMap::from_fn(ESTIMATE_EDGE, &radiance)];
         while let Some(last) = levels.last().filter(|map| map.size() > 4) {
@@ -130,7 +130,7 @@ impl ErrorEstimate {
         }
     }
 
-    /// rms error over the normals of `count` filtered samples, relative to E of the up normal.
+    /// rms error over the normals with `count` filtered samples, relative to E of the up normal.
     pub fn quasi_error(&self, count: u32) -> f64 {
         let samples = filtered_samples(count);
         let square = |&(normal, exact): &(DVec3, f64)| {
@@ -141,13 +141,13 @@ impl ErrorEstimate {
         mean.sqrt() / self.up
     }
 
-    /// Expected rms error over the normals of `count` random samples, relative to E of the up normal: σ/√N.
+    /// Expected rms error over the normals with `count` random samples, relative to E of the up normal: σ/√N.
     pub fn monte_carlo_error(&self, count: u32) -> f64 {
         (self.variance / f64::from(count)).sqrt() / self.up
     }
 
-    /// Least number of samples, a power of two or `most`, whose error (relative to E of the up normal) is at most `error`; 1
-    /// for methods that do not sample.
+    /// Least number of samples (a power of two, or `most`) whose error, relative to E of the up normal, is at most `error`; 1 for
+    /// methods that do not sample.
     pub fn samples(&self, method: IrradianceMethod, error: f64, most: u32) -> u32 {
         let enough = |count: u32| match method {
             IrradianceMethod::MonteCarlo => self.monte_carlo_error(count) <= error,
@@ -192,12 +192,12 @@ mod tests {
         for count in [64, 100, 1024] {
             let samples = filtered_samples(count);
             assert_eq!(samples.len(), count as usize);
-            // Away from the horizon the solid angle times the cosine is π/N.
+            // Away from the horizon, solid angle times cosine is π/N.
             let expected = PI / f64::from(count);
             for sample in samples.iter().filter(|s| s.direction.z > MIN_COSINE) {
                 assert!((sample.solid_angle * sample.direction.z - expected).abs() < 1e-12);
             }
-            // The first quarter, too, is centred.
+            // The first quarter is centred as well.
             let quarter = &samples[..samples.len() / 4];
             let mean = quarter.iter().map(|s| s.direction).sum::<DVec3>() / quarter.len() as f64;
             assert!(mean.truncate().length() < 0.1, "{mean}");

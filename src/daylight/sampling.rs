@@ -1,6 +1,6 @@
 //! Points and directions: the course framework's random numbers, low-discrepancy points, warps.
 //!
-//! The integer functions are exact twins of what a shader does: same bits, same order.
+//! The integer functions match the shader's bit for bit.
 
 use std::f64::consts::PI;
 
@@ -26,7 +26,7 @@ pub fn tea<const ROUNDS: u32>(mut v0: u32, mut v1: u32) -> u32 {
     v0
 }
 
-/// Numerical Recipes' linear congruential generator: steps `state`, returns its low 24 bits.
+/// Linear congruential generator of Numerical Recipes: advances `state`, returns its low 24 bits.
 pub fn lcg(state: &mut u32) -> u32 {
     *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
     *state & 0x00ff_ffff
@@ -70,8 +70,8 @@ pub fn sobol(index: u32) -> DVec2 {
     DVec2::new(radical_inverse(index), f64::from(bits) / 2f64.powi(32))
 }
 
-/// Laine & Karras 2011, "Stratified Sampling for Stochastic Transparency": nested uniform scrambling of bits, each flipped or not
-/// by those above it (Owen 1995); the multipliers are those of Burley 2020, "Practical Hash-based Owen Scrambling".
+/// Laine & Karras 2011, "Stratified Sampling for Stochastic Transparency": nested uniform scrambling, which flips each bit
+/// depending on the bits above it (Owen 1995); multipliers of Burley 2020, "Practical Hash-based Owen Scrambling".
 fn scrambled(bits: u32, seed: u32) -> u32 {
     let mut v = bits.reverse_bits();
     v ^= v.wrapping_mul(0x3d20_adea);
@@ -82,10 +82,10 @@ fn scrambled(bits: u32, seed: u32) -> u32 {
     v.reverse_bits()
 }
 
-/// Point `index` of [`sobol`], scrambled by `seed`: every seed has other points of the same spread, and two seeds have no
-/// relation to each other, nor to [`r2`].
+/// Point `index` of [`sobol`], scrambled by `seed`. Every seed gives different points with the same uniformity, independent of
+/// those of other seeds and of [`r2`].
 pub fn scrambled_sobol(index: u32, seed: u32) -> DVec2 {
-    // Numbers of at most 32 bits: the casts lose nothing.
+    // At most 32 bits, so the casts are exact.
     let bits = (sobol(index) * 2f64.powi(32)).to_array().map(|v| v as u32);
     let seeds = [tea::<4>(seed, 0), tea::<4>(seed, 1)];
     DVec2::new(
@@ -94,13 +94,13 @@ pub fn scrambled_sobol(index: u32, seed: u32) -> DVec2 {
     )
 }
 
-/// Multiples of √2 and √3 (Richtmyer 1951), point `index` in [0, 1)²: less even than [`r2`], and not in step with it.
+/// Multiples of √2 and √3 (Richtmyer 1951), point `index` in [0, 1)²: less uniform than [`r2`], but not correlated with it.
 pub fn richtmyer(index: u32) -> DVec2 {
     let roots = DVec2::new(std::f64::consts::SQRT_2, 3f64.sqrt());
     (DVec2::splat(0.5) + f64::from(index) * roots).fract()
 }
 
-/// Cranley & Patterson 1976: a point set shifted on the torus, so that texels can differ without losing its spread.
+/// Cranley & Patterson 1976: shifts a point set on the torus, so that texels differ while uniformity is kept.
 pub fn rotate(point: DVec2, shift: DVec2) -> DVec2 {
     (point + shift).fract()
 }
@@ -196,7 +196,7 @@ mod tests {
         assert_ne!(scrambled_sobol(5, 0), scrambled_sobol(5, 1));
     }
 
-    /// Spread of the numbers of pairs of points of two sequences in cells of 8x8x8x8, against what chance would have.
+    /// Variance of the counts of point pairs of two sequences in 8x8x8x8 cells, relative to that of independent points.
     fn dependence(a: &dyn Fn(u32) -> DVec2, b: &dyn Fn(u32) -> DVec2) -> f64 {
         const CELLS: usize = 4096;
         let mut counts = vec![0u32; CELLS];
@@ -204,9 +204,9 @@ mod tests {
             let cell = |p: DVec2| (p.x * 8.0) as usize * 8 + (p.y * 8.0) as usize;
             counts[cell(a(i)) * 64 + cell(b(i))] += 1;
         }
-        // Each count should be 16.
+        // The expected count is 16.
         let squares: f64 = counts.iter().map(|n| (f64::from(*n) - 16.0).powi(2)).sum();
-        // Of independent points this is the variance of a count, 16.
+        // For independent points the variance of a count is 16.
         squares / CELLS as f64 / 16.0
     }
 

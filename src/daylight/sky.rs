@@ -1,9 +1,9 @@
-//! A daylight: sun, sky and ground of one moment; finite and not negative for any input.
+//! A daylight: sun, sky and ground at one moment; finite and not negative for any input.
 //!
-//! The models hold for a sun above the horizon and a range of turbidities. [`Daylight::new`] keeps them within that range by
-//! the numbers of [`Guard`], which a shader applies in the same way:
+//! The models are valid for a sun above the horizon and a range of turbidities. [`Daylight::new`] keeps them within that range
+//! with the numbers of [`Guard`], which a shader applies in the same way:
 //!
-//! sky = clip(model(direction, guard.sun_direction)) · guard.scale + guard.night, clip being [`colour::clip_negative`].
+//! sky = clip(model(direction, guard.sun_direction)) · guard.scale + guard.night, where clip is [`colour::clip_negative`].
 
 use std::f64::consts::PI;
 
@@ -17,7 +17,7 @@ use super::quadrature::horizontal_irradiance;
 use super::sun_position::direction;
 use super::sunlight::{Sunlight, visible_fraction};
 
-/// Luminance of the sky at night without moon and town, cd/m²: 252 µcd/m² of airglow and stars
+/// Luminance of the night sky without moon and light pollution, cd/m²: 252 µcd/m² of airglow and stars
 /// (Cinzano, Falchi & Elvidge 2001).
 pub const NIGHT_LUMINANCE: f64 = 2.52e-4;
 
@@ -41,7 +41,7 @@ pub enum SkyModel {
 }
 
 impl SkyModel {
-    /// Turbidities for which the model (or, where it has none, the sun's spectrum) holds.
+    /// Turbidities for which the model (or the sun's spectrum, if the model has no turbidity) is valid.
     pub fn turbidity_range(self) -> (f64, f64) {
         match self {
             Self::Preetham => preetham::TURBIDITY_RANGE,
@@ -50,26 +50,26 @@ impl SkyModel {
     }
 }
 
-/// What determines a daylight.
+/// Parameters of a daylight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
-    /// The sky's model.
+    /// Model of the sky.
     pub model: SkyModel,
     /// Turbidity T: 2 very clear, 3 clear, 6 hazy, 10 murky. Clamped to [`SkyModel::turbidity_range`].
     pub turbidity: f64,
-    /// Diffuse reflectance of the ground, 0..=1. 0: black below the horizon.
+    /// Diffuse reflectance of the ground, 0..=1; 0 is black below the horizon.
     pub ground_albedo: f64,
     /// Azimuth of the sun, degrees clockwise from north.
     pub sun_azimuth_deg: f64,
     /// Apparent elevation of the sun's centre, degrees in -90..=90.
     pub sun_elevation_deg: f64,
-    /// Horizontal diffuse illuminance of the sky, lux, to which the sky is scaled; `None`: the model's own (for the
-    /// CIE skies [`daylight_availability`]). A measured value is used as it is: no twilight fade.
+    /// Horizontal diffuse illuminance to which the sky is scaled, lux. `None` uses the model's own (for the CIE skies
+    /// [`daylight_availability`]). A measured value is used unchanged, without twilight fade.
     pub horizontal_illuminance: Option<f64>,
 }
 
 impl Default for Conditions {
-    /// Preetham, turbidity 3, albedo 0.2, the sun at 45° in the south.
+    /// Preetham, turbidity 3, albedo 0.2, sun in the south at 45°.
     fn default() -> Self {
         Self {
             model: SkyModel::default(),
@@ -82,7 +82,7 @@ impl Default for Conditions {
     }
 }
 
-/// A sky model with its coefficients evaluated.
+/// A sky model with evaluated coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sky {
     /// See [`Preetham`].
@@ -107,41 +107,41 @@ impl Sky {
     }
 }
 
-/// How a model is used outside of its range: sky = clip(model) · `scale` + `night`.
+/// Extends a model beyond its valid range: sky = clip(model) · `scale` + `night`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guard {
-    /// Unit vector toward the sun for which the model is evaluated: the sun's, or on the horizon above a sun that has set.
+    /// Unit vector toward the sun for evaluating the model: the sun's own, or on the horizon above a sun that has set.
     pub sun_direction: DVec3,
-    /// Factor on the model's radiance: 1 by day, falling with [`twilight_illuminance`] in twilight; with a given horizontal
+    /// Factor on the model's radiance: 1 by day, falling with [`twilight_illuminance`] in twilight. With a given horizontal
     /// illuminance, the ratio of that to the model's.
     pub scale: f64,
-    /// Radiance added, linear BT.709 RGB, cd/m²: 0 by day, [`NIGHT_LUMINANCE`] (white) after twilight, (1 - `scale`) of it in between.
+    /// Added radiance, linear BT.709 RGB, cd/m²: 0 by day, [`NIGHT_LUMINANCE`] (white) after twilight, (1 - `scale`) of it between.
     pub night: DVec3,
 }
 
-/// Sun, sky and ground of one moment. Every number is finite and none is negative.
+/// Sun, sky and ground at one moment. Every number is finite and none is negative.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Daylight {
-    /// Unit vector toward the sun's centre, also below the horizon.
+    /// Unit vector toward the sun's centre, which may be below the horizon.
     pub sun_direction: DVec3,
-    /// Illuminance of the sun at normal incidence, linear BT.709 RGB, lux; 0 when its disc has set.
+    /// Illuminance of the sun at normal incidence, linear BT.709 RGB, lux; 0 once its disc has set.
     pub sun_illuminance: DVec3,
-    /// Luminance of the sun's disc, linear BT.709 RGB, cd/m²; 0 when it has set entirely.
+    /// Luminance of the sun's disc, linear BT.709 RGB, cd/m²; 0 once it has set entirely.
     pub sun_luminance: DVec3,
-    /// The sky's model.
+    /// Model of the sky.
     pub sky: Sky,
-    /// How the model is used outside of its range.
+    /// Parameters that extend the model beyond its valid range.
     pub guard: Guard,
-    /// Illuminance of the sky on a horizontal plane looking up, linear BT.709 RGB, lux.
+    /// Illuminance of the sky on a horizontal plane that faces up, linear BT.709 RGB, lux.
     pub sky_irradiance_up: DVec3,
     /// Radiance of everything below the horizon, linear BT.709 RGB, cd/m²: albedo/π (E_sun sin el + E_sky).
     pub ground_luminance: DVec3,
-    /// Changes that were made to the conditions, one sentence each.
+    /// Corrections of the conditions, one sentence each.
     pub warnings: Vec<String>,
 }
 
 impl Daylight {
-    /// The daylight of `conditions`. Values out of range are replaced and named in `warnings`.
+    /// The daylight of `conditions`. Values out of range are replaced; `warnings` lists them.
     pub fn new(conditions: &Conditions) -> Self {
         let mut warnings = Vec::new();
         let valid = validated(conditions, &mut warnings);
@@ -164,7 +164,7 @@ impl Daylight {
         }
     }
 
-    /// Radiance in the unit direction `dir`, linear BT.709 RGB, cd/m²: the sky without the sun's disc, and the ground below.
+    /// Radiance in the unit direction `dir`, linear BT.709 RGB, cd/m²: sky without the sun's disc, ground below the horizon.
     pub fn radiance(&self, dir: DVec3) -> DVec3 {
         if dir.y < 0.0 {
             self.ground_luminance
@@ -173,7 +173,7 @@ impl Daylight {
         }
     }
 
-    /// Radiance of the sky alone, cd/m²: black below the horizon.
+    /// Radiance of the sky alone, linear BT.709 RGB, cd/m²; black below the horizon.
     pub fn sky_radiance(&self, dir: DVec3) -> DVec3 {
         if dir.y < 0.0 {
             DVec3::ZERO
@@ -187,7 +187,7 @@ fn guarded(sky: &Sky, guard: &Guard, dir: DVec3) -> DVec3 {
     colour::clip_negative(sky.radiance(dir)) * guard.scale + guard.night
 }
 
-/// Illuminance (lux) and luminance (cd/m²) of the sun, in gamut; the illuminance fades as the disc sets.
+/// Illuminance (lux) and luminance (cd/m²) of the sun, in gamut; the illuminance fades while the disc sets.
 fn sun(valid: &Conditions) -> (DVec3, DVec3) {
     let visible = visible_fraction(valid.sun_elevation_deg);
     if valid.model == SkyModel::Overcast || visible == 0.0 {
@@ -240,11 +240,11 @@ fn guard_of(valid: &Conditions, sky: &Sky, sun_direction: DVec3) -> Guard {
     }
 }
 
-/// Horizontal illuminance, lux, of a clear sky with the sun at `elevation_deg` (-90..=0) below the horizon.
+/// Horizontal illuminance of a clear sky, lux, with the sun at `elevation_deg` (-90..=0).
 ///
-/// Starts from `sunset_lux` (above 0), the model's own with the sun on the horizon, and passes through
-/// [`TWILIGHT_LUX`]; in between its logarithm is linear, and below -18° it goes on falling. Continuous and
-/// monotonic. Overcast skies use the same values; there are no measured ones.
+/// Starts at `sunset_lux` (above 0), the model's value with the sun on the horizon, and passes through [`TWILIGHT_LUX`]; the
+/// logarithm is linear in between, and keeps falling below -18°. Continuous and monotonic. Overcast skies use the same values,
+/// since no measured ones are known.
 pub fn twilight_illuminance(elevation_deg: f64, sunset_lux: f64) -> f64 {
     let [civil, nautical, astronomical] = TWILIGHT_LUX;
     let lux = [sunset_lux, civil, nautical, astronomical];
@@ -322,7 +322,7 @@ mod tests {
         }
     }
 
-    /// Counts the values it has seen; every one must be finite and not negative.
+    /// Counts the values it is given; each one must be finite and not negative.
     #[derive(Default)]
     struct Seen(usize);
 

@@ -1,6 +1,6 @@
 //! Importance sampling of the sky: directional lights drawn with a density proportional to luminance.
 //!
-//! ∫ V L cos dω ≈ 1/n Σ V(ω_i) cos θ_i L(ω_i)/p(ω_i). p is proportional to the luminance, so all lights have nearly equal
+//! ∫ V L cos dω ≈ 1/n Σ V(ω_i) cos θ_i L(ω_i)/p(ω_i). Since p is proportional to the luminance, all lights have nearly the same
 //! luminance, and L/p keeps the colour.
 
 use std::f64::consts::{PI, TAU};
@@ -11,9 +11,9 @@ use super::colour::luminance;
 use super::sampling;
 use super::sky::Daylight;
 
-/// Rows of the table, of equal steps in the sine of the elevation: all cells have the same solid angle.
+/// Rows of the table, in equal steps of the sine of the elevation, so that all cells have the same solid angle.
 const ROWS: usize = 64;
-/// Columns, of equal steps in azimuth.
+/// Columns of the table, in equal steps of azimuth.
 const COLUMNS: usize = 256;
 /// Solid angle of a cell, sr.
 const CELL: f64 = TAU / (ROWS * COLUMNS) as f64;
@@ -29,17 +29,17 @@ pub struct DomeLight {
 
 /// Draws directions of the upper hemisphere with a density proportional to the sky's luminance.
 ///
-/// The density is constant in each cell of a table, and L is evaluated at the direction itself, so the estimate has no bias.
+/// The density is constant in each cell of a table, but L is evaluated at the direction itself, so the estimate is unbiased.
 #[derive(Clone, Debug)]
 pub struct SkySampler {
-    /// Cumulative distribution over the rows, from the horizon; the last is 1.
+    /// Cumulative distribution over the rows, upward from the horizon; the last value is 1.
     rows: Vec<f64>,
     /// Cumulative distribution within each row.
     columns: Vec<Vec<f64>>,
 }
 
 impl SkySampler {
-    /// The table of a daylight.
+    /// Tabulates the luminance of a daylight's sky.
     pub fn new(daylight: &Daylight) -> Self {
         let cell = |row: usize, column: usize| {
             let at = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
@@ -55,7 +55,7 @@ impl SkySampler {
         }
     }
 
-    /// The light of a point in [0, 1)².
+    /// The light sampled by a point in [0, 1)².
     pub fn light(&self, daylight: &Daylight, xi: DVec2) -> DomeLight {
         let (row, y, row_share) = invert(&self.rows, xi.y);
         let (column, x, column_share) = invert(&self.columns[row], xi.x);
@@ -68,7 +68,7 @@ impl SkySampler {
     }
 }
 
-/// The light of the ground of a point in [0, 1)²: directions of uniform density in the lower hemisphere.
+/// The ground light sampled by a point in [0, 1)²: directions are uniform in the lower hemisphere.
 pub fn ground_light(daylight: &Daylight, xi: DVec2) -> DomeLight {
     let up = sampling::uniform_sphere(DVec2::new(0.5 * xi.x, xi.y));
     DomeLight {
@@ -82,7 +82,7 @@ pub fn ground_irradiance(daylight: &Daylight, normal: DVec3) -> DVec3 {
     daylight.ground_luminance * (0.5 * PI * (1.0 - normal.y))
 }
 
-/// Unit direction of a point of the table: x in columns, y in rows.
+/// Unit direction of a table position: x in columns, y in rows.
 fn toward(at: DVec2) -> DVec3 {
     let sine = at.y / ROWS as f64;
     let cosine = (1.0 - sine * sine).max(0.0).sqrt();
@@ -90,7 +90,7 @@ fn toward(at: DVec2) -> DVec3 {
     DVec3::new(s * cosine, sine, -c * cosine)
 }
 
-/// Cumulative distribution of `values`; uniform where they sum to 0.
+/// Cumulative distribution of `values`; uniform if they sum to 0.
 fn cumulative(values: &[f64]) -> Vec<f64> {
     let total: f64 = values.iter().sum();
     let share = |v: &f64| {

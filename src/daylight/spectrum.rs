@@ -15,7 +15,7 @@ pub const LUMINOUS_EFFICACY: f64 = 683.0;
 /// The wavelengths of the colour-matching functions, nm.
 pub const CIE_RANGE_NM: RangeInclusive<u32> = 360..=830;
 
-/// A spectrum known at nodes: linear in between, zero outside. Nodes are (wavelength in nm, value), ascending.
+/// A spectrum tabulated at nodes: linear in between, zero outside. Nodes are (wavelength in nm, value), ascending.
 #[derive(Clone, Copy, Debug)]
 pub struct TabulatedSpectrum(pub &'static [(f64, f64)]);
 
@@ -40,7 +40,7 @@ pub fn cie_1931_2deg(nm: f64) -> DVec3 {
     }
     let row = (nm - first).floor().min(last - first - 1.0);
     let at = |i: usize| DVec3::from_array(CIE_1931_2DEG[i]);
-    // `row` is a whole number in 0..=469.
+    // `row` is an integer in 0..=469.
     at(row as usize).lerp(at(row as usize + 1), nm - first - row)
 }
 
@@ -66,7 +66,7 @@ pub fn integral(range: RangeInclusive<u32>, spectrum: impl Fn(f64) -> f64) -> f6
 
 /// Planck 1901: spectral radiance of a black body of `kelvin` at `nm`, W m⁻² nm⁻¹ sr⁻¹.
 pub fn planck(kelvin: f64, nm: f64) -> f64 {
-    // Exact constants of the SI (CODATA 2018): h, c, k.
+    // Exact SI constants (CODATA 2018): h, c, k.
     const H: f64 = 6.626_070_15e-34;
     const C: f64 = 299_792_458.0;
     const K: f64 = 1.380_649e-23;
@@ -82,7 +82,7 @@ pub fn xyz_of_black_body(kelvin: f64) -> DVec3 {
 
 /// CIE 15:2004, 3.1: relative spectral power of the daylight phase of chromaticity (x, y) at `nm` (100 at 560 nm).
 ///
-/// S = S0 + M1 S1 + M2 S2. Preetham et al. 1999, A.5 turns the sky's chromaticity into a spectrum with it.
+/// S = S0 + M1 S1 + M2 S2. Preetham et al. 1999, A.5 converts the sky's chromaticity to a spectrum with it.
 pub fn daylight_phase(x: f64, y: f64, nm: f64) -> f64 {
     let (m1, m2) = daylight_weights(x, y);
     let [s0, s1, s2] = daylight_components(nm);
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn illuminant_a_has_its_published_chromaticity() {
-        // CIE 15: Planck with c2 = 1.4350e-2 m K at 2848 K, which is 2855.5 K on today's scale.
+        // CIE 15: Planck's law with c2 = 1.4350e-2 m K at 2848 K, equivalent to 2855.5 K with today's c2.
         let [x, y] = colour::chromaticity(xyz_of_black_body(2848.0 * 1.438_776_877 / 1.435));
         assert!(
             (x - 0.447_58).abs() < 1e-4 && (y - 0.407_45).abs() < 1e-4,

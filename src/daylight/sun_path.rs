@@ -1,7 +1,7 @@
-//! Sun-path diagrams: the sun's paths over the sky of a place.
+//! Sun-path diagrams: the sun's paths across the sky of a place.
 //!
-//! Directions are unit vectors in world space toward the sun as an [`Observer`] sees it. Lines are clipped at the horizon by
-//! the sun's centre: a calendar day on which the sun sets and rises again has two.
+//! Directions are unit vectors in world space toward the sun as an [`Observer`] sees it. Lines are clipped where the sun's centre
+//! crosses the horizon: a calendar day on which the sun sets and then rises has two.
 
 use chrono::{DateTime, Datelike, Duration, FixedOffset, NaiveDate, TimeZone, Timelike, Utc};
 use glam::DVec3;
@@ -11,19 +11,19 @@ use super::sun_position::{
     sun_events,
 };
 
-/// Time between two points of a line, minutes: at most 2.5°, where the chord is 0.014° off the arc.
+/// Time step between points of a line, minutes: at most 2.5°, where the chord deviates 0.014° from the arc.
 const STEP_MINUTES: i64 = 10;
-/// Bisections of a step to find the horizon: to a thousandth of a second.
+/// Bisections of a step to find the horizon crossing: to a thousandth of a second.
 const HALVINGS: usize = 20;
-/// Half of the interval in which a season's start is searched, hours around the 21st.
+/// Half of the interval searched for a season's start, hours around the 21st.
 const SEASON_HOURS: i64 = 8 * 24;
-/// Horizontal parallax of the sun: how much lower it stands from the pole than from the earth's centre, degrees.
+/// Horizontal parallax of the sun, degrees: how much lower it appears from the pole than from the earth's centre.
 const PARALLAX_DEG: f64 = 8.794 / 3600.0;
 
 /// Directions along a path of the sun.
 pub type Line = Vec<DVec3>;
 
-/// A place, and how the sun's position is computed there.
+/// A place and a method for the sun's position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observer {
     /// Degrees, positive north, ±90.
@@ -54,7 +54,7 @@ impl Observer {
         }
     }
 
-    /// The sun's path on the calendar day `date` at the UTC offset `offset`, from midnight to midnight.
+    /// The sun's path on the calendar day `date`, from midnight to midnight at the UTC offset `offset`.
     ///
     /// # Errors
     /// As [`Observer::sun`].
@@ -65,7 +65,7 @@ impl Observer {
         self.above_horizon(moments)
     }
 
-    /// The analemma: the sun at `hour` (0..24) at the UTC offset `offset` over the days of `year`.
+    /// The analemma: the sun at `hour` (0..24), at the UTC offset `offset`, on the days of `year`.
     ///
     /// # Errors
     /// As [`Observer::sun`].
@@ -76,14 +76,14 @@ impl Observer {
         hour: u32,
     ) -> Result<Vec<Line>, SunPositionError> {
         let first = at_hour(date(year, 1, 1)?, offset, hour)?;
-        // Closed: the last is a year after the first.
+        // Closed: the last point is a year after the first.
         let moments = (0..=73)
             .map(|step| first + Duration::minutes((365.2422 * 1440.0 / 73.0) as i64 * step))
             .map(|moment| moment + Duration::minutes(to_the_hour(moment, hour)));
         self.above_horizon(moments)
     }
 
-    /// The full hours of `date` at the UTC offset `offset` at which the sun is up.
+    /// The full hours of `date`, at the UTC offset `offset`, when the sun is up.
     ///
     /// # Errors
     /// As [`Observer::sun`].
@@ -130,7 +130,7 @@ impl Observer {
         Ok(lines)
     }
 
-    /// The direction on the horizon, by bisection between a moment with the sun up and one with it down.
+    /// The direction at the horizon, by bisection between a moment with the sun up and one with it down.
     fn crossing(
         &self,
         mut up: DateTime<FixedOffset>,
@@ -148,7 +148,7 @@ impl Observer {
     }
 }
 
-/// A full hour on a path of the sun.
+/// A full hour on the sun's path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HourMark {
     /// The moment, at the UTC offset of the diagram.
@@ -158,33 +158,33 @@ pub struct HourMark {
 }
 
 impl HourMark {
-    /// The text at the mark: the hour, 0 to 23.
+    /// Label of the mark: the hour, 0 to 23.
     pub fn label(&self) -> String {
         self.when.hour().to_string()
     }
 }
 
-/// Everything that a sun-path diagram of a place draws, for one day.
+/// The contents of a place's sun-path diagram for one day.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SunPath {
     /// The path of the day.
     pub day: Vec<Line>,
-    /// The path at the June solstice of that year.
+    /// The path on the June solstice of that year.
     pub june_solstice: Vec<Line>,
-    /// The path at its March equinox.
+    /// The path on the March equinox of that year.
     pub equinox: Vec<Line>,
-    /// The path at its December solstice.
+    /// The path on the December solstice of that year.
     pub december_solstice: Vec<Line>,
     /// The full hours of the day.
     pub hours: Vec<HourMark>,
     /// Sunrise, solar noon and sunset of the day.
     pub events: SunEvents,
-    /// Whether that day is polar day or night.
+    /// Polar day or night, if that day is one.
     pub polar: Option<Polar>,
 }
 
 impl SunPath {
-    /// The diagram of the calendar day of `when` at its own UTC offset.
+    /// The diagram for the calendar day of `when`, at its UTC offset.
     ///
     /// # Errors
     /// As [`Observer::sun`].
@@ -208,22 +208,22 @@ impl SunPath {
     }
 }
 
-/// Equinox and solstices of a year, within a quarter of an hour.
+/// Equinox and solstices of a year, accurate to a quarter of an hour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seasons {
-    /// The sun crosses the equator northward.
+    /// The sun crosses the equator northward (UTC).
     pub march_equinox: DateTime<Utc>,
-    /// The sun is farthest north.
+    /// The sun is farthest north (UTC).
     pub june_solstice: DateTime<Utc>,
-    /// The sun is farthest south.
+    /// The sun is farthest south (UTC).
     pub december_solstice: DateTime<Utc>,
 }
 
 impl Seasons {
-    /// Of a year in [`YEARS`].
+    /// The seasons of a year.
     ///
     /// # Errors
-    /// Another year.
+    /// The year is outside [`YEARS`].
     pub fn of(year: i32) -> Result<Self, SunPositionError> {
         Ok(Self {
             march_equinox: turning(year, 3, |when| Ok(declination(when)? + PARALLAX_DEG >= 0.0))?,
@@ -243,7 +243,7 @@ fn hourly_change(when: DateTime<Utc>) -> Result<f64, SunPositionError> {
     Ok(declination(when + half)? - declination(when - half)?)
 }
 
-/// The first moment around the 21st of `month` at which `over` holds, by bisection.
+/// The first moment around the 21st of `month` when `over` holds, by bisection.
 fn turning(
     year: i32,
     month: u32,
@@ -263,7 +263,7 @@ fn turning(
     Ok(usual + Duration::minutes(after))
 }
 
-/// `hour` o'clock of a date. Checks the year, so that adding days to the result cannot overflow.
+/// `hour` o'clock on a date. Checks the year, so that adding days to the result cannot overflow.
 fn at_hour(
     date: NaiveDate,
     offset: FixedOffset,
@@ -286,7 +286,7 @@ fn date(year: i32, month: u32, day: u32) -> Result<NaiveDate, SunPositionError> 
         .ok_or(SunPositionError::Year(year))
 }
 
-/// Minutes from `moment` to the nearest time when its clock shows `hour`.
+/// Minutes from `moment` to the nearest time at which its clock shows `hour`.
 fn to_the_hour(moment: DateTime<FixedOffset>, hour: u32) -> i64 {
     let minutes = i64::from(hour * 60) - i64::from(moment.hour() * 60 + moment.minute());
     (minutes + 720).rem_euclid(1440) - 720
@@ -348,7 +348,7 @@ mod tests {
             println!("{latitude}: rises {east:.2}°, sets {west:.2}°");
             assert!((east - 90.0).abs() < 1.0 && (west - 270.0).abs() < 1.0);
             assert!(elevation(rise).abs() < 1e-4 && elevation(set).abs() < 1e-4);
-            // Lifted by the air it is up earlier, so the way is no shorter.
+            // Refraction makes the sun rise earlier, so the path is no shorter.
             let lifted = observer(latitude, 12.5).day(when.date_naive(), *when.offset());
             assert!(lifted.unwrap()[0].len() >= path.day[0].len());
         }
@@ -368,7 +368,7 @@ mod tests {
             (&path.december_solstice, -23.436),
         ] {
             let expected = noon(tilt).apparent_elevation_deg;
-            // The equinox falls within half a day of noon: 0.2°.
+            // The equinox is within half a day of noon: 0.2°.
             let tolerance = if tilt == 0.0 { 0.2 } else { 0.02 };
             assert!((highest(lines) - expected).abs() < tolerance, "{tilt}");
         }
@@ -404,7 +404,7 @@ mod tests {
             .flat_map(|l| [l[0], l[l.len() - 1]])
             .map(elevation)
             .collect();
-        // Midnight of that clock, sunset, sunrise, midnight.
+        // Midnight at that offset, sunset, sunrise, midnight.
         assert!(ends[0] > 40.0 && ends[1].abs() < 1e-4 && ends[2].abs() < 1e-4 && ends[3] > 40.0);
     }
 

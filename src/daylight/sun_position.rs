@@ -1,16 +1,16 @@
-//! Where the sun is: from a place and a moment, by NREL's SPA or by the lecture's formulas.
+//! Position of the sun from a place and a moment, by NREL's SPA or by the lecture's formulas.
 //!
 //! Angles are degrees: latitude positive north, longitude positive east, azimuth clockwise from north.
 //! World: +Y up, +X east, -Z north.
 //!
-//! # The published slip
+//! # The error in the published formula
 //!
-//! The lecture's slide (and A.6 of Preetham et al. 1999, from which it comes) gives the azimuth as
+//! The lecture's slide (and its source, A.6 of Preetham et al. 1999) gives the azimuth as
 //! `arctan(-cos δ sin(πt/12) / (cos ℓ sin δ - sin ℓ cos δ cos(πt/12)))`. The first term of the denominator must be
-//! **negative**: as printed the formula mirrors the declination, so that a summer sunrise lands in the south-east
-//! (mean error over daytime 21°, worst 80°). Printed and corrected forms agree only at the equinoxes and
-//! on the meridian. And `arctan` of the quotient loses the quadrant: it takes `atan2`. [`lecture`] computes
-//! the corrected form; its φ counts from south toward west, so the azimuth is 180° + φ.
+//! **negative**: as printed, the formula mirrors the declination, so that a summer sunrise is in the south-east (mean error
+//! over daytime 21°, worst 80°). The printed and corrected forms agree only at the equinoxes and on the meridian. Also,
+//! `arctan` of the quotient loses the quadrant: it must be `atan2`. [`lecture`] computes the corrected form; its φ counts from
+//! south toward west, so the azimuth is 180° + φ.
 
 use chrono::{DateTime, Datelike, Duration, FixedOffset, NaiveDate, Timelike};
 use glam::DVec3;
@@ -18,13 +18,13 @@ use solar_positioning::{Horizon, Location, SolarEvents, SolarPositions, delta_t}
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
-/// Years in which the formulas hold: those of the estimates of ΔT.
+/// Years for which the formulas are valid: those of the ΔT estimates.
 pub const YEARS: RangeInclusive<i32> = -500..=3000;
 
-/// Air pressure in [`refraction_deg`], hPa.
+/// Air pressure for [`refraction_deg`], hPa.
 pub const PRESSURE_HPA: f64 = 1013.25;
 
-/// Air temperature in [`refraction_deg`], °C.
+/// Air temperature for [`refraction_deg`], °C.
 pub const TEMPERATURE_C: f64 = 12.0;
 
 /// Formulas of the sun's position.
@@ -59,13 +59,13 @@ impl SunPositionMethod {
     }
 }
 
-/// Why there is no sun position.
+/// Reasons why a sun position cannot be computed.
 #[derive(Debug, thiserror::Error)]
 pub enum SunPositionError {
-    /// Latitude outside ±90°, or not a number.
+    /// Latitude outside ±90°, or NaN.
     #[error("latitude {0} is not in -90..=90 degrees")]
     Latitude(f64),
-    /// Longitude outside ±180°, or not a number.
+    /// Longitude outside ±180°, or NaN.
     #[error("longitude {0} is not in -180..=180 degrees")]
     Longitude(f64),
     /// A year outside of [`YEARS`].
@@ -78,7 +78,7 @@ pub enum SunPositionError {
     Moment(#[from] solar_positioning::Error),
 }
 
-/// Where the sun's centre stands.
+/// Position of the sun's centre in the sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunPosition {
     /// Azimuth, degrees in 0..360, clockwise from north.
@@ -90,7 +90,7 @@ pub struct SunPosition {
 }
 
 impl SunPosition {
-    /// A position from azimuth and true elevation, degrees; the apparent elevation follows.
+    /// A position from azimuth and true elevation, degrees; derives the apparent elevation.
     pub fn from_true(azimuth_deg: f64, elevation_deg: f64) -> Self {
         Self {
             azimuth_deg: azimuth_deg.rem_euclid(360.0),
@@ -112,8 +112,8 @@ pub fn direction(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
     DVec3::new(sin_az * cos_el, sin_el, -cos_az * cos_el)
 }
 
-/// (azimuth in 0..360, elevation in -90..=90) in degrees of a vector; the inverse of [`direction`].
-/// The azimuth of straight up or down is 0.
+/// (azimuth in 0..360, elevation in -90..=90) of a vector, degrees; the inverse of [`direction`]. The azimuth of straight up or
+/// down is 0.
 pub fn azimuth_elevation(direction: DVec3) -> (f64, f64) {
     let horizontal = direction.x.hypot(direction.z);
     let azimuth = if horizontal > 0.0 {
@@ -129,8 +129,8 @@ pub fn azimuth_elevation(direction: DVec3) -> (f64, f64) {
 
 /// Reda & Andreas 2004, eq. 42 (Sæmundsson 1986): atmospheric refraction at 1013.25 hPa and 12 °C, degrees.
 ///
-/// SPA sets refraction to 0 when the upper limb has set (-0.8333°), a jump of 0.6°. Here it fades to 0 at -3° instead, so that
-/// an animated sunset has no jump; above -0.8333° the values are SPA's.
+/// SPA sets refraction to 0 once the upper limb has set (-0.8333°), a jump of 0.6°. Here it fades to 0 at -3°, so that an
+/// animated sunset has no jump; above -0.8333° the values are SPA's.
 pub fn refraction_deg(true_elevation_deg: f64) -> f64 {
     const CUTOFF: f64 = -(0.266_67 + 0.566_7);
     const GONE: f64 = -3.0;
@@ -145,10 +145,10 @@ pub fn refraction_deg(true_elevation_deg: f64) -> f64 {
 
 /// Reda & Andreas 2004: NREL's Solar Position Algorithm, by the crate `solar-positioning`, at sea level.
 ///
-/// Terrestrial time is UT plus an estimated ΔT (Espenak & Meeus). UTC stands for UT1: a leap second is the second after it.
+/// Terrestrial time is UT plus an estimated ΔT (Espenak & Meeus). UTC is used as UT1: a leap second counts as the next second.
 ///
 /// # Errors
-/// A place outside of the coordinates' ranges, a year outside of [`YEARS`].
+/// Coordinates out of range, or a year outside [`YEARS`].
 pub fn spa(
     when: DateTime<FixedOffset>,
     latitude: f64,
@@ -163,20 +163,20 @@ pub fn spa(
     ))
 }
 
-/// Estimated terrestrial time less universal time, seconds, in the month of a date.
+/// Estimate of ΔT, terrestrial minus universal time, seconds, for the month of a date.
 fn delta_t_s(date: NaiveDate) -> Result<f64, SunPositionError> {
     let year = date.year();
     if !YEARS.contains(&year) {
         return Err(SunPositionError::Year(year));
     }
-    // The polynomials end when the last year begins; until its end they grow by 10 s, in which the sun moves 0.0001°.
+    // The polynomials end at the start of the last year; by its end they would grow by 10 s, in which the sun moves 0.0001°.
     if year == *YEARS.end() {
         return Ok(delta_t::estimate(f64::from(year))?);
     }
     Ok(delta_t::estimate_from_date_like(&date)?)
 }
 
-/// chrono counts the nanoseconds of a leap second on from those of the second before.
+/// A leap second as the following second: chrono represents it by nanoseconds beyond the previous second.
 fn without_leap(when: DateTime<FixedOffset>) -> DateTime<FixedOffset> {
     let leap = when.nanosecond() / 1_000_000_000;
     let before = when.with_nanosecond(when.nanosecond() % 1_000_000_000);
@@ -206,7 +206,7 @@ pub fn lecture(day_of_year: u32, solar_time_h: f64, latitude: f64) -> SunPositio
     let (sin_l, cos_l) = latitude.to_radians().sin_cos();
     let (sin_t, cos_t) = (PI * solar_time_h / 12.0).sin_cos();
     let sin_elevation = sin_l * sin_d - cos_l * cos_d * cos_t;
-    // Printed: cos ℓ sin δ - .., with the wrong sign.
+    // Printed as cos ℓ sin δ - ..., with the wrong sign.
     let west_of_south = (-cos_d * sin_t).atan2(-cos_l * sin_d - sin_l * cos_d * cos_t);
     SunPosition::from_true(
         180.0 + west_of_south.to_degrees(),
@@ -268,9 +268,9 @@ pub struct SunEvents {
 /// A day without sunrise and sunset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Polar {
-    /// It stays up.
+    /// The sun stays above the horizon.
     Day,
-    /// It stays down.
+    /// The sun stays below the horizon.
     Night,
 }
 
@@ -280,7 +280,7 @@ impl SunEvents {
         if self.sunrise.is_some() || self.sunset.is_some() {
             return None;
         }
-        // At solar noon the sun is highest.
+        // The sun is highest at solar noon.
         let noon = spa(self.noon?, latitude, longitude).ok()?;
         Some(if noon.apparent_elevation_deg > 0.0 {
             Polar::Day
@@ -395,7 +395,7 @@ mod tests {
         let zone = FixedOffset::east_opt(2 * 3600).unwrap();
         let day = NaiveDate::from_ymd_opt(2026, 6, 21).unwrap();
         let events = sun_events(day, zone, 55.6761, 12.5683).unwrap();
-        // The almanac's: 04:25, 13:11, 21:57 (CEST).
+        // Almanac: 04:25, 13:11, 21:57 (CEST).
         let minutes =
             |t: Option<DateTime<FixedOffset>>| t.map(|t| t.hour() * 60 + t.minute()).unwrap();
         assert!(
@@ -437,7 +437,7 @@ mod tests {
             let events = sun_events(day, utc, 55.79, 12.52).unwrap();
             assert!(events.sunrise.is_some() && events.sunset.is_some());
         }
-        // A second turns the sun by 0.004°; the estimate of ΔT differs from month to month.
+        // The sun turns by 0.004° in a second; the estimate of ΔT differs from month to month.
         for (leap, second) in [
             ("2016-12-31T23:59:60Z", "2017-01-01T00:00:00Z"),
             ("2016-12-31T23:59:60.5Z", "2017-01-01T00:00:00.5Z"),

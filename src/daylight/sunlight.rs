@@ -1,7 +1,7 @@
 //! The sun's disc through a clear atmosphere: five spectral transmittances, then lux and cd/m².
 //!
-//! Also the lecture's two plain estimates: Rayleigh's law of 1871 ([`rayleigh_1871`]) and the broadband
-//! irradiance of the sun ([`lecture_sun_irradiance`]).
+//! Also the lecture's two simple estimates: Rayleigh's law of 1871 ([`rayleigh_1871`]) and the sun's broadband irradiance
+//! ([`lecture_sun_irradiance`]).
 
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
@@ -12,7 +12,7 @@ use super::colour;
 use super::data::preetham_spectra as spectra;
 use super::spectrum::{self, TabulatedSpectrum};
 
-/// Diameter of the sun over its distance, after Preetham et al. 1999, A.1: 1.39e6 km and 150e6 km.
+/// Diameter of the sun over its distance, from Preetham et al. 1999, A.1: 1.39e6 km and 150e6 km.
 pub const SUN_DIAMETER_OVER_DISTANCE: f64 = 1.39 / 150.0;
 
 /// Solid angle Ω of the sun's disc, sr: π/4 (1.39/150)² = 6.7443e-5.
@@ -21,7 +21,7 @@ pub const SUN_SOLID_ANGLE: f64 = PI / 4.0 * SUN_DIAMETER_OVER_DISTANCE * SUN_DIA
 /// Angular radius of the sun's disc, radians: 0.004633, that is 0.2655°.
 pub const SUN_ANGULAR_RADIUS: f64 = SUN_DIAMETER_OVER_DISTANCE / 2.0;
 
-/// Wavelengths at which Preetham's table of the sun's radiance is known, nm.
+/// Wavelengths covered by Preetham's table of the sun's radiance, nm.
 pub const SUN_RANGE_NM: RangeInclusive<u32> = 380..=750;
 
 /// Precipitable water vapour w, cm (Preetham et al. 1999, A.1).
@@ -32,7 +32,7 @@ pub const OZONE_CM: f64 = 0.35;
 
 /// Kasten 1966 (Preetham et al. 1999, A.1): relative optical mass m of the air, 1 at the zenith, about 37 at the horizon.
 ///
-/// `elevation_deg` is the sun's elevation, -3.8..=90 degrees (it is clamped at the horizon: the formula has a pole below).
+/// `elevation_deg` is the sun's elevation, -3.8..=90 degrees (clamped to the horizon, since the formula has a pole below).
 pub fn air_mass(elevation_deg: f64) -> f64 {
     let elevation = elevation_deg.clamp(0.0, 90.0);
     let zenith = 90.0 - elevation;
@@ -41,7 +41,7 @@ pub fn air_mass(elevation_deg: f64) -> f64 {
 
 /// Preetham et al. 1999, A.1: Rayleigh scattering by air molecules, exp(-0.008735 m λ^-4.08), λ in µm.
 ///
-/// m multiplies; it is not in the exponent of λ as the typesetting suggests.
+/// m is a factor; it is not in the exponent of λ as the typesetting suggests.
 pub fn rayleigh_transmittance(nm: f64, air_mass: f64) -> f64 {
     (-0.008735 * air_mass * micrometres(nm).powf(-4.08)).exp()
 }
@@ -65,7 +65,7 @@ pub fn ozone_transmittance(nm: f64, air_mass: f64) -> f64 {
 
 /// Preetham et al. 1999, A.1: absorption by the mixed gases (mostly oxygen), exp(-1.41 k_g m / (1 + 118.93 k_g m)^0.45).
 ///
-/// k_g begins at 760 nm where the table of the sun's radiance has ended: it never changes a colour.
+/// k_g begins at 760 nm, beyond the end of the table of the sun's radiance: it never affects a colour.
 pub fn mixed_gas_transmittance(nm: f64, air_mass: f64) -> f64 {
     let km = mixed_gas_absorption(nm) * air_mass;
     (-1.41 * km / (1.0 + 118.93 * km).powf(0.45)).exp()
@@ -110,7 +110,7 @@ fn micrometres(nm: f64) -> f64 {
     nm / 1000.0
 }
 
-/// The sun's disc as seen through the air (or without it), averaged over the disc.
+/// The sun's disc seen through the air (or without it), averaged over the disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sunlight {
     /// Luminance of the disc as XYZ, Y in cd/m².
@@ -154,7 +154,7 @@ impl Sunlight {
     }
 }
 
-/// Fraction of the sun's disc that stands over the horizon when its centre is at `elevation_deg`, in 0..=1.
+/// Fraction of the sun's disc above the horizon when its centre is at `elevation_deg`, in 0..=1.
 ///
 /// Area of a circular segment; 1/2 with the centre on the horizon.
 pub fn visible_fraction(elevation_deg: f64) -> f64 {
@@ -165,8 +165,8 @@ pub fn visible_fraction(elevation_deg: f64) -> f64 {
 /// Coefficient u of linear limb darkening, I = I₀ (1 − u (1 − cos θ)) (Allen, Astrophysical Quantities: 0.6 at 550 nm).
 pub const LIMB_DARKENING: f64 = 0.6;
 
-/// Linear limb darkening, see [`LIMB_DARKENING`]: luminance at the distance `r` from the
-/// disc's centre (0 centre, 1 limb) over the disc's mean luminance; from 1.25 down to 0.5.
+/// Linear limb darkening, see [`LIMB_DARKENING`]: luminance at the distance `r` from the disc's centre (0 centre, 1 limb)
+/// relative to the disc's mean luminance; from 1.25 down to 0.5.
 pub fn limb_darkening(r: f64) -> f64 {
     const U: f64 = LIMB_DARKENING;
     let mu = (1.0 - r * r).max(0.0).sqrt();
@@ -203,8 +203,8 @@ pub fn lecture_sun_solid_angle() -> f64 {
 
 /// Lecture, "Direct sunlight": irradiance outside the atmosphere, L ω ≈ 1383 W/m².
 ///
-/// This is power over *all* wavelengths. It must not be multiplied by 683 lm/W, which holds at 555 nm only: that
-/// would give 945 klux where the spectrum gives 127 klux ([`Sunlight::extraterrestrial`], some 92 lm/W).
+/// This is power over *all* wavelengths. It must not be multiplied by 683 lm/W, which holds at 555 nm only: that would give
+/// 945 klux, while the spectrum gives 127 klux ([`Sunlight::extraterrestrial`], some 92 lm/W).
 pub fn lecture_sun_irradiance() -> f64 {
     lecture_sun_radiance() * lecture_sun_solid_angle()
 }
@@ -217,7 +217,7 @@ mod tests {
     #[test]
     fn rayleigh_blue_is_lost_first() {
         assert_eq!(rayleigh_1871(1.0, 0.55, 0.0), 1.0);
-        // Twice the wavelength scatters a sixteenth: exp(-16 a) = exp(-a)^16.
+        // At half the wavelength scattering is 16 times stronger: exp(-16 a) = exp(-a)^16.
         let (short, long) = (
             rayleigh_1871(0.01, 0.35, 1.0),
             rayleigh_1871(0.01, 0.70, 1.0),

@@ -1,12 +1,12 @@
 //! Tangent frames: two unit vectors that complete a normal to a right-handed orthonormal basis (b1, b2, n).
 //!
 //! Use [`duff`]. [`frisvad`] is the lecture's (slide "Integrating skylight"): it divides by 1 + n_z, which is 0 at
-//! n = (0, 0, -1). Near there it loses digits: in `f32` |M Mᵀ - I| is 7e-4 at n_z = -0.99995, 0.15 at -0.9999995,
-//! and not a number at -1. The published cure, a constant frame beyond a threshold, is exact at -1 itself only; elsewhere
-//! its error is the sine of the angle to -z. So no threshold cures it. Duff et al. move the pole to the
-//! sign of n_z: the divisor is then at least 1 in size, and the error stays at 1e-7.
+//! n = (0, 0, -1). It loses precision near that pole: in `f32`, |M Mᵀ - I| is 7e-4 at n_z = -0.99995, 0.15 at -0.9999995,
+//! and NaN at -1. The published fix, a constant frame beyond a threshold, is exact only at -1 itself; elsewhere its error is
+//! the sine of the angle to -z, so no threshold solves the problem. Duff et al. choose the pole by the sign of n_z: the
+//! magnitude of the divisor is then at least 1, and the error stays at 1e-7.
 //!
-//! Each function exists in `f64` and, with the ending `_f32`, as what a shader does.
+//! Each function exists in `f64` and, with the suffix `_f32`, in the precision of a shader.
 
 use glam::{DVec3, Vec3};
 
@@ -23,8 +23,8 @@ macro_rules! frames {
             )
         }
 
-        /// Frisvad 2012, *Building an Orthonormal Basis from a 3D Unit Vector Without Normalization*: (b1, b2)
-        /// for a unit `n`, with the paper's constant frame for n_z < -0.9999999. See the module for where it fails.
+        /// Frisvad 2012, *Building an Orthonormal Basis from a 3D Unit Vector Without Normalization*: (b1, b2) for a unit `n`,
+        /// with the paper's constant frame for n_z < -0.9999999. The module documentation says where it fails.
         pub fn $frisvad(n: $vec) -> ($vec, $vec) {
             if n.z < -0.999_999_9 {
                 return (<$vec>::NEG_Y, <$vec>::NEG_X);
@@ -32,7 +32,7 @@ macro_rules! frames {
             $frisvad_raw(n)
         }
 
-        /// The lecture's formula as printed on the slide, without the branch: infinite or not a number at n = -z.
+        /// The lecture's formula as printed on the slide, without the branch: infinite or NaN at n = -z.
         pub fn $frisvad_raw(n: $vec) -> ($vec, $vec) {
             let a = 1.0 / (1.0 + n.z);
             let b = -n.x * n.y * a;

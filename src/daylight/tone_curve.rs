@@ -1,12 +1,12 @@
 //! Tone curves: exposed scene-linear RGB (1 = the exposure's maximum) to display-linear RGB in 0..=1.
 //!
-//! Encoding for the screen comes afterwards: [`encode`].
+//! The result is then encoded for the screen: [`encode`].
 
 use glam::{DMat3, DVec3};
 
 use super::colour::srgb_oetf;
 
-/// Weights of R, G and B with which the published curves measure luminance (BT.709, four digits).
+/// Luminance weights of R, G and B in the published curves (BT.709, four digits).
 pub const LUMINANCE_WEIGHTS: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
 
 /// The smallest luminance that [`ToneCurve::Reinhard`] maps to white, in exposed units.
@@ -19,13 +19,13 @@ pub enum ToneCurve {
     Linear,
     /// Ferschin's exponential per channel (the lecture's other one).
     Exponential,
-    /// The same on luminance, the colour kept.
+    /// The same applied to luminance, keeping the colour.
     ExponentialLuminance,
     /// Reinhard et al. 2002, global operator with white at [`REINHARD_WHITE`], on luminance.
     Reinhard,
     /// AgX, base look.
     Agx,
-    /// Khronos PBR Neutral: colours of surfaces stay as they are up to 0.8.
+    /// Khronos PBR Neutral: surface colours are unchanged up to 0.8.
     #[default]
     Neutral,
     /// ACES RRT + ODT, Hill's fit.
@@ -33,7 +33,7 @@ pub enum ToneCurve {
 }
 
 impl ToneCurve {
-    /// Display-linear RGB in 0..=1 of an exposed scene-linear colour (channels not negative).
+    /// Display-linear RGB in 0..=1 for an exposed scene-linear colour without negative channels.
     pub fn apply(self, rgb: DVec3) -> DVec3 {
         let mapped = match self {
             Self::Linear => rgb,
@@ -48,7 +48,7 @@ impl ToneCurve {
     }
 }
 
-/// Encodes display-linear RGB for the screen: sRGB, or the plain power 1/γ where a `gamma` is given. Clamped to 0..=1.
+/// Encodes display-linear RGB for the screen: sRGB, or the power 1/γ if a `gamma` is given. Clamped to 0..=1.
 pub fn encode(rgb: DVec3, gamma: Option<f64>) -> DVec3 {
     let rgb = rgb.clamp(DVec3::ZERO, DVec3::ONE);
     match gamma {
@@ -68,20 +68,21 @@ pub fn linear_gamma(rgb: DVec3, scale: f64, gamma: f64) -> DVec3 {
 
 /// Ferschin et al. 1994 (lecture, "Tone mapping"): 1 - exp(-c/L_avg) per channel.
 ///
-/// `average` is the luminance that maps to 1 - 1/e, in the unit of `rgb`; the lecture has 1.
+/// `average` is the luminance that maps to 1 - 1/e, in the unit of `rgb`; 1 in the lecture.
 pub fn exponential(rgb: DVec3, average: f64) -> DVec3 {
     rgb.map(|c| 1.0 - (-c / average).exp())
 }
 
-/// [`exponential`] on the luminance, the colour kept: channels may exceed 1.
+/// [`exponential`] applied to the luminance, keeping the colour: channels may exceed 1.
 pub fn exponential_luminance(rgb: DVec3, average: f64) -> DVec3 {
     scale_luminance(rgb, |l| 1.0 - (-l / average).exp())
 }
 
-/// Reinhard et al. 2002, *Photographic Tone Reproduction*, eq. 4 on the luminance, the colour kept: channels may exceed 1.
+/// Reinhard et al. 2002, *Photographic Tone Reproduction*, eq. 4 applied to the luminance, keeping the colour: channels may
+/// exceed 1.
 ///
-/// `scale` is key / log-average luminance (eq. 2; 1 for colours exposed already), `white` the smallest scaled luminance
-/// that becomes 1.
+/// `scale` is key / log-average luminance (eq. 2; 1 for exposed colours), `white` is the smallest scaled luminance that maps
+/// to 1.
 pub fn reinhard(rgb: DVec3, scale: f64, white: f64) -> DVec3 {
     scale_luminance(rgb, |luminance| {
         let l = luminance * scale;
@@ -127,7 +128,7 @@ const fn rows(r: [[f64; 3]; 3]) -> DMat3 {
     ])
 }
 
-/// AgX inset: rows sum to 1. Transposed (as one copy has it) white would darken by 7 %.
+/// AgX inset: rows sum to 1. Transposed (as in one published copy), white would darken by 7 %.
 const AGX_INSET: DMat3 = rows([
     [0.842479062253094, 0.0784335999999992, 0.0792237451477643],
     [0.0423282422610123, 0.878468636469772, 0.0791661274605434],
@@ -140,13 +141,13 @@ const AGX_OUTSET: DMat3 = rows([
     [-0.0529716355144438, -0.0980434501171241, 1.15107367264116],
 ]);
 
-/// AgX (Sobotka 2022; Wrensch's minimal version, base look): what goes to the screen, encoded with a power of 2.2.
-/// Slightly outside 0..=1 for black and for saturated colours; not clamped.
+/// AgX (Sobotka 2022; Wrensch's minimal version, base look): the display signal, encoded with a power of 2.2. Slightly outside
+/// 0..=1 for black and for saturated colours; not clamped.
 pub fn agx_encoded(rgb: DVec3) -> DVec3 {
     const MIN_EV: f64 = -12.47393;
     const MAX_EV: f64 = 4.026069;
     let inset = AGX_INSET * rgb;
-    // The logarithm of 0 is -∞, which the clamp turns into MIN_EV.
+    // The logarithm of 0 is -∞, which is clamped to MIN_EV.
     let log = inset.map(|c| (c.max(0.0).log2().clamp(MIN_EV, MAX_EV) - MIN_EV) / (MAX_EV - MIN_EV));
     AGX_OUTSET * log.map(agx_contrast)
 }
@@ -157,7 +158,7 @@ fn agx_contrast(x: f64) -> f64 {
     coefficients.into_iter().fold(0.0, |sum, c| sum * x + c)
 }
 
-/// [`agx_encoded`] as display-linear light: its power 2.2, not below 0.
+/// [`agx_encoded`] decoded to display-linear light by the power 2.2, not below 0.
 pub fn agx(rgb: DVec3) -> DVec3 {
     agx_encoded(rgb).max(DVec3::ZERO).powf(2.2)
 }

@@ -1,4 +1,4 @@
-//! Enums as values of options: the name of each variant and its line of help.
+//! Enums as option values: name and help line of each variant.
 
 use std::fmt;
 
@@ -12,7 +12,7 @@ use super::{
 
 /// An enum whose variants are values of an option.
 pub trait Choice: Copy + PartialEq + Send + Sync + 'static {
-    /// Each variant that can be chosen, with its name and its line of help.
+    /// Each selectable variant with its name and help line.
     const VALUES: &'static [(Self, &'static str, &'static str)];
 
     /// Name of the variant on the command line and in files.
@@ -24,7 +24,7 @@ pub fn name(value: impl Choice) -> &'static str {
     value.option_name()
 }
 
-/// The parser of an option with such values.
+/// The value parser of an option of this type.
 pub(crate) fn choice<T: Choice>() -> impl TypedValueParser<Value = T> {
     let values = T::VALUES.iter();
     let values = values.map(|(_, name, help)| PossibleValue::new(*name).help(*help));
@@ -35,7 +35,7 @@ pub(crate) fn choice<T: Choice>() -> impl TypedValueParser<Value = T> {
     })
 }
 
-/// Implements [`Choice`] and [`Display`](fmt::Display): `Variant | SynonymThatCannotBeChosen = "name": "help"`.
+/// Implements [`Choice`] and [`Display`](fmt::Display): `Variant | SynonymThatCannotBeSelected = "name": "help"`.
 macro_rules! choices {
     ($($type:ident {
         $($variant:ident $(| $synonym:ident)* = $name:literal: $help:literal,)*

@@ -1,4 +1,4 @@
-//! Options back to the command line that gives them.
+//! Options to the command line that reproduces them.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -7,21 +7,20 @@ use super::given::replaces;
 use super::{OptionValues, Options, OptionsError, ResolveError, is_flag};
 use crate::scene::Loaded;
 
-/// Written even where they are the defaults: they say what the picture shows, and when.
+/// Written even if they equal the defaults: they record what the picture shows, and when.
 const ALWAYS: [&str; 9] = [
     "place", "when", "solar", "sun", "camera", "eye", "target", "fov", "preset",
 ];
 
 impl Options {
-    /// The line `skylight render ..` that gives these options again, quoted for a shell: what the scene and the defaults do
-    /// not give by themselves, and always sun, camera and preset.
+    /// The `skylight render ...` line that gives these options again, quoted for a shell. It holds what differs from the scene
+    /// and the defaults, and always sun, camera and preset.
     ///
-    /// `scene` is the path that was opened, and `loaded` what was found there (its options and cameras; the model is not
-    /// looked at).
+    /// `scene` is the path that was opened, `loaded` is what was read from it (only its options, cameras and moments are used).
     ///
     /// # Errors
-    /// A value of the scene that these options lack and that no option takes back, such as a gamma; a path that is not
-    /// UTF-8, or a name with a zero byte.
+    /// The scene sets a value, such as a gamma, that these options lack and that no option can unset; the path is not UTF-8;
+    /// a name contains a zero byte.
     pub fn command_line(
         &self,
         scene: Option<&Path>,
@@ -38,7 +37,7 @@ impl Options {
         })?)
     }
 
-    /// The values with which a user gets these options of a scene, in the order of the definition.
+    /// The values a user must give to get these options from a scene, in the order of the definition.
     fn needed(&self, loaded: &Loaded) -> Result<OptionValues, ResolveError> {
         let wanted: Vec<_> = self.values().into_pairs();
         let mut is_written: Vec<bool> = wanted
@@ -75,7 +74,7 @@ impl Options {
     }
 }
 
-/// A path as a word that is not taken for an option.
+/// A path as a word that cannot be mistaken for an option.
 fn scene_word(path: &Path) -> Result<String, OptionsError> {
     let Some(text) = path.to_str() else {
         let path = path.display();
@@ -94,14 +93,14 @@ fn arguments((name, text): &(String, String)) -> Vec<String> {
     if is_flag(name) {
         return vec![format!("--{name}")];
     }
-    // Else a negative number, or a name with a dash, might be an option.
+    // Otherwise a negative number, or a name that begins with a dash, would be read as an option.
     if text.starts_with('-') {
         return vec![format!("--{name}={text}")];
     }
     vec![format!("--{name}"), text.clone()]
 }
 
-/// For a shell; a list of numbers needs no quotes.
+/// Quotes a word for a shell; lists of numbers stay unquoted.
 fn quoted(word: &str) -> Result<Cow<'_, str>, shlex::QuoteError> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-+_./:,=".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {

@@ -1,18 +1,18 @@
-//! The options that one source sets, as names and texts: a command line, a scene file, a preset.
+//! The options set by one source (command line, scene file or preset), as names and texts.
 
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
 use super::{DEFINITION, Options, OptionsError, exclude_each_other, is_flag, one_line};
 
-/// What an option of one source puts out of force in the sources below, besides itself and the options that it excludes.
+/// Options of lower sources that an option overrides, besides itself and those that conflict with it.
 const REPLACES: [(&str, &[&str]); 3] = [
     ("camera", &["eye", "target", "fov"]),
     ("exposure", &["scale"]),
     ("ev100", &["scale"]),
 ];
 
-/// Options that are set, by name; each once. A flag's text is `true`.
+/// Options that are set, by name, each at most once. The text of a flag is `true`.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct OptionValues(Vec<(String, String)>);
 
@@ -23,7 +23,7 @@ impl From<Vec<(String, String)>> for OptionValues {
 }
 
 impl OptionValues {
-    /// Text of an option that is set.
+    /// Text of an option, if it is set.
     pub fn get(&self, name: &str) -> Option<&str> {
         let mut pairs = self.0.iter();
         pairs
@@ -31,38 +31,38 @@ impl OptionValues {
             .map(|(_, text)| text.as_str())
     }
 
-    /// Sets an option.
+    /// Sets an option; replaces an earlier value.
     pub fn set(&mut self, name: &str, text: impl ToString) {
         self.remove(&[name]);
         self.0.push((name.to_owned(), text.to_string()));
     }
 
-    /// Sets an option that is not set.
+    /// Sets an option unless it is already set.
     pub fn set_default(&mut self, name: &str, text: impl ToString) {
         if self.get(name).is_none() {
             self.set(name, text);
         }
     }
 
-    /// Leaves options to the sources below.
+    /// Unsets options, which leaves them to the lower sources.
     pub fn remove(&mut self, names: &[&str]) {
         self.0.retain(|(name, _)| !names.contains(&name.as_str()));
     }
 
-    /// Names and texts, in the order in which they were set.
+    /// Names and texts, in the order they were set.
     pub fn iter(&self) -> impl Iterator<Item = &(String, String)> {
         self.0.iter()
     }
 
-    /// Names and texts.
+    /// Names and texts, in the order they were set.
     pub fn into_pairs(self) -> Vec<(String, String)> {
         self.0
     }
 
-    /// These options, and those of `base` that none of these replaces.
+    /// These options, and those of `base` that none of these overrides.
     ///
-    /// The sun is one matter: a direction here replaces place and moment there, and the other way round; so is the exposure,
-    /// and a named camera here replaces the camera there.
+    /// The sun is overridden as a whole: a direction replaces the place and moment of `base`, and vice versa. So is the exposure.
+    /// A named camera replaces the camera of `base`.
     #[must_use]
     pub fn over(self, base: Self) -> Self {
         let mut all = base;
@@ -72,26 +72,26 @@ impl OptionValues {
         all
     }
 
-    /// These options with the defaults of all others, whatever the scene and the preset: for what has to be known before a
-    /// scene is loaded. The moment is the default one, since it may depend on the scene's place.
+    /// These options with the defaults of all others, ignoring scene and preset: for settings that are needed before a scene is
+    /// loaded. The moment is the default one, since its time zone may depend on the scene's place.
     ///
     /// # Errors
-    /// An unknown name, a bad value, or options that exclude each other.
+    /// An unknown name, an invalid value, or options that conflict.
     pub fn alone(&self) -> Result<Options, OptionsError> {
         let mut values = self.clone();
         values.remove(&["when"]);
         values.parse().map(|(options, _)| options)
     }
 
-    /// Checks names and values one by one, and that no two options exclude each other.
+    /// Checks each name and value, and that no two options conflict.
     ///
     /// # Errors
-    /// The first that is wrong.
+    /// The first problem found.
     pub fn check(&self) -> Result<(), OptionsError> {
         self.matches().map(|_| ())
     }
 
-    /// The options, and by what each was set.
+    /// The options, and the source of each value.
     pub(super) fn parse(&self) -> Result<(Options, ArgMatches), OptionsError> {
         let matches = self.matches()?;
         let options = Options::from_arg_matches(&matches);
@@ -113,13 +113,13 @@ impl OptionValues {
     }
 }
 
-/// Whether `name` puts `other` of a source below out of force.
+/// Whether setting `name` overrides `other` of a lower source.
 pub(super) fn replaces(name: &str, other: &str) -> bool {
     let listed = |(from, list): &(&str, &[&str])| *from == name && list.contains(&other);
     name == other || REPLACES.iter().any(listed) || exclude_each_other(name, other)
 }
 
-/// On the command line: all options of [`Options`], checked; those that the user gave are kept.
+/// On the command line all options of [`Options`] are accepted and checked; those given by the user are kept.
 impl Args for OptionValues {
     fn augment_args(command: Command) -> Command {
         Options::augment_args(command)

@@ -1,4 +1,4 @@
-//! From what the sources set to [`Options`]: their precedence, the cameras, moments and tables of a scene file.
+//! Resolves the values of all sources to [`Options`]: precedence, and the cameras, moments and tables of a scene file.
 
 use clap::parser::ValueSource;
 use glam::Vec3;
@@ -11,10 +11,10 @@ use crate::scene::{
     Bounds, Camera, DEFAULT_FOV_DEG, LoadOptions, Loaded, NamedOptions, SceneError,
 };
 
-/// Samples from which on shadow maps from the sky are better than ambient occlusion in every view.
+/// Number of samples from which shadow maps of the sky beat screen-space ambient occlusion in every view.
 const DOME_SAMPLES: u32 = 16;
 
-/// What `--preset lecture` sets, by the course's own defaults.
+/// The values of `--preset lecture`: the defaults of the course.
 const LECTURE: [(&str, &str); 16] = [
     ("place", "45,0"),
     ("solar", "200,10"),
@@ -34,22 +34,22 @@ const LECTURE: [(&str, &str); 16] = [
     ("shadow-size", "4096"),
 ];
 
-/// Why options cannot be used: those of the user, or those of the scene file, are wrong.
+/// Options that cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum ResolveError {
-    /// The user's.
+    /// The user's options are invalid.
     #[error(transparent)]
     Options(#[from] OptionsError),
-    /// The scene file's.
+    /// The scene file's options are invalid.
     #[error(transparent)]
     Scene(#[from] SceneError),
 }
 
 impl Options {
-    /// The user's options over the scene file's, over the preset's, over the defaults.
+    /// Resolves options: the user's override the scene file's, which override the preset's, which override the defaults.
     ///
     /// # Errors
-    /// A bad key or value in the scene file, an unknown camera or moment, options that contradict each other.
+    /// An invalid key or value in the scene file, an unknown camera or moment, options that contradict each other.
     pub fn resolve(user: &OptionValues, loaded: &Loaded) -> Result<Self, ResolveError> {
         let scene_file = |e: OptionsError| SceneError::SceneFile {
             path: loaded.path.clone(),
@@ -69,7 +69,7 @@ impl Options {
             let camera = find_named("camera", &loaded.cameras, name, "--eye and --target")?;
             let camera = OptionValues::from(camera.to_vec());
             camera.check().map_err(scene_file)?;
-            // Not a mixture of two cameras: what the named one leaves open is open.
+            // Do not mix two cameras: what the named one omits takes the default, not the scene's value.
             base.remove(&["eye", "target", "fov"]);
             base = camera.over(base);
         }
@@ -90,13 +90,13 @@ impl Options {
         Ok(options)
     }
 
-    /// Whether they contradict each other.
+    /// Fails if the options contradict each other.
     fn check(&self) -> Result<(), OptionsError> {
         if self.eye.is_some() && self.eye == self.target {
             let what = "--eye and --target are the same point; move one";
             return Err(OptionsError(what.to_owned()));
         }
-        // The dome's shadow maps tell what occludes the sky in reflections.
+        // Occlusion in reflections comes from the dome's shadow maps.
         if self.reflections == Reflections::Hidden && self.visibility == Visibility::Ssao {
             let what =
                 "--reflections hidden needs --visibility dome; give it, or --samples 16 or more";
@@ -111,7 +111,7 @@ impl Options {
         }
     }
 
-    /// How a scene may be loaded; the cache is off.
+    /// Limits and settings for loading a scene, without a cache.
     pub fn load_options(&self) -> LoadOptions {
         let bytes = |mib: u32| u64::from(mib) << 20;
         LoadOptions {
@@ -125,7 +125,7 @@ impl Options {
         }
     }
 
-    /// The camera for a model within `bounds`; what was not given is chosen so that the model is in view.
+    /// The camera for a model within `bounds`; what is not given is chosen to frame the model.
     pub fn camera(&self, bounds: &Bounds) -> Camera {
         let point = |p: [f64; 3]| Vec3::from(p.map(|v| v as f32));
         Camera::from_parts(
@@ -137,12 +137,12 @@ impl Options {
         )
     }
 
-    /// A camera that sees all within `bounds`, whatever was given.
+    /// A camera that frames `bounds`, ignoring the camera options.
     pub fn framing(&self, bounds: &Bounds) -> Camera {
         Camera::framing(bounds, DEFAULT_FOV_DEG, self.aspect())
     }
 
-    /// These options with `camera` in place of what was given of one.
+    /// These options with `camera` instead of their own.
     #[must_use]
     pub fn with_camera(&self, camera: &Camera) -> Self {
         let point = |p: Vec3| Some(p.to_array().map(shortest));
@@ -167,12 +167,12 @@ impl From<&[(&str, &str)]> for OptionValues {
     }
 }
 
-/// The number with the fewest digits that is the same in 32 bits.
+/// The decimal number with the fewest digits that rounds to the same `f32`.
 fn shortest(value: f32) -> f64 {
     value.to_string().parse().unwrap_or(value.into())
 }
 
-/// What the tables of a scene file set; its cameras and moments are checked too.
+/// The options set by the tables of a scene file. Checks the keys of its cameras and moments, too.
 fn scene_options(loaded: &Loaded) -> Result<OptionValues, OptionsError> {
     let mut all = OptionValues::default();
     for table in &loaded.options {
@@ -227,7 +227,7 @@ fn unknown_table(table: &str) -> OptionsError {
     ))
 }
 
-/// The options of the camera or moment of this name.
+/// The options of the camera or moment with this name.
 fn find_named<'a>(
     what: &str,
     list: &'a [NamedOptions],

@@ -1,4 +1,4 @@
-//! Where the sun comes from: a place and a moment, the lecture's inputs, or a direction.
+//! The source of the sun's position: a place and a moment, the lecture's inputs, or a direction.
 
 use chrono::{DateTime, FixedOffset};
 use clap::error::ErrorKind;
@@ -63,7 +63,7 @@ options! {
 }
 
 impl SunInput {
-    /// The input that the options give, or what is wrong with it.
+    /// The sun input given by the options; an error says what is wrong with it.
     fn of(o: &SunArgs) -> Result<Self, String> {
         let place = o.place;
         let Place {

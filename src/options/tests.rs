@@ -1,4 +1,4 @@
-//! All options, by the definition's own list: what is set comes back from a file, a command line and metadata.
+//! Every option of the definition survives a round trip through a file, a command line and metadata.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -10,7 +10,7 @@ use crate::cli::{self, parse};
 use crate::daylight::sampling::rnd;
 use crate::scene::{Bounds, Camera, Loaded, NamedOptions, Scene};
 
-/// Texts of which some parser takes some. The first is also the name of a camera and of a moment of [`scene`].
+/// Texts of which each parser accepts at least one. The first is also the name of a camera and of a moment of [`scene`].
 const TEXTS: [&str; 16] = [
     "7",
     "-7.25",
@@ -52,7 +52,7 @@ pub(crate) fn scene(tables: &[(&str, &[(&str, &str)])]) -> Loaded {
     }
 }
 
-/// Every option with all the texts that it takes.
+/// Every option with all the texts that its parser accepts.
 fn all_texts() -> Vec<(String, Vec<String>)> {
     let texts = |arg: &Arg| -> Vec<String> {
         let name = arg.get_long().expect("a name");
@@ -74,7 +74,7 @@ fn all_texts() -> Vec<(String, Vec<String>)> {
     args.collect()
 }
 
-/// Options in which one is not what the scene and the defaults make it, for every option; with its name.
+/// For every option: its name, and options in which it differs from what the scene and the defaults give.
 pub(crate) fn each_set(scene: &Loaded) -> Vec<(String, Options)> {
     let nothing = Options::resolve(&OptionValues::default(), scene).expect("defaults");
     let mut all = Vec::new();
@@ -101,12 +101,12 @@ pub(crate) fn each_set(scene: &Loaded) -> Vec<(String, Options)> {
     all
 }
 
-/// A scene that makes `--exposure auto` no default.
+/// A scene with a fixed exposure, so that `--exposure auto` is not the default.
 pub(crate) fn exposed_scene() -> Loaded {
     scene(&[("exposure", &[("ev100", "11")])])
 }
 
-/// The scene and the options that `line` gives when a shell and the program read it.
+/// The scene and the options that the program reads from `line`, split as a shell does.
 fn read(line: &str, loaded: &Loaded) -> (Option<String>, Options) {
     let words = shlex::split(line).expect("quoted as a shell does");
     match parse(words.iter().map(OsString::from)) {
@@ -149,7 +149,7 @@ impl Random {
         (rnd(&mut self.0) * count as f64) as usize
     }
 
-    /// Some of the options, each with one of its texts.
+    /// A random subset of the options, each with one of its texts.
     fn options(&mut self, all: &[(String, Vec<String>)]) -> OptionValues {
         let mut values = OptionValues::default();
         for (name, texts) in all {
@@ -180,7 +180,7 @@ fn a_line_gives_the_options_it_was_made_of() {
     let (mut equal, mut lost) = (0, 0);
     for round in 0..6000 {
         let user = random.options(&all);
-        // The options of this scene, or those that one came to otherwise while it was shown.
+        // The options are resolved from the shown scene or from the first one.
         let shown = &scenes[round % scenes.len()];
         let origin = &scenes[(round % scenes.len()) * random.below(2)];
         let Ok(options) = Options::resolve(&user, origin) else {
@@ -194,7 +194,7 @@ fn a_line_gives_the_options_it_was_made_of() {
                 equal += 1;
             }
             Err(error) => {
-                // Only the eye of the third scene cannot be taken back.
+                // Only the eye of the third scene cannot be unset.
                 let text = error.to_string();
                 assert!(text.starts_with("the scene sets eye"), "{text}");
                 lost += 1;
@@ -222,7 +222,7 @@ fn only_what_differs_is_written() {
         ]),
         "skylight render --place 10,20 --when 2026-01-01T12:00:00+00:00 --sky hosek --fov 45"
     );
-    // The scene's own 7 goes without saying, the default 3 does not.
+    // The scene sets 7, so 7 is omitted; the default 3 must be written.
     assert_eq!(
         line(&[("sun", "90,-5"), ("turbidity", "7")]),
         "skylight render --sun 90,-5 --fov 45"

@@ -1,4 +1,4 @@
-//! Values of options: their types, text to value with a clear message, and value to text.
+//! Types of option values, their parsers with error messages, and their text forms.
 
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -9,21 +9,21 @@ pub use crate::daylight::moment::When;
 pub use crate::daylight::place::Place;
 use crate::frame::FrameSettings;
 
-/// Width and height of a picture, pixels, 1..32 768 each.
+/// Width and height of a picture, pixels, 1..=32 768 each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Size {
-    /// Pixels in a row.
+    /// Pixels per row.
     pub width: u32,
-    /// Rows.
+    /// Number of rows.
     pub height: u32,
 }
 
-/// The lecture's inputs.
+/// Time input of the lecture: day and solar time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolarTime {
     /// Day of the year, 1..366.
     pub day: u32,
-    /// Solar time, hours, 0..24; 12 is when the sun is highest.
+    /// Solar time, hours, 0..24; the sun culminates at 12.
     pub hours: f64,
 }
 
@@ -36,22 +36,22 @@ pub struct Direction {
     pub elevation_deg: f64,
 }
 
-/// `--exposure`: the opposite of `--ev100`.
+/// Values of `--exposure`, the alternative to `--ev100`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum ExposureMode {
     #[default]
-    /// From the picture's log-average luminance.
+    /// From the log-average luminance of the picture.
     Auto,
 }
 
 /// A set of defaults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Preset {
-    /// As in the lecture: its sun, its sky, Monte Carlo, and its linear scale.
+    /// The lecture's sun, sky, Monte Carlo integration and linear scale.
     Lecture,
 }
 
-/// On or off, where the default is not plainly off.
+/// A switch whose default is not necessarily off.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Switch {
     /// On.
@@ -61,40 +61,40 @@ pub enum Switch {
     Off,
 }
 
-/// How mirrors depend on the angle.
+/// How specular reflectance depends on the angle.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Fresnel {
-    /// Not at all: the lecture's ρ_s.
+    /// It does not: the lecture's ρ_s.
     #[default]
     Off,
     /// Schlick's approximation of Fresnel's equations.
     Schlick,
 }
 
-/// How wide the edges of the sun's shadow are in a single frame.
+/// Width of the sun's shadow edges in a single frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Penumbra {
-    /// A texel of the map; the mean of several samples has the true ones.
+    /// One texel of the shadow map; accumulated samples converge to the true penumbra.
     #[default]
     Map,
-    /// As the sun's disc makes them.
+    /// The penumbra of the sun's disc.
     Sun,
 }
 
-/// How finely ambient occlusion is computed.
+/// Resolution of ambient occlusion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum AoResolution {
     /// Half from 720 rows on, full below.
     #[default]
     Auto,
-    /// From every pixel, at every second of every second row.
+    /// Occluders at full resolution, occlusion at half resolution.
     Full,
-    /// From every second pixel of every second row, at every fourth of every fourth.
+    /// Occluders at half resolution, occlusion at quarter resolution.
     Half,
 }
 
 impl AoResolution {
-    /// Pixels of a picture of so many rows to an occluder, each way.
+    /// Pixels per occluder along each axis, for a picture with `rows` rows.
     pub fn downscale(self, rows: u32) -> u32 {
         match self {
             Self::Full => 1,
@@ -111,28 +111,28 @@ impl Default for Size {
     }
 }
 
-/// As the parser of `--size` reads it.
+/// In the form that the parser of `--size` reads.
 impl fmt::Display for Size {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}x{}", self.width, self.height)
     }
 }
 
-/// As the parser of `--sun` reads it.
+/// In the form that the parser of `--sun` reads.
 impl fmt::Display for Direction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{},{}", self.azimuth_deg, self.elevation_deg)
     }
 }
 
-/// As the parser of `--solar` reads it.
+/// In the form that the parser of `--solar` reads.
 impl fmt::Display for SolarTime {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{},{}", self.day, self.hours)
     }
 }
 
-/// The text that an option is set with, the reverse of its parser; none for what is not set.
+/// Text form of an option value, the inverse of its parser; `None` if the option is not set.
 pub(super) trait Written {
     fn written(&self) -> Option<String>;
 }
@@ -149,7 +149,7 @@ impl<T: Written> Written for Option<T> {
     }
 }
 
-/// A flag: it is set or it is not.
+/// A flag has a text only if it is set.
 impl Written for bool {
     fn written(&self) -> Option<String> {
         self.then(|| "true".to_owned())
@@ -183,7 +183,7 @@ impl Written for Range {
     }
 }
 
-/// Values whose [`fmt::Display`] is what their parser reads.
+/// Types whose parser reads their [`fmt::Display`] form.
 macro_rules! written_as_displayed {
     ($($type:ty)*) => {
         $(impl Written for $type {

@@ -1,4 +1,4 @@
-//! OpenEXR: scene-linear 32-bit floats, the parameters as attributes, further quantities as named layers.
+//! OpenEXR: scene-linear 32-bit floats, parameters as attributes, further quantities as named layers.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -48,10 +48,10 @@ pub struct Layer {
     pub texels: Vec<[f32; 4]>,
 }
 
-/// Writes layers of one size. Channels are named `layer.R`, those of the unnamed layer `R`.
+/// Writes layers of one size. Channels are named `layer.R`, or `R` for the unnamed layer.
 ///
 /// # Errors
-/// The file cannot be written; an older one is left alone then.
+/// The file cannot be written; an existing file stays unchanged.
 pub fn write_exr(path: &Path, size: [u32; 2], layers: &[Layer], metadata: &Metadata) -> Result<()> {
     write_whole(path, &encode_exr(path, size, layers, metadata)?)
 }
@@ -59,7 +59,7 @@ pub fn write_exr(path: &Path, size: [u32; 2], layers: &[Layer], metadata: &Metad
 /// The bytes of [`write_exr`]; `path` is for error messages.
 ///
 /// # Errors
-/// The picture cannot be encoded, for instance because it is empty.
+/// The picture cannot be encoded, for example because it is empty.
 pub fn encode_exr(
     path: &Path,
     size: [u32; 2],

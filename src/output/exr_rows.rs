@@ -1,4 +1,4 @@
-//! OpenEXR files written band by band, for pictures larger than memory; the files equal those of [`super::write_exr`].
+//! OpenEXR files written in bands, for pictures larger than memory; the files equal those of [`super::write_exr`].
 
 use std::io::BufWriter;
 use std::path::Path;
@@ -14,7 +14,7 @@ use super::exr::{BT709, ENCODING, attributes, full_name};
 use super::{Channels, Metadata, reason, temporary, write_error};
 use crate::error::{Error, Result};
 
-/// Rows of a block of the file. The rows of a band must be a multiple of it, except for the last band.
+/// Rows per block of the file. The rows of each band except the last must be a multiple of it.
 pub const BLOCK_ROWS: usize = 16;
 
 /// A layer: its name (empty for the picture itself) and its channels.
@@ -27,7 +27,7 @@ type Channel = (String, usize, usize);
 /// compressed block; it is called until all `size[1]` rows are written.
 ///
 /// # Errors
-/// The error of `band`, or the file cannot be written; an older one is left alone then.
+/// The error of `band`, or the file cannot be written; an existing file stays unchanged.
 pub fn write_exr_rows(
     path: &Path,
     size: [u32; 2],
@@ -101,7 +101,7 @@ fn header(size: [u32; 2], channels: &[Channel], metadata: &Metadata) -> Header {
     header
 }
 
-/// Writes bands from the top.
+/// Writes bands from the top down.
 struct Bands<'w, W> {
     compressor: SequentialBlocksCompressor<'w, W>,
     width: usize,

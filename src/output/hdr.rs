@@ -11,7 +11,7 @@ use crate::error::Result;
 /// The bytes of a picture, rows from the top; the fourth component of a texel is ignored. `path` is for error messages.
 ///
 /// # Errors
-/// The picture cannot be encoded, for instance because it is empty.
+/// The picture cannot be encoded, for example because it is empty.
 pub fn encode_hdr(path: &Path, size: [u32; 2], texels: &[[f32; 4]]) -> Result<Vec<u8>> {
     let rgb: Vec<Rgb<f32>> = texels.iter().map(|t| Rgb([t[0], t[1], t[2]])).collect();
     let mut bytes = Vec::new();

@@ -1,13 +1,13 @@
-//! The legend of a picture in false colours: a bar of the colours with round values beside it.
+//! The legend of a false-colour picture: a colour bar labelled with round values.
 
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 
 use crate::daylight::colour::srgb_oetf;
 use crate::daylight::false_colour::{Quantity, Range, Tick};
 
-/// Weight of the labels.
+/// Font weight of the labels.
 const WEIGHT: FontWeight = FontWeight::Regular;
-/// Height of the labels.
+/// Font height of the labels.
 const HEIGHT: RasterHeight = RasterHeight::Size16;
 /// Width and height of a character, pixels.
 const LETTER: [i32; 2] = [get_raster_width(WEIGHT, HEIGHT) as i32, HEIGHT.val() as i32];
@@ -21,14 +21,14 @@ const GAP: i32 = 8;
 const BAR: i32 = 18;
 /// Length of a tick, pixels.
 const TICK: i32 = 5;
-/// Picture height at which the legend doubles in size, triples at twice that, and so on, pixels.
+/// Picture height at which the legend is drawn at twice its size, pixels; at twice this height it is tripled, and so on.
 const HEIGHT_OF_ONE: u32 = 900;
 /// Height of the legend, tenths of the picture's height.
 const TENTHS: i32 = 7;
 
-/// Draws the legend of `range` at the right edge of `rgba`: rows from the top, four bytes a pixel, sRGB.
+/// Draws the legend of `range` at the right edge of `rgba`: rows from the top, four bytes per pixel, sRGB.
 ///
-/// A picture that is too small is left unchanged. Returns whether the legend was drawn.
+/// Returns whether the legend was drawn: a picture that is too small stays unchanged.
 pub fn draw_legend(rgba: &mut [u8], size: [u32; 2], quantity: Quantity, range: Range) -> bool {
     let mut canvas = Canvas::new(rgba, size);
     let layout = Layout::new(&canvas, quantity, &range);
@@ -67,7 +67,7 @@ impl<'p> Canvas<'p> {
         }
     }
 
-    /// Blends a colour over a unit: `alpha` 0..=255. Units outside the picture are ignored.
+    /// Blends a colour over one unit, with `alpha` in 0..=255. Units outside the picture are ignored.
     fn blend(&mut self, x: i32, y: i32, colour: [u8; 3], alpha: u8) {
         if !(0..self.size[0]).contains(&x) || !(0..self.size[1]).contains(&y) {
             return;
@@ -95,7 +95,7 @@ impl<'p> Canvas<'p> {
         }
     }
 
-    /// Writes text from an upper left corner. Characters that the font lacks stay blank.
+    /// Draws text from its upper left corner. Characters missing from the font are left blank.
     fn text(&mut self, x: i32, y: i32, text: &str) {
         for (character, left) in text.chars().zip((x..).step_by(LETTER[0] as usize)) {
             let Some(raster) = get_raster(character, WEIGHT, HEIGHT) else {
@@ -125,7 +125,7 @@ impl Layout {
         let ticks = legible(range.ticks(), bar_height, LETTER[1]);
         let unit = quantity.unit();
         let letters = ticks.iter().map(|t| t.label.len()).max().unwrap_or(0);
-        // Characters, not bytes: ² has two bytes.
+        // Counts characters, not bytes: ² has two bytes.
         let text = letters.max(unit.chars().count()) as i32 * LETTER[0];
         let panel = [
             text + BAR + TICK + 4 * GAP,
@@ -189,14 +189,14 @@ impl Layout {
         }
     }
 
-    /// Row of a position 0..1 in the range.
+    /// Row of a position (0..1) on the scale.
     fn height_of(&self, share: f64) -> i32 {
         let last = f64::from((self.bar.height - 1).max(0));
         self.bar.y + ((1.0 - share) * last).round() as i32
     }
 }
 
-/// All ticks if their labels fit, else the decades, else the ends.
+/// All ticks if their labels fit, else only decades, else only the ends.
 fn legible(ticks: Vec<Tick>, height: i32, letter: i32) -> Vec<Tick> {
     let fit = |ticks: &[Tick]| {
         let mut gaps = ticks.windows(2).map(|pair| pair[1].share - pair[0].share);
@@ -250,7 +250,7 @@ mod tests {
                 let at = 4 * (y as u32 * canvas.zoom * size[0] + x as u32 * canvas.zoom) as usize;
                 let expected = turbo(tick.share).map(|c| 255.0 * srgb_oetf(c));
                 for (byte, expected) in rgba[at..at + 3].iter().zip(expected.to_array()) {
-                    // The row's middle is half a row off, where blue grows fastest.
+                    // The row's centre is half a row off, which matters most where blue rises steeply.
                     assert!((f64::from(*byte) - expected).abs() < 12.0, "{tick:?}");
                 }
             }

@@ -19,7 +19,7 @@ pub use self::rows::PngRows;
 
 use crate::error::{Error, Result};
 
-/// Parameters of a picture by option name: enough to render it again.
+/// Parameters of a picture by option name, sufficient to render it again.
 pub type Metadata = Vec<(String, String)>;
 
 fn write_error(path: &Path, reason: impl ToString) -> Error {
@@ -36,7 +36,7 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Checks before the work that a file can be written.
+/// Checks, before the work begins, that a file can be written.
 ///
 /// # Errors
 /// The folder is missing or not writable, or `path` is a folder.
@@ -58,7 +58,7 @@ pub fn check_writable(path: &Path) -> Result<()> {
 fn temporary(path: &Path) -> Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".skylight-");
-    // Temporary files are private by default; the umask decides who may read a picture.
+    // Temporary files are private by default; pictures should get the permissions of the umask.
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;
@@ -71,12 +71,12 @@ fn temporary(path: &Path) -> Result<tempfile::NamedTempFile> {
 
 fn reason(error: &std::io::Error) -> String {
     match error.kind() {
-        // The folder exists, but some file systems (/proc) have no new files.
+        // The folder exists, but some file systems (/proc) do not allow new files.
         std::io::ErrorKind::PermissionDenied | std::io::ErrorKind::NotFound => {
             "its folder does not accept new files; choose another".to_owned()
         }
         std::io::ErrorKind::StorageFull => "the disk is full; free some space".to_owned(),
-        // Without the error number and the name of the temporary file.
+        // The message omits the error number and the name of the temporary file.
         _ => {
             let text = error.to_string();
             text.split(" (os error").next().unwrap_or(&text).to_owned()
@@ -87,15 +87,15 @@ fn reason(error: &std::io::Error) -> String {
 /// Writes a temporary file beside the target, then renames it.
 ///
 /// # Errors
-/// The file cannot be written; an older file is left alone.
+/// The file cannot be written; an existing file stays unchanged.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     write_set(&[(path.to_owned(), bytes.to_vec())])
 }
 
-/// Writes several files: none is renamed to its target before all are written.
+/// Writes several files; none is renamed to its target until all are written.
 ///
 /// # Errors
-/// One cannot be written; older files are left alone then.
+/// One of them cannot be written; existing files stay unchanged.
 pub fn write_set(files: &[(PathBuf, Vec<u8>)]) -> Result<()> {
     let whole = files.iter().map(|(path, bytes)| {
         let mut file = temporary(path)?;
@@ -127,7 +127,7 @@ pub fn print(text: &str) -> Result<()> {
 /// Writes a text file.
 ///
 /// # Errors
-/// The file cannot be written; an older one is left alone then.
+/// The file cannot be written; an existing file stays unchanged.
 pub fn write_text(path: &Path, text: &str) -> Result<()> {
     write_whole(path, text.as_bytes())
 }

@@ -1,32 +1,32 @@
-//! 8-bit PNG with the parameters as text chunks.
+//! 8-bit PNG with parameters as text chunks.
 
 use std::path::Path;
 
 use super::{Metadata, write_error, write_whole};
 use crate::error::Result;
 
-/// Encoding of the 8-bit values.
+/// Transfer function of the 8-bit values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Encoding {
     /// The sRGB curve.
     Srgb,
-    /// A power: value = linear^(1/γ).
+    /// A power law: value = linear^(1/γ).
     Gamma(f64),
 }
 
 /// Compression effort.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effort {
-    /// A tenth of the time of [`Effort::Small`], for pictures that are drawn quickly.
+    /// Takes a tenth of the time of [`Effort::Small`]; for pictures that are drawn quickly.
     Quick,
-    /// The usual file size.
+    /// Gives the usual file size.
     Small,
 }
 
-/// Writes `rgba` (rows from the top, four bytes a pixel, alpha ignored) as an RGB picture.
+/// Writes `rgba` (rows from the top, four bytes per pixel, alpha ignored) as an RGB picture.
 ///
 /// # Errors
-/// The file cannot be written; an older one is left alone then.
+/// The file cannot be written; an existing file stays unchanged.
 pub fn write_png(
     path: &Path,
     size: [u32; 2],
@@ -56,7 +56,7 @@ fn encode(
     Ok(bytes)
 }
 
-/// Writes everything before the pixels.
+/// Writes everything that precedes the pixels.
 pub(super) fn head<W: std::io::Write>(
     target: W,
     size: [u32; 2],
@@ -77,7 +77,7 @@ pub(super) fn head<W: std::io::Write>(
         }
     }
     for (key, value) in metadata {
-        // Keys are short ASCII; values (paths) may hold any Unicode.
+        // Keys are short ASCII; values (paths) may contain any Unicode.
         encoder.add_itxt_chunk(key.clone(), value.clone())?;
     }
     encoder.write_header()

@@ -8,7 +8,7 @@ use super::png::head;
 use super::{Effort, Encoding, Metadata, reason, temporary, write_error};
 use crate::error::Result;
 
-/// A PNG that is written from the top to a temporary file beside its target, and renamed at the end.
+/// A PNG written from the top to a temporary file beside its target, and renamed at the end.
 pub struct PngRows {
     path: PathBuf,
     file: tempfile::NamedTempFile,
@@ -20,7 +20,7 @@ impl PngRows {
     /// Starts a picture of `size` pixels.
     ///
     /// # Errors
-    /// No file can be created beside `path`.
+    /// No file can be created in the folder of `path`.
     pub fn new(
         path: &Path,
         size: [u32; 2],
@@ -46,7 +46,7 @@ impl PngRows {
         })
     }
 
-    /// Appends pixels in reading order: four bytes each, alpha ignored.
+    /// Appends pixels in reading order: four bytes per pixel, alpha ignored.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -58,10 +58,10 @@ impl PngRows {
         written.map_err(|e| write_error(&self.path, reason(&e)))
     }
 
-    /// Completes the file; it replaces an older one only now.
+    /// Completes the file and replaces an existing one.
     ///
     /// # Errors
-    /// Rows are missing or the file cannot be written; an older one is left alone then.
+    /// Rows are missing or the file cannot be written; an existing file stays unchanged.
     pub fn finish(self) -> Result<()> {
         let path = self.path;
         self.rows.finish().map_err(|e| write_error(&path, e))?;

@@ -1,4 +1,4 @@
-//! `skylight bake`, the real program, read back by an independent reader: units, orientation, and what is beside it.
+//! `skylight bake`, end to end, read back by an independent reader: units, orientation, and the accompanying files.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -42,7 +42,7 @@ fn read(path: &Path) -> Rows {
     image.expect("an EXR").layer_data.channel_data.pixels
 }
 
-/// Direction of a texel by the convention that the sidecar states, written out anew.
+/// Direction of a texel by the convention in the sidecar file, implemented independently.
 fn direction(i: usize, j: usize, width: usize, height: usize) -> DVec3 {
     let azimuth = (360.0 * (i as f64 + 0.5) / width as f64).to_radians();
     let elevation = (90.0 - 180.0 * (j as f64 + 0.5) / height as f64).to_radians();
@@ -53,7 +53,7 @@ fn direction(i: usize, j: usize, width: usize, height: usize) -> DVec3 {
     )
 }
 
-/// Irradiance of an environment by plain summation over its texels.
+/// Irradiance of an environment by summation over its texels.
 fn irradiance(rows: &Rows, normal: DVec3) -> DVec3 {
     let (width, height) = (rows[0].len(), rows.len());
     let mut sum = DVec3::ZERO;
@@ -186,7 +186,7 @@ fn hdr_and_exr_agree_and_the_sidecar_says_what_they_are() {
 #[test]
 fn all_files_or_none() {
     let folder = tempfile::tempdir().expect("a folder");
-    // One of the eight targets is a folder: nothing may be written.
+    // One of the eight targets is a folder, so nothing may be written.
     std::fs::create_dir(folder.path().join("f_nz.exr")).expect("made");
     let output = bake(folder.path(), "--map sky --size 8 --layout faces -o f.exr");
     assert_eq!(output.status.code(), Some(1));

@@ -1,4 +1,4 @@
-//! `skylight bench` as a program: its table, its files, and its judgement of an earlier run.
+//! `skylight bench`, end to end: its table, its files, and its comparison with an earlier run.
 
 use std::fs;
 use std::path::Path;
@@ -9,14 +9,14 @@ use serde_json::{Value, json};
 /// A small model.
 const OBJ: &str = "v -2 0 2\nv 2 0 2\nv 2 0 -2\nv -2 0 -2\nv 0 2 0\nf 1 2 3\nf 1 3 4\nf 1 2 5\n";
 
-/// A folder with the model in it.
+/// A folder that contains the model.
 fn place() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("m.obj"), OBJ).expect("a model");
     folder
 }
 
-/// Few frames of a small picture.
+/// Benchmarks a few frames of a small picture.
 fn bench(folder: &Path, words: &str) -> Output {
     Command::new(env!("CARGO_BIN_EXE_skylight"))
         .current_dir(folder)
@@ -41,14 +41,14 @@ fn read(folder: &Path, name: &str) -> String {
     fs::read_to_string(folder.join(name)).expect("written")
 }
 
-/// The JSON file `name`, changed and written again.
+/// Edits the JSON file `name` in place.
 fn change(folder: &Path, name: &str, change: impl FnOnce(&mut Value)) {
     let mut value: Value = serde_json::from_str(&read(folder, name)).expect("JSON");
     change(&mut value);
     fs::write(folder.join(name), value.to_string()).expect("written");
 }
 
-/// Times in a JSON report: `times` of every pass and whole frame.
+/// Multiplies the times in a JSON report, of every pass and of whole frames, by `factor`.
 fn scale(report: &mut Value, factor: f64) {
     let Value::Object(fields) = report else {
         return;
@@ -119,7 +119,7 @@ fn bytes_come_from_formats_and_sizes_and_counters_from_the_device() {
             .unwrap_or_else(|| panic!("no {name}: {passes:?}"))
             .clone()
     };
-    // One triangle of 8-bit colours, made from one lookup in a picture.
+    // One triangle; writes 8-bit colours from one lookup per pixel.
     let tone = pass("tone map");
     assert_eq!(tone["pixels"], 64 * 36);
     assert_eq!(tone["bytes_written_per_pixel"], 4.0);
@@ -128,7 +128,7 @@ fn bytes_come_from_formats_and_sizes_and_counters_from_the_device() {
             .as_f64()
             .is_some_and(|b| (2.0..=16.0).contains(&b))
     );
-    // 32-bit depth of 2048² texels, positions and indices of three triangles.
+    // 32-bit depth of 2048² texels; positions and indices of three triangles.
     let shadow = pass("shadow map");
     assert_eq!(shadow["pixels"], 2048 * 2048);
     assert!(
@@ -223,7 +223,7 @@ fn start_up_is_told_step_by_step_and_the_cache_is_kept() {
     let files: Vec<_> = fs::read_dir(&cache).expect("a folder").collect();
     assert_eq!(files.len(), 1, "{files:?}");
     assert!(run().contains("pipeline cache: loaded"));
-    // A folder that cannot be made is no reason to fail.
+    // A cache folder that cannot be created is not a failure.
     fs::remove_dir_all(&cache).expect("gone");
     fs::write(&cache, "a file").expect("written");
     run();
@@ -238,7 +238,7 @@ fn an_earlier_run_is_a_yardstick() {
         assert!(table.contains(part), "no {part}: {table}");
     }
     assert!(!table.contains("note:"), "the same was measured: {table}");
-    // As if everything had once been a hundred times faster; being slower alone is no failure.
+    // As if everything had been a hundred times faster before; a slowdown alone is not a failure.
     change(folder.path(), "old.json", |report| scale(report, 0.01));
     let table = succeeded(&bench(folder.path(), "--compare old.json"));
     assert!(table.contains("slower"), "{table}");

@@ -1,4 +1,4 @@
-//! `skylight compare`: the real program on pictures with known differences.
+//! `skylight compare`, end to end, on pictures with known differences.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -13,7 +13,7 @@ fn compare(words: &[&Path]) -> Output {
         .expect("the program starts")
 }
 
-/// A grey ramp times a factor.
+/// A grey ramp scaled by a factor.
 fn picture(path: &Path, size: [u32; 2], factor: f32) {
     let texels = (0..size[0] * size[1])
         .map(|i| [(100.0 + i as f32) * factor; 4])

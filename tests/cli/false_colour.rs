@@ -1,6 +1,6 @@
-//! Pictures in false colours by the real program: what can be read off them is what `skylight sky` says.
+//! False-colour pictures, end to end: values read from the colours equal those of `skylight sky`.
 //!
-//! Seen to fail with the sky's irradiance left out of the illuminance, and with the range in thousands of its unit.
+//! Verified to fail without the sky's irradiance in the illuminance, and with the range in thousands of its unit.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -67,7 +67,7 @@ fn skylight(folder: &Path, words: &[&str]) -> Output {
         .expect("the program starts")
 }
 
-/// Renders the plane; the words of the program on stdout.
+/// Renders the plane; returns the picture and the program's stdout.
 fn render(folder: &Path, words: &[&str]) -> (Picture, String) {
     std::fs::write(folder.join("plane.obj"), PLANE).expect("a file");
     let all = [
@@ -83,7 +83,7 @@ fn render(folder: &Path, words: &[&str]) -> (Picture, String) {
     (Picture::read(&folder.join("p.png")), told(&output.stdout))
 }
 
-/// The value whose colour is nearest, as one reads it off the legend.
+/// The value with the nearest colour, as read from the legend.
 fn value_of(colour: DVec3, range: &Range) -> f64 {
     let steps = 4000;
     let value = |i: i32| range.min * (range.max / range.min).powf(f64::from(i) / f64::from(steps));
@@ -147,7 +147,7 @@ fn the_luminance_of_grey_ground_is_a_share_of_its_illuminance() {
     println!("read {read:.0} cd/m² off the picture of {used}; the sky says {expected:.0}");
     assert!((read / expected - 1.0).abs() < 0.03, "{read} {expected}");
     assert!(range.min <= expected && expected <= range.max);
-    // Half a decade around one value.
+    // The range is half a decade around one value.
     assert!((range.max / range.min).log10() < 0.51, "{used}");
 }
 

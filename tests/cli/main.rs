@@ -1,4 +1,4 @@
-//! The program itself: options, files, exit codes.
+//! End-to-end tests of the program: options, files, exit codes.
 
 mod bake;
 mod bench;

@@ -1,7 +1,7 @@
-//! A bake as another renderer sees it: Mitsuba 3 (`pip install mitsuba`) lights planes with the equirect sky.
+//! A bake in another renderer: Mitsuba 3 (`pip install mitsuba`) lights planes with the equirectangular sky.
 //!
-//! Skipped where `python3` (or the interpreter that `SKYLIGHT_PYTHON` names) has no Mitsuba; with `SKYLIGHT_MITSUBA=require`
-//! that is a failure.
+//! Skipped if `python3` (or the interpreter named by `SKYLIGHT_PYTHON`) has no Mitsuba; with `SKYLIGHT_MITSUBA=require` that
+//! is a failure.
 
 use std::process::Command;
 
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 const SUN: (f64, f64) = (137.0, 25.0);
 
-/// What Mitsuba found in the map; `None` where there is no Mitsuba.
+/// The values that Mitsuba computes from the map; `None` without Mitsuba.
 fn mitsuba(map: &std::path::Path) -> Option<Value> {
     let python = std::env::var("SKYLIGHT_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mitsuba_bake.py");

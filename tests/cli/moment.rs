@@ -1,4 +1,4 @@
-//! Places and moments as people write them, in the real program.
+//! Places and moments in the forms that people write, end to end.
 
 use std::process::{Command, Output};
 
@@ -11,7 +11,7 @@ fn run(words: &[&str]) -> Output {
         .expect("it starts")
 }
 
-/// The moment and the sun's elevation (degrees) of `skylight sky`.
+/// The moment and the sun's elevation (degrees) reported by `skylight sky`.
 fn sky(words: &[&str]) -> (String, f64) {
     let output = run(&[&["sky", "--json"], words].concat());
     let errors = String::from_utf8_lossy(&output.stderr);
@@ -22,7 +22,7 @@ fn sky(words: &[&str]) -> (String, f64) {
     (when.to_owned(), elevation.expect("an elevation"))
 }
 
-/// The one line on stderr of a run that fails.
+/// The single line on stderr of a run that fails.
 fn error(words: &[&str]) -> String {
     let output = run(&[&["sky"], words].concat());
     let text = String::from_utf8(output.stderr).expect("UTF-8");
@@ -53,7 +53,7 @@ fn a_place_has_an_afternoon_of_its_own() {
             20.0,
         ),
         ("New York", "2026-06-21T15:00:00-04:00", 55.0, 60.0),
-        // Far from any city: the hour of the longitude.
+        // Far from any city: the offset is the whole hour of the longitude.
         ("0,-160", "2026-06-21T15:00:00-11:00", 30.0, 40.0),
     ] {
         let (when, elevation) = sky(&["--place", place]);

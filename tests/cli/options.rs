@@ -1,4 +1,4 @@
-//! The real program: what it writes, what it says, and what it leaves alone.
+//! Options, end to end: output files, messages, and files that must stay unchanged.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// The small, quick picture that most tests are content with.
+/// A small, quick picture that suffices for most tests.
 const SMALL: [&str; 4] = ["--size", "64x36", "--irradiance-samples", "16"];
 
-/// A model with a material, a texture and nothing else.
+/// A model with a material and a texture.
 const OBJ: &str = "mtllib m.mtl\nv -2 0 2\nv 2 0 2\nv 2 0 -2\nv -2 0 -2\nv 0 2 0\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl paint\n\
                    f 1/1 2/2 3/3\nf 1/1 3/2 4/3\nf 1/1 2/2 5/3\n";
 const MTL: &str = "newmtl paint\nKd 0.8 0.4 0.2\n";
@@ -24,7 +24,7 @@ fn program(folder: &Path) -> Command {
 struct Place(tempfile::TempDir);
 
 impl Place {
-    /// With `m.obj` and `m.mtl`.
+    /// A folder with `m.obj` and `m.mtl`.
     fn new() -> Self {
         let place = Self(tempfile::tempdir().expect("a scratch folder"));
         place.put("m.obj", OBJ);
@@ -45,7 +45,7 @@ impl Place {
         Ended::of(words, output.expect("the program starts"))
     }
 
-    /// Fails, and ends the program, when it takes longer.
+    /// Runs the program; if it takes longer than `limit`, kills it and fails.
     fn run_within(&self, limit: Duration, words: &[&str]) -> Ended {
         let mut command = program(self.path());
         command.args(words);
@@ -60,16 +60,16 @@ impl Place {
             }
             std::thread::sleep(Duration::from_millis(20));
         }
-        // One line at most: the pipes hold it.
+        // The output is one line at most, so it fits into the pipes.
         Ended::of(words, child.wait_with_output().expect("its words"))
     }
 
-    /// `render` with a small picture.
+    /// Runs `render` with a small picture.
     fn render(&self, words: &[&str]) -> Ended {
         self.run(&[&["render"], words, &SMALL[..]].concat())
     }
 
-    /// Every path below the folder, with the contents of files.
+    /// Every path below the folder, with file contents.
     fn contents(&self) -> BTreeMap<PathBuf, Vec<u8>> {
         fn walk(folder: &Path, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
             for entry in fs::read_dir(folder).expect("a folder") {
@@ -87,7 +87,7 @@ impl Place {
         found
     }
 
-    /// Names in the folder.
+    /// Names of the entries in the folder.
     fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(self.path()).expect("the folder");
         let name = |entry: std::io::Result<fs::DirEntry>| entry.expect("an entry").file_name();
@@ -99,7 +99,7 @@ impl Place {
     }
 }
 
-/// How a run of the program ended.
+/// Result of a run of the program.
 struct Ended {
     words: String,
     code: Option<i32>,
@@ -117,7 +117,7 @@ impl Ended {
         }
     }
 
-    /// Exit code 0; `stderr` is what it said besides.
+    /// Checks for exit code 0. Warnings on stderr are allowed.
     #[track_caller]
     fn succeeded(self) -> Self {
         assert_eq!(self.code, Some(0), "{}: {}", self.words, self.stderr);
@@ -125,7 +125,7 @@ impl Ended {
         self
     }
 
-    /// Succeeded without a word on stderr.
+    /// Checks for exit code 0 and an empty stderr.
     #[track_caller]
     fn silently(self) -> Self {
         let ended = self.succeeded();
@@ -133,7 +133,7 @@ impl Ended {
         ended
     }
 
-    /// One line of error that has every part, and nothing else.
+    /// Checks the exit code, and that the only output is one line of error that contains every part.
     #[track_caller]
     fn failed(self, code: i32, parts: &[&str]) {
         let Self { words, stderr, .. } = self;
@@ -151,7 +151,7 @@ impl Ended {
     }
 }
 
-/// The parameters of a PNG, and its size; it must be 8-bit RGB.
+/// Parameters, size and pixels of a PNG; it must be 8-bit RGB.
 fn png(path: &Path) -> (BTreeMap<String, String>, [u32; 2], Vec<u8>) {
     let file = std::io::BufReader::new(fs::File::open(path).expect("the picture"));
     let mut reader = png::Decoder::new(file).read_info().expect("a PNG");
@@ -190,7 +190,7 @@ fn exr(path: &Path) -> Exr {
     });
     let parameters = layer.attributes.other.iter();
     let parameters = parameters.filter_map(|(key, value)| match value {
-        // Prefixed, because some names (exposure) are standard attributes of other types.
+        // Prefixed, because some option names (exposure) are standard attributes of other types.
         AttributeValue::Text(text) => {
             let key = key.to_string().strip_prefix("skylight:")?.to_owned();
             Some((key, text.to_string()))
@@ -245,7 +245,7 @@ fn bundled_scenes_go_by_their_names_unless_a_file_does() {
     let (parameters, size, _) = png(&place.path().join("i.png"));
     assert_eq!(size, [64, 36]);
     assert!(parameters["command"].contains(" island "));
-    // A file that is called so is a model without an extension.
+    // A file of that name is a model without an extension.
     place.put("island", OBJ);
     let ended = place.run(&["render", "island", "-o", "j.png"]);
     ended.failed(1, &["island"]);
@@ -264,7 +264,7 @@ fn without_a_display_the_window_says_so() {
     ended.failed(1, &["no display", "DISPLAY is set", "skylight render"]);
 }
 
-/// Names of files are bytes on Unix.
+/// File names are bytes on Unix.
 #[test]
 #[cfg(unix)]
 fn an_output_path_need_not_be_utf_8() {
@@ -316,7 +316,7 @@ fn an_exr_is_32_bit_float_with_its_parameters() {
     for (key, value) in [("sun", "215,42"), ("turbidity", "3.2"), ("samples", "1")] {
         assert_eq!(exr.parameters.get(key).map(String::as_str), Some(value));
     }
-    // Daylight is thousands of cd/m², not display values.
+    // Scene luminances in daylight are thousands of cd/m², not display values.
     let green = &exr.channels["G"];
     let mean = green.iter().sum::<f32>() / green.len() as f32;
     assert!((500.0..20_000.0).contains(&mean), "{mean} cd/m²");
@@ -526,12 +526,12 @@ fn outputs_that_cannot_be_written_are_named_before_the_work() {
         (vec!["bench", "--json", "folder.png"], "folder.png"),
     ];
     if cfg!(target_os = "linux") {
-        // Root may write anywhere but into a file system that makes no files.
+        // Root may write anywhere except to file systems that create no files.
         cases.push((vec!["render", "-o", "/proc/a.png"], "/proc/a.png"));
         cases.push((vec!["render", "-o", "/sys/a.exr"], "/sys/a.exr"));
     }
     for (words, part) in cases {
-        // So long that a check after the work would be noticed.
+        // So long that a check after rendering would exceed the time limit.
         let long: &[&str] = match words[0] {
             "render" => &["--samples", "60000"],
             _ => &["--frames", "100000"],
@@ -560,7 +560,7 @@ fn missing_helpers_are_warnings_that_quiet_silences() {
         place.render(&[scene, "-o", "a.png", "--quiet"]).silently();
         png(&place.path().join("a.png"));
     }
-    // Cut off within its last face: what is whole is drawn.
+    // Cut off within its last face: the complete faces are drawn.
     place.put("cut.obj", &OBJ[..OBJ.len() - 6]);
     let ended = place.render(&["cut.obj", "-o", "a.png"]).succeeded();
     assert!(ended.stderr.contains("fewer than three corners"));
@@ -687,7 +687,7 @@ fn bench_prints_a_table_and_writes_json() {
     }
 }
 
-/// Starts a render that takes minutes and waits until it is well under way.
+/// Starts a render that takes minutes and waits until it has drawn for a while.
 fn started(place: &Place, output: &str) -> Child {
     let mut child = program(place.path())
         .args([
@@ -732,7 +732,7 @@ fn killed_in_the_middle_the_old_picture_stays() {
     }
 }
 
-/// Where results go nowhere the picture still counts, and nothing panics.
+/// A stdout that cannot be written is an error, never a panic.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_full_or_closed_stdout_is_no_panic() {

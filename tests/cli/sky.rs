@@ -1,4 +1,4 @@
-//! `skylight sky`, the real program: its JSON, known suns, and what it says to nonsense.
+//! `skylight sky`, end to end: its JSON, known sun positions, and messages for invalid input.
 
 use std::process::{Command, Output};
 
@@ -63,7 +63,7 @@ fn every_fixed_key_has_its_shape() {
     let expected = std::f64::consts::FRAC_1_SQRT_2;
     assert!(x.abs() < 1e-12 && (y - expected).abs() < 1e-12 && (z - expected).abs() < 1e-12);
     assert_eq!(found["sky"]["model"], "preetham");
-    // Preetham's model begins at 2; the warning names what was asked for.
+    // Preetham's model begins at 2; the warning names the requested value.
     assert_eq!(at(&found, "sky.turbidity"), 2.0);
     let warning = found["warnings"][0].as_str().expect("a warning");
     assert!(warning.contains("turbidity 1.65"), "{warning}");
@@ -146,7 +146,7 @@ const KNOWN: [Known; 6] = [
         180.0,
         Some(["08:37", "15:38"]),
     ),
-    // Quito at the equinox: the sun passes the zenith within a degree.
+    // Quito at the equinox: the sun passes within a degree of the zenith.
     (
         "--place -0.18,-78.47 --when 2026-03-20T09:21-05:00",
         45.0,
@@ -166,7 +166,7 @@ const KNOWN: [Known; 6] = [
         180.0,
         None,
     ),
-    // Sydney, midsummer noon: the sun stands in the north.
+    // Sydney, midsummer noon: the sun is in the north.
     (
         "--place -33.87,151.21 --when 2026-12-21T12:53:10+11:00",
         79.57,

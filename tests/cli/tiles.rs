@@ -1,4 +1,4 @@
-//! Pictures drawn in tiles: the same as drawn at once, and without seams where they cannot be.
+//! Tiled rendering: the same picture as in one piece, or one without visible seams.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -80,7 +80,7 @@ fn tiles_are_the_picture_that_is_drawn_at_once() {
             "{words:?}: FLIP {flip:.6}, largest difference {largest:.4}, {:.4} % above 1/64",
             more * 100.0
         );
-        // Vertices of another projection are rounded to other sixteenths of a pixel's sixteenth: a few edges move by that.
+        // With another projection, vertices snap to other subpixel positions: a few edges move by that.
         assert!(flip < 5e-4 && more < 1e-3, "{words:?}: {flip} {more}");
     }
 }
@@ -113,7 +113,7 @@ fn layers_of_tiles_are_those_of_the_whole() {
     }
 }
 
-/// Mean difference of neighbouring columns, at columns that `is_seam` picks and at all others.
+/// Mean difference between neighbouring columns: at seams, and everywhere else.
 fn steps(picture: &Picture, is_seam: impl Fn(usize) -> bool) -> (f64, f64) {
     let [width, height] = picture.size;
     let luminance = picture.luminance();
@@ -131,7 +131,7 @@ fn steps(picture: &Picture, is_seam: impl Fn(usize) -> bool) -> (f64, f64) {
 #[test]
 fn wider_than_the_device_there_are_no_seams() {
     let place = Place::new();
-    // Only what the sky lights: occlusion shows most there.
+    // Sky light only: it shows occlusion most clearly.
     let words = [
         "--size",
         "20000x120",

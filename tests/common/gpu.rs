@@ -1,4 +1,4 @@
-//! What the GPU tests share: a device under validation, frames, pictures, and small scenes.
+//! Shared by the GPU tests: a validated device, frames, read-back and small scenes.
 #![allow(dead_code)]
 
 use std::sync::Arc;
@@ -14,25 +14,25 @@ use skylight::passes::occlusion::ssao::SsaoSettings;
 use skylight::passes::picture::tone_map::Scale;
 use skylight::scene::{Bounds, Camera, Material, Part, Scene};
 
-/// Relative step of 16-bit floats. Vulkan lets a device store either neighbour of a number (lavapipe truncates), so this, and
-/// not half of it, is the error of a stored value.
+/// Relative step of 16-bit floats. Vulkan lets a device round to either neighbour (lavapipe truncates), so the error of a
+/// stored value is a whole step, not half of one.
 pub const HALF_ROUNDOFF: f64 = 1.0 / 1024.0;
 
 /// A device under the validation layer with synchronization validation.
 ///
-/// No device, no layer, and any message of the layer are failures: dropping it panics on messages.
+/// A missing device or layer is a failure. Dropping it panics if the layer has reported anything.
 pub struct Device {
     pub context: Arc<Context>,
     pub recorder: Recorder,
 }
 
 impl Device {
-    /// The best device, or the one that SKYLIGHT_TEST_DEVICE names.
+    /// The best device, or the one named by SKYLIGHT_TEST_DEVICE.
     pub fn new() -> Self {
         Self::with(&ContextOptions::default())
     }
 
-    /// With these options, always validated.
+    /// A device with these options; validation is always on.
     pub fn with(options: &ContextOptions) -> Self {
         let context = Context::new(&ContextOptions {
             device: std::env::var("SKYLIGHT_TEST_DEVICE").ok(),
@@ -44,7 +44,7 @@ impl Device {
         Self { context, recorder }
     }
 
-    /// Records, submits and waits.
+    /// Records commands, submits them and waits.
     pub fn run<T>(&mut self, record: impl FnOnce(&mut Recorder) -> T) -> T {
         self.recorder.begin().expect("begun");
         let result = record(&mut self.recorder);
@@ -52,14 +52,14 @@ impl Device {
         result
     }
 
-    /// All texels of an image, layer after layer.
+    /// All texels of an image, layer by layer.
     pub fn read(&mut self, image: &Image) -> Vec<[f32; 4]> {
         read_back(&mut self.recorder, image)
             .expect("read back")
             .rgba()
     }
 
-    /// The six faces of a cube map, RGB.
+    /// Reads back the six faces of a cube map, RGB.
     pub fn read_cube(&mut self, image: &Image) -> Cube {
         let texels = self.read(image).into_iter();
         Cube {
@@ -68,7 +68,7 @@ impl Device {
         }
     }
 
-    /// Draws a scene until its light is refined and all samples are in. `show` replaces what the settings show.
+    /// Draws a scene until its irradiance is refined and all samples are accumulated.
     pub fn frame(
         &mut self,
         scene: &Scene,
@@ -81,7 +81,7 @@ impl Device {
         frame
     }
 
-    /// Draws a picture with a frame that exists.
+    /// Draws a view with an existing frame.
     pub fn draw(&mut self, frame: &mut Frame, daylight: &Daylight, camera: &Camera) {
         let refined = (0..1000).any(|_| {
             self.run(|rec| frame.record_light(rec, daylight));
@@ -93,7 +93,7 @@ impl Device {
         }
     }
 
-    /// Draws a scene and gives what the settings show, in the device's units.
+    /// Draws a scene and reads back the shown quantity, in the device's units.
     pub fn picture(
         &mut self,
         scene: &Scene,
@@ -105,7 +105,7 @@ impl Device {
         self.picture_of(&frame)
     }
 
-    /// What a drawn frame shows.
+    /// Reads back the shown quantity of a drawn frame.
     pub fn picture_of(&mut self, frame: &Frame) -> Picture {
         let size = frame.settings().size.to_array().map(|edge| edge as usize);
         let texels = self.read(frame.radiance());
@@ -141,7 +141,7 @@ impl Picture {
         DVec3::from_array(rgb(self.texels[y * self.size[0] + x]))
     }
 
-    /// Column and row of every pixel with its RGB.
+    /// Column, row and RGB of every pixel.
     pub fn pixels(&self) -> impl Iterator<Item = ([usize; 2], DVec3)> + '_ {
         let width = self.size[0];
         self.texels
@@ -158,7 +158,7 @@ pub struct Cube {
 }
 
 impl Cube {
-    /// Texel with its unit direction and a name for messages.
+    /// Every texel: its unit direction, its value, and a name for messages.
     pub fn iter(&self) -> impl Iterator<Item = (DVec3, DVec3, String)> + '_ {
         cube::texels(self.edge)
             .zip(&self.texels)
@@ -174,8 +174,8 @@ impl Cube {
         self.texels[(face * self.edge + index(t)) * self.edge + index(s)]
     }
 
-    /// Bilinear and seamless: a texel beyond the edge of a face is the nearest one of its neighbour, and where three
-    /// faces meet the missing fourth is left out.
+    /// Bilinear and seamless: a tap beyond the edge of a face takes the nearest texel of the neighbouring face; at a corner the
+    /// missing fourth tap is left out.
     pub fn sample(&self, direction: DVec3) -> DVec3 {
         let n = self.edge as f64;
         let (face, s, t) = cube::face_of(direction);
@@ -196,7 +196,7 @@ impl Cube {
     }
 }
 
-/// Settings of a small exact picture: 32-bit floats, one sample, no ambient occlusion, the picture itself.
+/// Settings of a small exact picture: 32-bit floats, one sample, no ambient occlusion.
 pub fn settings(width: u32, height: u32) -> FrameSettings {
     let mut set = FrameSettings {
         size: UVec2::new(width, height),
@@ -214,12 +214,12 @@ pub fn settings(width: u32, height: u32) -> FrameSettings {
     })
 }
 
-/// The same settings that show something else.
+/// The same settings showing another quantity.
 pub fn showing(show: Show, settings: FrameSettings) -> FrameSettings {
     settings.showing(show)
 }
 
-/// A camera with a 45 degree view.
+/// A camera with a vertical field of view of 45°.
 pub fn camera(eye: [f32; 3], target: [f32; 3]) -> Camera {
     Camera {
         eye: eye.into(),
@@ -241,13 +241,13 @@ pub fn pixel_ray(camera: &Camera, size: [usize; 2], pixel: [usize; 2]) -> DVec3 
     (forward + right * x + up * y).normalize()
 }
 
-/// Where the ray of a pixel meets the plane y = 0, if it does in front of the eye.
+/// Intersection of a pixel's ray with the plane y = 0; `None` if the ray does not point down.
 pub fn on_ground(camera: &Camera, size: [usize; 2], pixel: [usize; 2]) -> Option<DVec3> {
     let (eye, ray) = (camera.eye.as_dvec3(), pixel_ray(camera, size, pixel));
     (ray.y < 0.0).then(|| eye + ray * (-eye.y / ray.y))
 }
 
-/// Preetham's clear day with the sun at an azimuth and an elevation, degrees.
+/// Preetham's clear sky with the sun at an azimuth and an elevation, degrees.
 pub fn clear_day(azimuth: f64, elevation: f64) -> Daylight {
     Daylight::new(&Conditions {
         model: SkyModel::Preetham,
@@ -257,7 +257,7 @@ pub fn clear_day(azimuth: f64, elevation: f64) -> Daylight {
     })
 }
 
-/// Sky and ground of one luminance, cd/m², and no sun: what is all around is the same.
+/// Uniform environment: sky and ground of one luminance, cd/m², and no sun.
 pub fn constant_sky(luminance: f64) -> Daylight {
     let mut day = clear_day(180.0, 45.0);
     day.guard.scale = 0.0;
@@ -269,7 +269,7 @@ pub fn constant_sky(luminance: f64) -> Daylight {
     day
 }
 
-/// A Lambert material.
+/// A Lambertian material.
 pub fn matt(diffuse: f32) -> Material {
     Material {
         diffuse: [diffuse; 3],
@@ -277,7 +277,7 @@ pub fn matt(diffuse: f32) -> Material {
     }
 }
 
-/// Puts a scene together, one material for each part.
+/// Builder of a scene: each part has its own material.
 #[derive(Default)]
 pub struct Model(Scene);
 
@@ -298,19 +298,19 @@ impl Model {
         self.0.bounds = self.0.bounds.union(bounds);
     }
 
-    /// A parallelogram: a corner and the two edges at it, counter-clockwise seen from the front.
+    /// A parallelogram: a corner and its two edges, counter-clockwise seen from the front.
     pub fn quad(mut self, corner: [f32; 3], a: [f32; 3], b: [f32; 3], material: &Material) -> Self {
         let (corner, a, b) = (Vec3::from(corner), Vec3::from(a), Vec3::from(b));
         self.part(material, |scene| quad(scene, corner, a, b));
         self
     }
 
-    /// A horizontal square around the origin, looking up, at y = 0.
+    /// A horizontal square at y = 0 around the origin, facing up.
     pub fn ground(self, half: f32, material: &Material) -> Self {
         self.square([0.0; 3], half, material)
     }
 
-    /// A horizontal square, looking up.
+    /// A horizontal square facing up; the position is its centre.
     pub fn square(self, [x, y, z]: [f32; 3], half: f32, material: &Material) -> Self {
         let edge = 2.0 * half;
         self.quad(
@@ -321,7 +321,7 @@ impl Model {
         )
     }
 
-    /// A cube.
+    /// A cube; `half` is half its edge.
     pub fn cube(mut self, centre: [f32; 3], half: f32, material: &Material) -> Self {
         let centre = Vec3::from(centre);
         self.part(material, |scene| {
@@ -337,7 +337,7 @@ impl Model {
         self
     }
 
-    /// A smooth sphere of `2 rings x rings` quads.
+    /// A sphere of `2 rings x rings` quads with smooth normals.
     pub fn sphere(
         mut self,
         centre: [f32; 3],

@@ -1,11 +1,11 @@
-//! What several test programs need.
+//! Helpers shared by the test programs.
 #![allow(dead_code)]
 
 use std::path::PathBuf;
 
 /// The folder `shared` beside the checkout, with the reference data.
 ///
-/// Without it prints that the test is skipped; with `SKYLIGHT_SHARED=require` in the environment it panics instead.
+/// Without it a message says that the test is skipped; with `SKYLIGHT_SHARED=require` in the environment it panics instead.
 pub fn shared() -> Option<PathBuf> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared");
     if folder.is_dir() {
@@ -20,12 +20,12 @@ pub fn shared() -> Option<PathBuf> {
     None
 }
 
-/// Whether tests take their long form: SKYLIGHT_SOAK=1 in the environment.
+/// Whether tests run in their long form: SKYLIGHT_SOAK=1 in the environment.
 pub fn is_soaking() -> bool {
     std::env::var("SKYLIGHT_SOAK").is_ok_and(|value| value == "1")
 }
 
-/// A CSV file of `shared/reference`: comment lines begin with '#', the first other line names the columns.
+/// A CSV file of `shared/reference`: lines that begin with '#' are comments, the first other line names the columns.
 pub struct Table {
     name: String,
     columns: Vec<String>,
@@ -33,7 +33,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Reads `name`; `None` where the folder is absent. A missing file or an empty table is a failure.
+    /// Reads `name`; `None` if the folder is absent. A missing file or an empty table is a failure.
     pub fn read(name: &str) -> Option<Self> {
         let path = shared()?.join("reference").join(name);
         let text =
@@ -75,7 +75,7 @@ pub struct Row<'a> {
 }
 
 impl<'a> Row<'a> {
-    /// Cell of the column `name`.
+    /// Text in the column `name`.
     pub fn text(self, name: &str) -> &'a str {
         let column = self.table.columns.iter().position(|c| c == name);
         let column = column.unwrap_or_else(|| panic!("{} has no column {name}", self.table.name));
@@ -90,13 +90,13 @@ impl<'a> Row<'a> {
         })
     }
 
-    /// Numbers in three columns.
+    /// Numbers in three columns, as a vector.
     pub fn get3(self, names: [&str; 3]) -> glam::DVec3 {
         glam::DVec3::from_array(names.map(|name| self.get(name)))
     }
 }
 
-/// The largest of many errors; fails above its tolerance, and when it has seen nothing.
+/// The largest of many errors. Fails above its tolerance, and if no error was recorded.
 pub struct Worst {
     what: &'static str,
     tolerance: f64,
@@ -106,7 +106,7 @@ pub struct Worst {
 }
 
 impl Worst {
-    /// Errors of `what` may not exceed `tolerance`.
+    /// The largest error of `what` may not exceed `tolerance`.
     pub fn new(what: &'static str, tolerance: f64) -> Self {
         Self {
             what,
@@ -117,7 +117,7 @@ impl Worst {
         }
     }
 
-    /// Takes one error; not a number is the worst of all.
+    /// Records an error; NaN counts as the largest.
     pub fn see(&mut self, error: f64, at: impl std::fmt::Display) {
         self.count += 1;
         let error = if error.is_nan() {
@@ -130,7 +130,7 @@ impl Worst {
         }
     }
 
-    /// Prints the count and the largest error, and fails if it is too large or nothing was seen.
+    /// Prints the count and the largest error; fails if it is above the tolerance or nothing was recorded.
     pub fn finish(self) {
         let Self {
             what,

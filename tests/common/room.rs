@@ -1,4 +1,4 @@
-//! A room with an opening in its roof: what falls on its floor from a constant sky is known.
+//! A room with an opening in its roof: the irradiance of its floor under a uniform sky has a closed form.
 #![allow(dead_code)]
 
 use std::f64::consts::PI;
@@ -8,10 +8,10 @@ use skylight::scene::{Camera, Material, Scene};
 
 use crate::gpu::{Model, camera, matt};
 
-/// Half the edge of the room's floor, its height, and half the edge of the opening in its roof, metres.
+/// Half the edge of the floor, the height of the room, and half the edge of the roof's opening, metres.
 pub const ROOM: [f32; 3] = [2.0, 3.0, 0.8];
 
-/// A room with an opening in the middle of its roof; `open` is half the edge of that, 0 closes it.
+/// A room with a square opening in the middle of its roof; `open` is half its edge, 0 closes it.
 pub fn room(open: f32, floor: &Material) -> Scene {
     let ([half, height, _], white) = (ROOM, matt(0.8));
     let (edge, rim) = (2.0 * half, half - open);
@@ -32,7 +32,7 @@ pub fn room(open: f32, floor: &Material) -> Scene {
         .build()
 }
 
-/// From under the roof, down to the floor.
+/// A camera under the roof that looks down at the floor.
 pub fn under_the_roof() -> Camera {
     Camera {
         fov_deg: 70.0,
@@ -41,7 +41,7 @@ pub fn under_the_roof() -> Camera {
 }
 
 /// Configuration factor of a horizontal element at `p` to the opening above: the sum over its corners of the factor to a
-/// rectangle with one corner over the element (Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-4).
+/// rectangle with one corner above the element (Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-4).
 pub fn configuration_factor(p: DVec3) -> f64 {
     let [_, height, open] = ROOM.map(f64::from);
     let corner = |x: f64, y: f64| {

@@ -1,4 +1,4 @@
-//! The program with its window open on a display of its own.
+//! The program with an open window on an X server of its own.
 #![allow(dead_code)]
 
 use std::fs;
@@ -13,21 +13,21 @@ use x11rb::protocol::xproto::Window;
 
 use crate::x::{Display, PATIENCE, keysym, until};
 
-/// Whether the machine is shared by the tests of this program: held for reading by each that opens windows or renders for long,
-/// for writing by a test that measures time.
+/// Coordinates the tests of this program on one machine: tests that open windows or render for long hold the read lock, a test
+/// that measures time holds the write lock.
 static MACHINE: RwLock<()> = RwLock::new(());
 
-/// Waits until no test needs the machine to itself.
+/// Waits until no test needs the machine to itself; others may run beside.
 pub fn shared_machine() -> RwLockReadGuard<'static, ()> {
     MACHINE.read().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Waits until no other window is open and no other test renders.
+/// Waits until no other window is open and no other test renders, and keeps it so.
 pub fn quiet_machine() -> RwLockWriteGuard<'static, ()> {
     MACHINE.write().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The program with its window open.
+/// The running program and its window.
 pub struct Running {
     pub display: Display,
     child: Option<Child>,
@@ -52,7 +52,7 @@ impl Running {
         Self::with(words, &[])
     }
 
-    /// With these variables in its environment.
+    /// Starts the program with extra environment variables.
     pub fn with(words: &[&str], variables: &[(&str, &Path)]) -> Self {
         let display = Display::new();
         let folder = tempfile::tempdir().expect("a scratch folder");
@@ -63,7 +63,7 @@ impl Running {
             .envs(variables.iter().copied())
             .spawn()
             .expect("the program starts");
-        // A program that ends at once may never show its window.
+        // A program that exits at once may never map its window.
         let window = until("a window", || {
             let ended = || child.try_wait().expect("a state").map(|_| x11rb::NONE);
             display.window().or_else(ended)
@@ -75,17 +75,17 @@ impl Running {
             window,
             folder,
         };
-        // In the middle of nothing: outside of the window.
+        // Park the pointer outside the window.
         running.display.point(1590, 1190);
         running
     }
 
-    /// Without panel and read-outs: the picture alone.
+    /// Starts the program with panel and read-outs hidden: only the picture is shown.
     pub fn bare(words: &[&str]) -> Self {
         Self::bare_with(words, &[])
     }
 
-    /// Without panel and read-outs, with these variables in its environment.
+    /// As [`Running::bare`], with extra environment variables.
     pub fn bare_with(words: &[&str], variables: &[(&str, &Path)]) -> Self {
         let running = Self::with(words, variables);
         until("the scene", || {
@@ -96,7 +96,7 @@ impl Running {
         running
     }
 
-    /// The picture at rest.
+    /// The picture once it no longer changes.
     pub fn picture(&self) -> Picture {
         self.display
             .still_picture(self.window, || self.cpu_seconds())
@@ -111,7 +111,7 @@ impl Running {
         (ticks(11) + ticks(12)) / 100.0
     }
 
-    /// Does something that changes the picture, and gives the new one at rest.
+    /// Performs an action that changes the picture, and returns the new picture once it no longer changes.
     pub fn after(&self, act: impl FnOnce(&Display)) -> Picture {
         let before = self.picture();
         act(&self.display);
@@ -123,13 +123,13 @@ impl Running {
         self.child.as_ref().expect("it runs").id()
     }
 
-    /// Closes the window as a user does, and gives what the program said.
+    /// Closes the window as a user does; returns the program's output.
     pub fn close(self) -> Output {
         self.display.close(self.window);
         self.ended()
     }
 
-    /// Waits until the program ends, and gives what it said.
+    /// Waits until the program exits; returns its output.
     pub fn ended(mut self) -> Output {
         let mut child = self.child.take().expect("it runs");
         let started = Instant::now();
@@ -143,7 +143,7 @@ impl Running {
         child.wait_with_output().expect("what it said")
     }
 
-    /// Closes the window; the program must have nothing to complain of.
+    /// Closes the window; the program must succeed without complaints.
     pub fn close_well(self) {
         let output = self.close();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();

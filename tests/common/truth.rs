@@ -56,7 +56,7 @@ impl Exr {
         }
     }
 
-    /// A channel that must be there.
+    /// A channel; it must exist.
     pub fn channel(&self, name: &str) -> &[f32] {
         let names = self.channels.keys();
         self.channels
@@ -71,7 +71,7 @@ impl Exr {
     }
 }
 
-/// One view: a scene, its camera, and where its sun stands.
+/// A view: a scene, its camera and the JSON file that describes it.
 pub struct View {
     pub name: &'static str,
     pub scene: Scene,
@@ -84,7 +84,7 @@ pub struct View {
 pub const VIEWS: [&str; 5] = ["house", "house_low", "colonnade", "medieval", "teapot"];
 
 impl View {
-    /// Loads a view of the folder `shared`.
+    /// Loads a view from the folder `shared`.
     pub fn load(shared: &Path, name: &'static str) -> Self {
         let folder = shared.join("truth");
         let path = folder.join(format!("{name}.json"));
@@ -111,12 +111,12 @@ impl View {
         }
     }
 
-    /// A file of the view: `ao_1m`, `aov`, ..
+    /// An .exr file of the view: `ao_1m`, `aov`, ...
     pub fn exr(&self, what: &str) -> Exr {
         Exr::read(&self.folder.join(format!("{}_{what}.exr", self.name)))
     }
 
-    /// Whether each pixel and those up to `distance` around it show geometry.
+    /// Whether a pixel and all its neighbours up to `distance` away show geometry.
     pub fn geometry(&self, distance: usize) -> Vec<bool> {
         let aov = self.exr("aov");
         let depth = aov.channel("depth.T");
@@ -136,7 +136,7 @@ impl View {
     }
 }
 
-/// A scene file of the view's models.
+/// The text of a scene file with the view's models.
 fn scene_file(scenes: &Path, models: &Value) -> String {
     let scenes = scenes.canonicalize().expect("shared/scenes");
     let mesh = |model: &Value| {
@@ -155,8 +155,8 @@ fn load_scene(scenes: &Path, models: &Value) -> Scene {
         .scene
 }
 
-/// Camera, sun and air of a view as options of `render`, in the truth's size, without what the truth leaves out: light from
-/// the ground and mirrors.
+/// Camera, sun and turbidity of a view as options of `render`, at the reference's size. Ground light and specular reflection
+/// are off: the reference has neither.
 fn options(view: &Value) -> Vec<String> {
     let (sun, camera) = (&view["sun"], &view["camera"]);
     let words = |list: &Value| {
@@ -175,7 +175,7 @@ fn options(view: &Value) -> Vec<String> {
     ]
 }
 
-/// Renders a view with the real program; `further` options come after those of the view.
+/// Renders a view with the real executable; `further` options follow those of the view.
 pub fn render(shared: &Path, view: &Value, further: &[&str]) -> Exr {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let (scene, output) = (folder.path().join("s.toml"), folder.path().join("a.exr"));

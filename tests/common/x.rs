@@ -1,5 +1,5 @@
-//! A display of our own, and a hand on it: windows, pictures of them, keys, pointer. By the X protocol itself, so that every
-//! step is answered before the next.
+//! A private X server and a client that drives it: windows, screenshots, keys and pointer. Every request is answered before
+//! the next is sent.
 #![allow(dead_code)]
 
 use std::io::{BufRead, BufReader, IoSlice};
@@ -15,10 +15,10 @@ use x11rb::protocol::xproto::{
 };
 use x11rb::rust_connection::RustConnection;
 
-/// Longest that anything is waited for: software Vulkan on a busy machine is slow.
+/// Longest wait for anything: software Vulkan on a busy machine is slow.
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Keysyms of keys without a character.
+/// Keysyms of keys that have no character.
 pub mod keysym {
     pub const TAB: u32 = 0xff09;
     pub const ESCAPE: u32 = 0xff1b;
@@ -26,7 +26,7 @@ pub mod keysym {
     pub const SHIFT: u32 = 0xffe1;
 }
 
-/// An X server without a screen, for as long as this lives.
+/// An Xvfb server; it is killed when this is dropped.
 pub struct Display {
     server: Child,
     pub name: String,
@@ -35,11 +35,11 @@ pub struct Display {
     xtest: u8,
 }
 
-/// CPU seconds that a program at rest may use in a second: what egui animates.
+/// Most CPU time of an idle program, seconds per second: egui's animations.
 const MOST_AT_REST: f64 = 0.2;
 
 impl Display {
-    /// Starts it. Its absence is a failure.
+    /// Starts the server. Fails without Xvfb.
     pub fn new() -> Self {
         let mut server = Command::new("Xvfb")
             .args([
@@ -79,7 +79,7 @@ impl Display {
         }
     }
 
-    /// The first window that is shown.
+    /// The first mapped window.
     pub fn window(&self) -> Option<Window> {
         let tree = self.connection.query_tree(self.root).ok()?.reply().ok()?;
         tree.children.into_iter().find(|window| {
@@ -103,7 +103,7 @@ impl Display {
         String::from_utf8_lossy(&value).into_owned()
     }
 
-    /// Gives a window the keyboard, if it is still there: its program may have ended.
+    /// Gives a window the keyboard focus. A window that is already gone is no error: its program may have exited.
     pub fn focus(&self, window: Window) {
         let focus = InputFocus::PARENT;
         let cookie = self
@@ -123,7 +123,7 @@ impl Display {
         [geometry.width.into(), geometry.height.into()]
     }
 
-    /// What a window shows, or a part of it (x, y, width, height).
+    /// Screenshot of a window, or of a part of it (x, y, width, height).
     pub fn picture(&self, window: Window, part: Option<[u32; 4]>) -> Picture {
         let [width, height] = self.size(window);
         let [x, y, width, height] = part.unwrap_or([0, 0, width, height]);
@@ -150,8 +150,8 @@ impl Display {
         Picture::from_srgb8([width as usize, height as usize], &bytes)
     }
 
-    /// The picture when it has stood still for a second in which the program had nothing to do, by its CPU time in seconds: while
-    /// it loads or a frame takes long, the picture stands still too.
+    /// The picture once it has been the same for a second in which the program was idle. `cpu_seconds` is the program's CPU time:
+    /// a picture that stands still is not enough, since it also does so while the program loads or draws a slow frame.
     pub fn still_picture(&self, window: Window, cpu_seconds: impl Fn() -> f64) -> Picture {
         let started = Instant::now();
         let mut last = self.picture(window, None);
@@ -172,7 +172,7 @@ impl Display {
         }
     }
 
-    /// Waits until a window shows something else than `before`.
+    /// Waits until a window shows something other than `before`.
     pub fn wait_for_change(&self, window: Window, before: &Picture) {
         until("another picture", || {
             (self.picture(window, None) != *before).then_some(())
@@ -188,7 +188,7 @@ impl Display {
             .expect("a size");
     }
 
-    /// As a window manager does to an icon.
+    /// Unmaps a window, as a window manager does when it is minimized.
     pub fn hide(&self, window: Window) {
         self.connection
             .unmap_window(window)
@@ -205,7 +205,7 @@ impl Display {
             .expect("shown");
     }
 
-    /// Asks a window to close, as the cross in its corner does.
+    /// Asks a window to close, as its close button does.
     pub fn close(&self, window: Window) {
         let c = &self.connection;
         let atom = |name: &[u8]| {
@@ -223,7 +223,7 @@ impl Display {
             .expect("told");
     }
 
-    /// Types the key of a keysym (a Latin-1 character is its own), with Shift when asked.
+    /// Types the key of a keysym (a Latin-1 character is its own keysym), with Shift if asked.
     pub fn key(&self, keysym: u32, shift: bool) {
         let shift = shift.then_some(keysym::SHIFT);
         if let Some(held) = shift {
@@ -241,7 +241,7 @@ impl Display {
         self.key(character.into(), false);
     }
 
-    /// Moves the pointer to a place of the screen.
+    /// Moves the pointer to a position on the screen, pixels.
     pub fn point(&self, x: u32, y: u32) {
         let narrow = |v: u32| u16::try_from(v).expect("on the screen").cast_signed();
         self.fake(6, 0, [narrow(x), narrow(y)]);
@@ -271,7 +271,7 @@ impl Display {
         setup.min_keycode + u8::try_from(row).expect("a keycode")
     }
 
-    /// XTEST's FakeInput: kinds 2, 3 are a key down and up, 4, 5 a button, 6 the pointer.
+    /// XTEST's FakeInput. `kind`: 2 and 3 are key press and release, 4 and 5 button press and release, 6 is pointer motion.
     fn fake(&self, kind: u8, detail: u8, to: [i16; 2]) {
         let mut request = [0u8; 36];
         (request[0], request[1]) = (self.xtest, 2);
@@ -294,7 +294,7 @@ impl Drop for Display {
     }
 }
 
-/// What `ask` answers, once it does.
+/// Polls `ask` until it returns something; fails after [`PATIENCE`].
 pub fn until<T>(what: &str, mut ask: impl FnMut() -> Option<T>) -> T {
     let started = Instant::now();
     loop {

@@ -9,7 +9,7 @@ use skylight::daylight::irradiance::{ExactIrradiance, SphericalHarmonics, monte_
 use skylight::daylight::preetham::Preetham;
 use skylight::daylight::quadrature::SphereQuadrature;
 
-/// One sky of the file with E (black ground) and E with a ground of albedo 0.2 for its normals.
+/// One sky of the file: its normals with E over black ground and over ground of albedo 0.2.
 struct Case {
     name: String,
     sky: Preetham,
@@ -49,7 +49,7 @@ fn cases() -> Option<Vec<Case>> {
         let Some(case) = cases.last_mut() else {
             continue;
         };
-        // The file's z is up; its y becomes north.
+        // In the file z is up; its y becomes north.
         let normal = DVec3::new(row.get("nx"), row.get("nz"), -row.get("ny")).normalize();
         let black = row.get3(["E_R", "E_G", "E_B"]);
         case.normals
@@ -66,7 +66,7 @@ fn cases() -> Option<Vec<Case>> {
     Some(cases)
 }
 
-/// Checks `irradiance` of every sky at every normal, and prints the root mean square besides the largest error.
+/// Checks `irradiance` for every sky and normal; prints the rms and the largest error.
 fn check<F: Fn(DVec3) -> DVec3>(
     what: &'static str,
     (rms_allowed, max_allowed): (f64, f64),
@@ -75,7 +75,7 @@ fn check<F: Fn(DVec3) -> DVec3>(
     let Some(cases) = cases() else { return };
     let mut worst = Worst::new(what, max_allowed);
     let (mut squares, mut count) = (0.0, 0.0);
-    // Leaked so that the prepared closures may borrow them: a test process is short.
+    // Leaked, so that the prepared closures may borrow the cases; the test process is short-lived.
     for case in cases.leak().iter() {
         let irradiance = prepare(case);
         for &(normal, expected, _) in &case.normals {
@@ -139,7 +139,7 @@ fn exact_of_a_64_cube() {
     });
 }
 
-/// What a shader may do: L · Ω · max(n·d, 0) with the exact solid angle and the centre's direction, nothing clipped.
+/// The sum a shader may use: L · Ω · max(n·d, 0) with the exact solid angle and the direction of the centre, without clipping.
 fn plain_sum(case: &Case, size: usize) -> impl Fn(DVec3) -> DVec3 + use<> {
     let map = CubeMap::from_fn(size, |d| case.radiance(d));
     let texels: Vec<_> = map

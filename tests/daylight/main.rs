@@ -1,4 +1,4 @@
-//! The physics against closed forms and reference values; no device.
+//! The physics against closed forms and reference values; needs no GPU.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,6 +1,6 @@
-//! The physics against the reference data in `shared/reference`: each test is one file of it.
+//! The physics against the reference data in `shared/reference`: one test per file.
 //!
-//! f64 against f64, so most tolerances are 1e-9; where one is wider, a comment says why. The files' z is up.
+//! Both sides are f64, so most tolerances are 1e-9; a comment explains each wider one. In the files z is up.
 
 #![allow(clippy::unwrap_used)]
 
@@ -14,7 +14,7 @@ fn world(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, z, -y)
 }
 
-/// The files' sun at `theta_s` and view at (`theta`, `dphi`), radians, in world space.
+/// The sun at `theta_s` and a view direction at (`theta`, `dphi`), radians, converted from the files to world space.
 fn sun_and_view(theta_s: f64, theta: f64, dphi: f64) -> (DVec3, DVec3) {
     let sun = world(theta_s.sin(), 0.0, theta_s.cos());
     let view = world(
@@ -160,7 +160,7 @@ fn srgb_matrices() {
         return;
     };
     let mut exact = Worst::new("exact matrices", 1e-14);
-    // The farthest entry is Lindbloom's first: 3.2404542 for 3.2409699.
+    // The largest deviation is Lindbloom's first entry: 3.2404542 for 3.2409699.
     let mut rounded = Worst::new("rounded matrices", 6e-4);
     for row in table.rows() {
         let name = row.text("matrix");

@@ -1,4 +1,4 @@
-//! When the real program stops to draw samples: by number, by noise, and by Ctrl-C; and what the file says of it.
+//! When `render` stops sampling: at a number of samples, at a noise level, or on Ctrl-C; and what the metadata records.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// A picture of the bundled scene that takes little.
+/// A small picture of the bundled scene that is quick to render.
 const SMALL: [&str; 7] = [
     "render",
     "--size",
@@ -32,7 +32,7 @@ fn run(folder: &Path, words: &[&str]) -> String {
     done(&output)
 }
 
-/// What a run said that ended well and had nothing to complain of.
+/// Output of a run that succeeded without complaints.
 fn done(output: &Output) -> String {
     let [said, complaint] =
         [&output.stdout, &output.stderr].map(|s| String::from_utf8_lossy(s).into_owned());
@@ -41,7 +41,7 @@ fn done(output: &Output) -> String {
     said
 }
 
-/// The text chunks of a PNG.
+/// Text chunks of a PNG.
 fn texts(path: &Path) -> BTreeMap<String, String> {
     let file = fs::File::open(path).expect("a picture");
     let decoder = png::Decoder::new(std::io::BufReader::new(file));
@@ -52,7 +52,7 @@ fn texts(path: &Path) -> BTreeMap<String, String> {
         .collect()
 }
 
-/// Luminance of every pixel of an EXR's picture, with its parameters.
+/// Luminance of every pixel of an EXR, and its parameters.
 fn exr(path: &Path) -> (Vec<f64>, BTreeMap<String, String>) {
     use exr::prelude::*;
     let image = read_all_flat_layers_from_file(path).expect("an EXR");
@@ -122,7 +122,7 @@ fn it_stops_when_the_noise_is_small_enough_and_the_picture_is_that_near() {
             "{said}"
         );
         assert!(samples > before && samples < 4096.0, "{samples}");
-        // The estimate is of the size of the error.
+        // The estimate is of the same size as the error.
         assert!(told <= wanted, "{told}");
         assert!(error < 2.0 * told && error > told / 4.0, "{told} {error}");
         assert_eq!(number(&texts, "samples"), 4096.0);
@@ -173,7 +173,7 @@ fn interrupt(child: &Child) {
     assert!(kill.expect("kill").success());
 }
 
-/// Starts a render that takes long, and waits until samples are drawn: until it catches Ctrl-C.
+/// Starts a long render and waits until it draws samples, from when on it handles Ctrl-C.
 #[cfg(target_os = "linux")]
 fn at_work(folder: &Path, words: &[&str]) -> Child {
     let child = program(folder, words).spawn().expect("the program starts");

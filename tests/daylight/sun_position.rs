@@ -21,7 +21,7 @@ fn spa() {
     let Some(table) = Table::read("solar_position_reference.csv") else {
         return;
     };
-    // The reference took ΔT = 67 s for every date: up to 3e-4 degrees.
+    // The reference uses ΔT = 67 s for every date: differences up to 3e-4 degrees.
     let mut angle = Worst::new("SPA direction, degrees", 1e-3);
     let mut seen = Worst::new("SPA apparent elevation, degrees", 1e-3);
     for row in table.rows() {

@@ -1,5 +1,5 @@
-//! The validation canary sings when something is wrong and is silent when nothing is; the choice of a device; both ways to
-//! bind descriptors draw the same picture.
+//! Checks that the validation layer reports an error and is otherwise silent; selection of a device; push descriptors and
+//! descriptor pools draw the same picture.
 
 use std::process::{Command, Output};
 
@@ -12,7 +12,7 @@ use skylight::passes::occlusion::ssao::SsaoSettings;
 use skylight::passes::picture::accumulate::Push;
 use skylight::scene::Material;
 
-/// Samples an image in the pass that writes it: its layout cannot be right for both.
+/// Samples an image in the pass that writes it (a feedback loop): no layout is valid for both.
 fn draw_from_itself(recorder: &mut Recorder, no_feedback: bool) {
     let context = recorder.context().clone();
     let format = Format::R32G32B32A32_SFLOAT;
@@ -92,7 +92,7 @@ fn a_right_frame_reports_nothing() {
     assert_eq!(device.context.validation_messages(), Vec::<String>::new());
 }
 
-/// A frame in which every pass runs: display values, then radiance.
+/// Draws a frame in which every pass runs. Returns its display values, then its radiance.
 fn draw_everything(device: &mut Device) -> Vec<u8> {
     let glossy = Material {
         specular: [0.3; 3],
@@ -144,7 +144,7 @@ fn a_picture_needs_no_geometry_shader() {
         ..ContextOptions::default()
     });
     let (a, b) = (draw_everything(&mut with), draw_everything(&mut without));
-    // Display values first, a byte each: at most one step apart. Then half floats, compared as their bits.
+    // Display values come first, a byte each: they differ by one step at most. Then half floats, compared as their bits.
     let shown = a.len() / 3;
     let far = a[..shown]
         .iter()
@@ -205,7 +205,7 @@ fn skylight(arguments: &[&str], environment: &[(&str, &str)]) -> Output {
         .expect("skylight runs")
 }
 
-/// One line on stderr that says all of `wanted`, exit code 1, nothing on stdout.
+/// Checks for exit code 1, an empty stdout, and one line on stderr that contains all of `wanted`.
 fn fails_with(output: &Output, wanted: &[&str]) {
     let text = String::from_utf8_lossy(&output.stderr);
     println!("{text}");
@@ -235,7 +235,7 @@ fn the_program_says_which_device_is_unknown() {
 
 #[test]
 fn without_a_driver_the_program_names_the_package() {
-    // The loader finds no driver at all: the second name is what older loaders read.
+    // The loader finds no driver; older loaders read the second variable.
     let nowhere = [
         ("VK_DRIVER_FILES", "/nonexistent.json"),
         ("VK_ICD_FILENAMES", "/nonexistent.json"),

@@ -1,4 +1,4 @@
-//! How the mean of frames under the dome comes to the truth: as fast as it must, and without a bias that stays.
+//! Convergence of the accumulated dome lighting: the rate of the error, and no remaining bias.
 
 use std::f64::consts::PI;
 
@@ -16,7 +16,7 @@ fn dome(edge: u32, map_edge: u32, directions: u32) -> FrameSettings {
     set
 }
 
-/// Least squares' exponent of error = c n^exponent.
+/// Least-squares fit of the exponent in error = c n^exponent.
 fn exponent(list: &[(u32, f64)]) -> f64 {
     let points: Vec<(f64, f64)> = list
         .iter()
@@ -66,7 +66,7 @@ fn the_error_falls_at_least_as_the_root_of_the_number_and_no_bias_stays() {
         );
         list.push((index + 1, error));
     }
-    // From the first frame to where the size of the maps' texels is all that is left.
+    // From the first frame to where only the error from the texel size of the maps remains.
     let falling = exponent(&list[..8]);
     println!("error falls as N^{falling:.2}");
     assert!(falling <= -0.5, "{falling}");

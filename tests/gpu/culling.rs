@@ -1,4 +1,4 @@
-//! What is not drawn must not be missed: pictures with and without culling, and how many triangles a narrow view draws.
+//! Culling changes no visible pixel: pictures with and without it, and the number of triangles drawn for a narrow view.
 
 use crate::gpu::{Device, Model, Picture, camera, clear_day, matt, settings, showing};
 use glam::{UVec2, Vec3};
@@ -8,7 +8,7 @@ use skylight::gpu::{Recorder, Timing};
 use skylight::passes::light::lighting::Show;
 use skylight::scene::{Bounds, Camera, Cluster, Layout, LoadOptions, Scene, bundled, load};
 
-/// The scene with one cluster for each part, which may be anywhere and has two sides: nothing of it can be left out.
+/// The scene with one cluster per part, unbounded and two-sided, so that nothing can be culled.
 fn unculled(scene: &Scene) -> Scene {
     let far = 1e7;
     let cluster = |part: &skylight::scene::Part| Cluster {
@@ -19,7 +19,7 @@ fn unculled(scene: &Scene) -> Scene {
             max: Vec3::splat(far),
         },
         solid: None,
-        // Drawn by the pipeline that finds the front from derivatives: the lean one is compared with it too.
+        // Selects the pipeline that derives the facing from derivatives, so that the lean one is compared with it as well.
         normals_match_winding: false,
     };
     let arranged = scene.layout.as_ref().expect("an arranged scene");
@@ -34,7 +34,7 @@ fn unculled(scene: &Scene) -> Scene {
     }
 }
 
-/// Hills with 49 blocks on them, 400 m wide, of about so many triangles: large enough for cascades.
+/// A 400 m wide terrain of hills with 49 blocks, about `triangles` triangles: large enough for cascades.
 fn hills(triangles: usize) -> Scene {
     let mut ground = skylight::scene::hills(triangles);
     let mut model = Model::default();
@@ -66,7 +66,7 @@ fn hills(triangles: usize) -> Scene {
     scene
 }
 
-/// Closed bodies, open sheets, cut-outs, thin walls.
+/// Closed bodies, open sheets, alpha-tested surfaces and thin walls.
 const SHARED: [&str; 8] = [
     "colonnade/colonnade.obj",
     "courtyard/scene.obj",
@@ -89,7 +89,7 @@ fn draw(device: &mut Device, scene: &Scene, day: &Daylight, camera: &Camera) -> 
     })
 }
 
-/// Pixels that differ by more than rounding.
+/// Number of pixels that differ by more than rounding.
 fn differing(a: &Picture, b: &Picture) -> usize {
     let pairs = a.pixels().zip(b.pixels());
     let differs = |x: f64, y: f64| (x - y).abs() > 1e-3 * (x.abs() + y.abs()) + 1e-6;
@@ -98,7 +98,7 @@ fn differing(a: &Picture, b: &Picture) -> usize {
         .count()
 }
 
-/// The scene as if nothing in it were closed: only what lies beside a view, or shades nothing in it, is left out.
+/// The scene with every cluster two-sided: only frustum culling of views and shadow maps remains.
 fn two_sided(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     let layout = scene.layout.as_mut().expect("an arranged scene");
@@ -106,8 +106,8 @@ fn two_sided(scene: &Scene) -> Scene {
     scene
 }
 
-/// Draws all ways. What lies beside is not missed at all. Back faces of solids are missed in some pixels: on outlines, and
-/// where the bias of the shadow map pushes a steep front face behind them.
+/// Draws with and without culling. Frustum culling may change nothing. Back-face culling of solids changes some pixels: on
+/// silhouettes, and where the depth bias of the shadow map pushes a steep front face behind the back face.
 fn compare(device: &mut Device, name: &str, scene: &Scene, day: &Daylight, camera: &Camera) {
     let culled = draw(device, scene, day, camera);
     let sheets = draw(device, &two_sided(scene), day, camera);
@@ -130,7 +130,7 @@ fn views(scene: &Scene) -> Vec<Camera> {
     let aspect = 16.0 / 9.0;
     let around = [Vec3::new(-0.9, 0.5, -0.2), Vec3::new(0.2, 0.1, -0.9)];
     let whole = around.map(|d| Camera::framing_from(&scene.bounds, d.normalize(), 45.0, aspect));
-    // Of half of it, from within: much lies beside and behind.
+    // From closer, within the model's surroundings: much of it lies beside and behind the camera.
     let within = whole.map(|c| Camera {
         eye: c.eye.lerp(c.target, 0.7),
         ..c
@@ -152,7 +152,7 @@ fn nothing_is_missed_of_the_bundled_scene_and_of_one_with_cascades() {
     compare_all(&mut device, "bundled", &loaded.scene);
     let hills = hills(30_000);
     compare_all(&mut device, "hills", &hills);
-    // At eye level, where the cascades differ most, under a low sun.
+    // At eye level under a low sun, where the cascades differ most.
     for (azimuth, elevation) in [(100.0, 6.0), (250.0, 20.0)] {
         let day = clear_day(azimuth, elevation);
         let camera = camera([12.0, 10.0, 25.0], [-40.0, 4.0, -30.0]);
@@ -189,7 +189,7 @@ fn maps_that_stay_miss_nothing_of_what_comes_into_view() {
     let settings = showing(Show::Visibility, settings(320, 180));
     let mut walking = device.frame(&scene, settings, &day, &from(0.0));
     let mut shaded = 0;
-    // Long strides and short ones: maps are drawn anew after those and stay after these.
+    // Long and short steps alternate: maps are redrawn after the long ones and reused after the short ones.
     for step in (0..48).map(|i| (i / 2) as f32 + 0.05 * (i % 2) as f32) {
         let camera = from(step);
         device.draw(&mut walking, &day, &camera);
@@ -204,7 +204,7 @@ fn maps_that_stay_miss_nothing_of_what_comes_into_view() {
     assert!(shaded > 48 * 1000, "{shaded} pixels in shadow");
 }
 
-/// Triangles that the passes of this name were given in one frame.
+/// Triangles submitted to the passes of this name in one frame.
 fn triangles(device: &Device, scene: &Scene, day: &Daylight, camera: &Camera, name: &str) -> f64 {
     let mut recorder = Recorder::new(&device.context, Timing::Work).expect("a recorder");
     let settings = FrameSettings {
@@ -222,7 +222,7 @@ fn triangles(device: &Device, scene: &Scene, day: &Daylight, camera: &Camera, na
     vertices.sum::<u64>() as f64 / 3.0
 }
 
-/// Share of the triangles whose centroids are in the picture.
+/// Fraction of the triangles whose centroids are in view.
 fn share_seen(scene: &Scene, camera: &Camera) -> f64 {
     let clip = camera.clip_from_view(16.0 / 9.0) * camera.view_from_world();
     let seen = scene.indices.chunks_exact(3).filter(|t| {

@@ -1,4 +1,4 @@
-//! Surfaces with normal maps and colours at their vertices: their streams reach the pixels, and maps tilt normals as they say.
+//! Normal maps and vertex colours: the vertex streams reach the pixels, and normals tilt as the maps say.
 
 use crate::common::Worst;
 use crate::gpu::{Device, Model, Picture, camera, clear_day, matt, pixel_ray, settings, showing};
@@ -6,10 +6,10 @@ use glam::{DVec3, Vec3};
 use skylight::passes::light::lighting::Show;
 use skylight::scene::{Camera, Encoding, Material, Scene, Texture};
 
-/// Half a step of the map's 8 bits on each of two components, and the octahedral map's.
+/// Half a step of the normal map's 8 bits in each of two components, plus the error of the octahedral encoding.
 const STEP: f64 = 1.0 / 127.5;
 
-/// A map that holds one direction.
+/// A normal map with the same direction in every texel.
 fn map_of(direction: Vec3) -> Texture {
     let byte = |v: f32| (127.5 * v + 127.5).round() as u8;
     let [x, y, z] = direction.to_array().map(byte);
@@ -22,7 +22,7 @@ fn map_of(direction: Vec3) -> Texture {
     }
 }
 
-/// Gives a scene the map, with the tangent along its u at every vertex.
+/// Applies the normal map to a scene, with the tangent along u at every vertex.
 fn with_map(mut scene: Scene, direction: Vec3, tangent: impl Fn(Vec3) -> Vec3) -> Scene {
     scene.textures.push(map_of(direction));
     for material in &mut scene.materials {
@@ -37,7 +37,7 @@ fn with_map(mut scene: Scene, direction: Vec3, tangent: impl Fn(Vec3) -> Vec3) -
     scene
 }
 
-/// East along a sphere's surface.
+/// Unit tangent toward the east on a sphere.
 fn east(n: Vec3) -> Vec3 {
     Vec3::Y.cross(n).normalize_or(Vec3::X)
 }
@@ -53,7 +53,7 @@ fn shown(device: &mut Device, scene: &Scene, camera: &Camera, show: Show) -> Pic
     device.picture(scene, showing(show, settings(240, 180)), &day, camera)
 }
 
-/// The ball's normal at each of its pixels, away from its outline and poles.
+/// The sphere's normal at a pixel; `None` off the sphere, at its silhouette and at its poles.
 fn on_ball(camera: &Camera, size: [usize; 2], pixel: [usize; 2]) -> Option<DVec3> {
     let (eye, ray) = (camera.eye.as_dvec3(), pixel_ray(camera, size, pixel));
     let (along, away) = (-eye.dot(ray), eye.length_squared());
@@ -77,7 +77,7 @@ fn a_map_tilts_the_normals_of_a_ball_as_it_says() {
             &camera,
             Show::Normal,
         );
-        // Facets of 64 rings are within 1e-3 of the ball.
+        // Facets of a sphere with 64 rings are within 1e-3 of the sphere.
         let mut worst = Worst::new(
             "normal under a map against the tilted normal of a ball",
             STEP + 2e-3,
@@ -103,7 +103,7 @@ fn a_map_tilts_the_normals_of_a_ball_as_it_says() {
 fn colours_at_vertices_reach_the_pixels() {
     let mut device = Device::new();
     let mut scene = ball();
-    // Red by x, green by y, blue by z.
+    // Red follows x, green y and blue z.
     let unorm = |v: f32| ((0.5 * v + 0.5) * 65_535.0).round() as u16;
     let colour = |p: &[f32; 3]| {
         let [r, g, b] = p.map(unorm);
@@ -113,7 +113,7 @@ fn colours_at_vertices_reach_the_pixels() {
     scene.parts[0].has_colours = true;
     let camera = camera([1.2, 0.9, 2.4], [0.0; 3]);
     let picture = shown(&mut device, &scene, &camera, Show::Albedo);
-    // The albedo has eight bits.
+    // The albedo is stored in 8 bits.
     let mut worst = Worst::new("rho_d by the colours of vertices", 0.5 / 255.0 + 2e-3);
     for (pixel, drawn) in picture.pixels() {
         if let Some(n) = on_ball(&camera, picture.size, pixel) {
@@ -127,7 +127,7 @@ fn colours_at_vertices_reach_the_pixels() {
 #[test]
 fn a_map_never_mirrors_the_view_into_the_surface() {
     let mut device = Device::new();
-    // A wave that leans away from a viewer who looks along the water: it would mirror what is below the horizon.
+    // A wave that leans away from a viewer at a grazing angle: its reflection vector points below the horizon.
     let lean = Vec3::new(0.0, 0.3, 0.954);
     let camera = camera([0.0, 1.5, 30.0], [0.0, 1.0, 0.0]);
     let east = |_: Vec3| Vec3::X;

@@ -1,4 +1,4 @@
-//! The light of the sky by shadow maps from its directions: closed forms, closed boxes, and what changes from frame to frame.
+//! Sky light by shadow maps from directions of the sky: closed forms, closed rooms, and differences between frames.
 
 use std::f64::consts::PI;
 
@@ -12,7 +12,7 @@ use skylight::frame::{Frame, FrameSettings, Visibility};
 use skylight::passes::light::lighting::Show;
 use skylight::scene::{Camera, Scene};
 
-/// Settings of `samples` frames under the dome.
+/// Settings with dome visibility and `samples` frames.
 fn dome(edge: u32, samples: u32) -> FrameSettings {
     let mut set = settings(edge, edge);
     set.samples = samples;
@@ -32,7 +32,7 @@ fn a_room_with_an_opening_gets_the_light_of_its_configuration_factor() {
         let Some(p) = on_ground(&view, picture.size, pixel) else {
             continue;
         };
-        // The wall's foot is a pixel or two wide here.
+        // Leave out the foot of the wall, which is a pixel or two wide here.
         if p.x.abs().max(p.z.abs()) < f64::from(ROOM[0]) - 0.1 {
             found += 1000.0 * luminance(e);
             exact += PI * L * configuration_factor(p);
@@ -66,7 +66,7 @@ fn a_closed_room_is_dark_to_its_corners() {
     let mean = shares.iter().sum::<f64>() / shares.len() as f64;
     let brightest = shares.iter().copied().fold(0.0, f64::max);
     println!("closed room: mean {mean:.2e}, brightest {brightest:.2e} of the open sky's light");
-    // Half a texel from an edge of the whole room the texel's centre may lie outside of it.
+    // Within half a texel of the room's outer edges, the texel's centre can lie outside the room.
     assert!(mean < 3e-3 && brightest < 0.25, "{mean} {brightest}");
 }
 
@@ -90,7 +90,7 @@ fn open_ground_has_the_light_of_the_whole_sky_from_the_first_frame_on() {
     }
 }
 
-/// A cube on the ground.
+/// A cube on the ground, and a camera.
 fn block() -> (Scene, Camera) {
     let scene = Model::default()
         .ground(8.0, &matt(0.5))
@@ -103,7 +103,7 @@ fn mean(picture: &Picture) -> f64 {
     picture.pixels().map(|(_, l)| luminance(l)).sum::<f64>() / picture.texels.len() as f64
 }
 
-/// Records frames `from..to` and gives the mean luminance after each.
+/// Records frames `from..to` and returns the mean luminance after each.
 fn means(
     device: &mut Device,
     frame: &mut Frame,
@@ -142,7 +142,7 @@ fn at_rest_the_picture_goes_over_to_the_truth_without_a_jump() {
     let list = means(&mut device, &mut frame, &day, &view, 128);
     for (i, now) in list.iter().enumerate() {
         assert!(
-            // Ambient occlusion is a quarter off: it counts the ground before a wall as lost sky.
+            // Ambient occlusion is off by a quarter: it counts the ground in front of a wall as occluded sky.
             (now / last - 1.0).abs() < 0.01,
             "frame {i}: {last} to {now}"
         );
@@ -169,7 +169,7 @@ fn the_same_seed_makes_the_same_picture_and_another_one_a_similar_one() {
 #[test]
 fn the_ground_far_below_lights_what_floats_over_it() {
     let mut device = Device::new();
-    // A board in the air, seen from below: nothing hides the ground from its underside.
+    // A board in the air, seen from below: its underside sees all of the ground.
     let scene = Model::default()
         .square([0.0, 5.0, 0.0], 3.0, &matt(0.6))
         .build();

@@ -1,4 +1,4 @@
-//! A white body under a constant sky cannot be seen: every pixel reads L = 1.
+//! White furnace: a white body under a uniform sky is invisible, so every pixel reads L = 1.
 
 use crate::common::Worst;
 use crate::gpu::{Device, Model, camera, constant_sky, matt, settings, showing};
@@ -20,7 +20,7 @@ fn bodies() -> [(&'static str, Scene); 2] {
 
 fn check(method: IrradianceMethod) {
     let mut device = Device::new();
-    // E is a 16-bit number: 2^-11 = 0.05 %; the rest of the chain is 32-bit. Measured: 3.08e-4.
+    // E is stored in 16 bits: 2^-11 = 0.05 %; the rest of the chain is 32-bit. Measured: 3.08e-4.
     let mut worst = Worst::new(
         "L of a white body and of the sky around it against 1",
         3.4e-4,

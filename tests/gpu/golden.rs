@@ -1,15 +1,15 @@
-//! Small pictures of the bundled scene, one a camera, against those in `tests/golden`.
+//! Small pictures of the bundled scene, one per camera, against those in `tests/golden`.
 //!
-//! `SKYLIGHT_BLESS=1 cargo test --test gpu golden` makes them anew: look at them before you commit them.
+//! `SKYLIGHT_BLESS=1 cargo test --test gpu golden` overwrites them: look at them before committing.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use image::RgbImage;
 
-/// Most that channels may differ on average, of 255.
+/// Largest mean difference of the channels, of 255.
 const MEAN: f64 = 2.0;
-/// What 99.5 % of the pixels may differ by in any channel, of 255: rasterisers disagree along edges.
+/// Largest difference of any channel in 99.5 % of the pixels, of 255: rasterisers disagree along edges.
 const MOST: u8 = 12;
 const SHARE: f64 = 0.995;
 

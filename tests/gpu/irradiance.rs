@@ -1,4 +1,4 @@
-//! The irradiance cube of the device: a constant sky, the reference data, the lecture's random numbers, refinement.
+//! The irradiance cube of the device: a uniform sky, the reference data, the lecture's random numbers, refinement.
 
 use std::f64::consts::PI;
 
@@ -16,10 +16,10 @@ use skylight::passes::sky::cube::SkyCube;
 use skylight::passes::sky::irradiance::{Irradiance, IrradianceSettings};
 use skylight::passes::sky::route::CubeRoute;
 
-/// Texels along a face of the maps that are tested; the program uses 32.
+/// Edge of a face of the tested maps, texels; the program uses 32.
 const EDGE: u32 = 64;
 
-/// The two passes, without the rest of a frame.
+/// The sky and irradiance passes, without the rest of a frame.
 struct Light {
     sky: SkyCube,
     irradiance: Irradiance,
@@ -126,7 +126,7 @@ fn reference_sky(turbidity: f64, theta_s_deg: f64, ground_luminance: DVec3) -> D
     day
 }
 
-/// One sky of the reference data: its normals with E over black ground and E over a ground of albedo 0.2, lux.
+/// One sky of the reference data: its normals with E over black ground and over ground of albedo 0.2, lux.
 struct Case {
     turbidity: f64,
     theta_s_deg: f64,
@@ -149,7 +149,7 @@ fn cases() -> Option<Vec<Case>> {
             });
         }
         let case = cases.last_mut().expect("pushed");
-        // The file's z is up; its y becomes north.
+        // In the file z is up; its y becomes north.
         let normal = DVec3::new(row.get("nx"), row.get("nz"), -row.get("ny")).normalize();
         let black = row.get3(["E_R", "E_G", "E_B"]);
         case.normals
@@ -161,7 +161,7 @@ fn cases() -> Option<Vec<Case>> {
     Some(cases)
 }
 
-/// Relative errors (to E of the up normal, largest channel) of a whole file of skies and normals.
+/// Relative errors for all skies and normals of the file: of the largest channel, relative to E of the up normal.
 fn reference_errors(method: IrradianceMethod, samples: u32) -> Option<Vec<(f64, String)>> {
     let cases = cases()?;
     let mut device = Device::new();
@@ -211,27 +211,27 @@ fn check_reference(method: IrradianceMethod, samples: u32, rms_allowed: f64, lar
 
 #[test]
 fn quasi_meets_the_reference() {
-    // What the project asks of low-discrepancy samples under skies with a bright glow: 0.3 % rms of 256, 0.1 % of 1024.
+    // Required of low-discrepancy samples under skies with a bright glow: 0.3 % rms with 256, 0.1 % with 1024.
     check_reference(IrradianceMethod::Quasi, 256, 3e-3, 0.02);
     check_reference(IrradianceMethod::Quasi, 1024, 1e-3, 0.01);
 }
 
 #[test]
 fn monte_carlo_meets_the_reference_within_its_noise() {
-    // The standard deviation of one sample is at most half of E_up (1/sqrt(1024) of it is
-    // 1.6 %); single normals in the glow of a low sun have several times that.
+    // The standard deviation of one sample is at most half of E_up (1/sqrt(1024) of it is 1.6 %); single normals in the glow
+    // of a low sun have several times that.
     check_reference(IrradianceMethod::MonteCarlo, 1024, 0.02, 0.15);
 }
 
 #[test]
 fn the_exact_sum_meets_the_reference() {
-    // No noise: what is left is the size of the coarse sky's texels.
+    // No noise: the remaining error is from the size of the coarse sky's texels.
     check_reference(IrradianceMethod::Exact, 1, 5e-4, 3e-3);
 }
 
 #[test]
 fn spherical_harmonics_meet_the_reference_roughly() {
-    // Ramamoorthi & Hanrahan 2001: order 2 has about 1 % of error on average and 9 % at worst for one light.
+    // Ramamoorthi & Hanrahan 2001: for one light, order 2 has about 1 % of error on average and 9 % at worst.
     check_reference(IrradianceMethod::Sh, 1, 0.015, 0.09);
 }
 
@@ -263,14 +263,14 @@ fn monte_carlo_noise_falls_with_the_root_of_the_samples() {
         coarse / fine
     );
     println!("means {coarse_mean:.1e}, {fine_mean:.1e}");
-    // 16 times the samples: a quarter of the noise, estimated from 6144 texels (1 %); 10 % for the quasi map's own error.
+    // 16 times the samples give a quarter of the noise, estimated from 6144 texels (1 %); 10 % for the quasi map's own error.
     assert!((coarse / fine - 4.0).abs() < 0.4);
-    // Independent texels: the mean error is the noise over sqrt(6144) = 78; four of those.
+    // Texels are independent: the error of the mean is the noise over sqrt(6144) = 78; four of those.
     assert!(coarse_mean.abs() < 4.0 * coarse / 78.0);
     assert!(fine_mean.abs() < 4.0 * fine / 78.0);
 }
 
-/// The direction that the shader draws first in a texel.
+/// The first direction that the shader draws in a texel.
 fn first_direction(texel: u32, face: u32, normal: DVec3) -> DVec3 {
     let mut t = tea::<4>(texel, face);
     let (xi1, xi2) = (rnd(&mut t), rnd(&mut t));
@@ -285,13 +285,13 @@ fn random_numbers_and_directions_are_the_cpus() {
     light.refine(&mut device, &day);
     let found = light.exact(&mut device);
     let sky = device.read_cube(light.sky.image());
-    // One bilinear tap: the device's weights have 8 bits, so a 256th of the step between neighbouring texels, which is
-    // largest at the horizon and in the glow.
+    // One bilinear tap: its weights have 8 bits on the device, so the error is 1/256 of the step between neighbouring texels,
+    // which is largest at the horizon and in the glow.
     let mut worst = Worst::new("E of one sample against pi L(direction)", 5e-3);
     for ((face, i, j), value) in texels(EDGE as usize).zip(&found.texels) {
         let normal = skylight::daylight::cube::texel_direction(face, i, j, EDGE as usize);
         let direction = first_direction((j * EDGE as usize + i) as u32, face as u32, normal);
-        // At the horizon the neighbours differ by all of the sky.
+        // At the horizon, neighbours differ by the whole luminance of the sky.
         if direction.y.abs() < 2.0 / 256.0 {
             continue;
         }
@@ -312,7 +312,7 @@ fn four_passes_make_the_same_map_as_one() {
         assert_eq!(light.irradiance.samples_done(), 512);
         light.exact(&mut device)
     });
-    // The same 512 float32 additions in another order: a few times 512 roundings of 2^-24 at most.
+    // The same 512 float32 additions in another order: at most a few times 512 roundings of 2^-24.
     let mut worst = Worst::new("4 x 128 against 1 x 512 samples", 512.0 / 16_777_216.0);
     for ((_, one, texel), other) in maps[0].iter().zip(&maps[1].texels) {
         worst.see((one / *other - 1.0).abs().max_element(), texel);
@@ -378,7 +378,7 @@ fn three_routes_make_the_same_map() {
         }
         worst.finish();
     };
-    // The same additions of the same lookups; directions differ by roundings, and lookups by a 256th of what that moves.
+    // The same sum of the same lookups; directions differ by rounding, and lookups by 1/256 of the resulting change.
     compare(
         "compute against gl_Layer, of E_max",
         1e-4,
@@ -410,7 +410,7 @@ fn a_device_without_geometry_shaders_draws_the_same_maps() {
     assert_eq!(CubeRoute::of(&with.context), CubeRoute::Geometry);
     assert_eq!(CubeRoute::of(&without.context), CubeRoute::Compute);
     for model in [SkyModel::Preetham, SkyModel::Hosek] {
-        // Low enough for a ground, a glow and, of Preetham, dark corners.
+        // Low enough for a visible ground, a glow and, with Preetham, dark corners.
         let day = sky_of(model, 3.0);
         let [a, b] = [&mut with, &mut without].map(|device| {
             let mut light = Light::new(device, IrradianceMethod::Quasi, 256, 128);

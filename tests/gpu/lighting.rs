@@ -1,5 +1,5 @@
-//! Lighting: addends that sum to the picture, the sun's disc, mirrors, depth and normals, the mean of many frames, and the
-//! file that `render --layers` writes.
+//! Lighting: terms that add up to the picture, the sun's disc, mirrors, depth and normals, the mean of many frames, and the
+//! file written by `render --layers`.
 
 use std::process::Command;
 
@@ -28,7 +28,7 @@ fn mirror() -> Material {
     }
 }
 
-/// A glossy chequered ground with a white sphere and a mirroring cube on it.
+/// A glossy checkered ground with a white sphere and a mirror-like cube on it.
 fn glossy_scene() -> Scene {
     let chequered = Material {
         specular: [0.2, 0.3, 0.4],
@@ -58,14 +58,14 @@ fn glossy_scene() -> Scene {
     scene
 }
 
-/// Ambient occlusion at half resolution, so that every term differs from pixel to pixel.
+/// Settings with ambient occlusion at half resolution, so that every term varies from pixel to pixel.
 fn occluded(width: u32, height: u32) -> FrameSettings {
     settings(width, height).with_occlusion(SsaoSettings::default())
 }
 
-/// Sum of the addends against the picture; `unit` names one kcd/m² in the numbers given.
+/// Checks that the terms add up to the picture.
 fn check_sum(beauty: &[DVec3], addends: &[Vec<DVec3>], what: &'static str) {
-    // Five float32 additions in two orders: a few roundings of 2^-24 of the picture's own value.
+    // Five float32 additions in two orders: a few roundings of 2^-24 relative to the picture's value.
     let mut worst = Worst::new(what, 4.0 / 16_777_216.0);
     for (i, whole) in beauty.iter().enumerate() {
         let sum: DVec3 = addends.iter().map(|addend| addend[i]).sum();
@@ -144,7 +144,7 @@ fn the_layers_of_a_file_sum_to_its_picture() {
 
 #[test]
 fn files_are_in_candelas_and_carry_their_parameters() {
-    // The sky high above, away from the sun: what the file says in cd/m² is what the CPU says.
+    // The sky high up and away from the sun: the values of the file, in cd/m², equal those of the CPU.
     let file = render(&[
         "--sun",
         "150,35",
@@ -165,7 +165,7 @@ fn files_are_in_candelas_and_carry_their_parameters() {
         fov_deg: 20.0,
         ..camera([0.0, 500.0, 0.0], [0.0, 600.0, -100.0])
     };
-    // The 16-bit texels of the sky cube (5e-4) and the bilinear filter between them.
+    // Errors of the sky cube's 16-bit texels (5e-4) and of bilinear filtering.
     let mut worst = Worst::new("L of the sky in a file against the CPU's", 5e-3);
     for (i, found) in layer(&file, "").into_iter().enumerate() {
         let expected = day.radiance(pixel_ray(&view, file.size, [i % 160, i / 160]));
@@ -182,7 +182,7 @@ fn files_are_in_candelas_and_carry_their_parameters() {
     assert!(text("sun illuminance").ends_with("lux (RGB)"));
 }
 
-/// A scene that is there, but not in view.
+/// A scene outside the view.
 fn out_of_view() -> Scene {
     Model::default()
         .square([0.0, -50.0, 0.0], 1.0, &matt(0.5))
@@ -238,7 +238,7 @@ fn the_suns_disc_integrates_to_its_illuminance() {
 fn the_disc_is_in_the_background_only() {
     let mut device = Device::new();
     let day = clear_day(180.0, 45.0);
-    // The eye sees the sun mirrored in the ground.
+    // The eye sees the sun's mirror image in the ground.
     let scene = Model::default().ground(50.0, &mirror()).build();
     let camera = Camera {
         fov_deg: 2.0,
@@ -272,7 +272,7 @@ fn a_mirror_shows_the_sky_in_the_mirrored_direction() {
         let picture = device.picture(&scene, set, &day, &camera);
         for (pixel, found) in picture.pixels() {
             let ray = pixel_ray(&camera, picture.size, pixel);
-            // The bilinear filter rounds off the horizon (1 / cos of the zenith angle) and the glow.
+            // Bilinear filtering blurs the horizon (1 / cos of the zenith angle) and the glow.
             let r = DVec3::new(ray.x, -ray.y, ray.z);
             if r.y < 0.1 || r.dot(day.sun_direction) > 0.99 {
                 continue;
@@ -290,7 +290,7 @@ fn depth_and_normal_of_a_plane_are_known() {
     let mut device = Device::new();
     let scene = Model::default().ground(20.0, &matt(0.5)).build();
     let mut depths = Worst::new("depth of a plane, relative", 1e-4);
-    // 16 bits an axis: half a step of 2^-15 on the octahedron, which stretches it by up to sqrt(3).
+    // 16 bits per axis: half a step of 2^-15 on the octahedron, stretched by up to sqrt(3) on the sphere.
     let mut normals = Worst::new("normal of a plane against +Y", 1e-4);
     for (eye, target) in [
         ([0.0, 2.0, 5.0], [0.0, 0.0, 0.0]),
@@ -327,7 +327,7 @@ fn the_sun_term_of_a_plane_is_lamberts() {
     let mut device = Device::new();
     let scene = Model::default().ground(20.0, &matt(0.5)).build();
     let camera = camera([0.0, 2.0, 5.0], [0.0, 0.0, 0.0]);
-    // The integral without noise, so that the illumination model alone is tested; its 16 bits cost up to 2^-10.
+    // Integration without noise, so that only the illumination model is tested; 16-bit storage costs up to 2^-10.
     let mut set = settings(80, 60);
     set.irradiance.method = IrradianceMethod::Exact;
     let mut worst = Worst::new("rho/pi n.l E_sun and rho/pi E_sky of a plane", 3e-3);
@@ -348,7 +348,7 @@ fn the_sun_term_of_a_plane_is_lamberts() {
     worst.finish();
 }
 
-/// Means of frame numbers 0..count, each one of two pictures in turn.
+/// Mean of frames 0..count, alternating between two pictures.
 fn mean_of(device: &mut Device, frames: [&skylight::gpu::Image; 2], count: u32) -> Picture {
     let size = frames[0].size();
     let mut mean = Accumulate::new(&device.context, size).expect("a mean");
@@ -379,7 +379,7 @@ fn the_mean_of_frames_is_their_mean() {
     let same = mean_of(&mut device, [one.radiance(), one.radiance()], 16);
     assert_eq!(same.texels, a.texels, "16 times the same is the same");
     let mixed = mean_of(&mut device, [one.radiance(), two.radiance()], 64);
-    // Each step rounds once, and later steps shrink it: a few roundings of 2^-24.
+    // Each step rounds once, and later steps reduce that error: a few roundings of 2^-24.
     let mut worst = Worst::new("mean of 64 frames, two in turn", 8.0 / 16_777_216.0);
     for (pixel, found) in mixed.pixels() {
         let (a, b) = (a.at(pixel[0], pixel[1]), b.at(pixel[0], pixel[1]));

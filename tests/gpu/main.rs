@@ -1,4 +1,4 @@
-//! What the device draws against the CPU, closed forms and itself, under validation.
+//! Output of the device against the CPU, closed forms and itself, under validation.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,4 +1,4 @@
-//! Shadows of the sun beyond one map: penumbrae against the disc's own geometry, and cascades against closed forms.
+//! Sun shadows beyond a single map: penumbrae against the geometry of the sun's disc, cascades against closed forms.
 
 use crate::gpu::{Device, Model, Picture, camera, clear_day, matt, on_ground, settings};
 use glam::DVec3;
@@ -14,12 +14,12 @@ fn visibility(size: [u32; 2], shadows: Shadows) -> FrameSettings {
     set
 }
 
-/// Share of a disc of radius 1 on one side of a line at `t`, -1..1.
+/// Fraction of a unit disc on one side of a line at `t`, -1..1.
 fn share(t: f64) -> f64 {
     0.5 + (t.asin() + t * (1.0 - t * t).sqrt()) / std::f64::consts::PI
 }
 
-/// Where the share of a disc is `wanted`, by bisection.
+/// Position of the line for which that fraction is `wanted`, by bisection.
 fn line_at(wanted: f64) -> f64 {
     let (mut low, mut high) = (-1.0, 1.0);
     for _ in 0..50 {
@@ -33,7 +33,7 @@ fn line_at(wanted: f64) -> f64 {
     low
 }
 
-/// Where a profile (sorted by its first numbers) crosses `level`, by the mean of what is near.
+/// Where a profile (sorted by position) crosses `level`, by the mean of nearby points.
 fn crossing(profile: &[(f64, f64)], level: f64) -> f64 {
     let bin = 0.002;
     let first = profile[0].0;
@@ -65,7 +65,7 @@ fn penumbrae_are_as_wide_as_the_suns_disc_makes_them() {
             .ground(8.0, &grey)
             .square([0.0, height as f32, 0.0], 2.0, &grey)
             .build();
-        // From the side, under the square, at its shadow's edge x = 2.
+        // From the side, under the square, toward its shadow's edge x = 2.
         let camera = Camera {
             fov_deg: 12.0,
             ..camera([5.5, 2.5, 0.0], [2.0, 0.0, 0.0])
@@ -125,7 +125,7 @@ fn an_open_plane_is_lit_under_any_sun() {
     }
 }
 
-/// Squares over a plain of two kilometres: distance from the eye, half edge, height, metres.
+/// Squares above a plain of two kilometres: distance from the eye, half edge, height, metres.
 const SQUARES: [[f64; 3]; 4] = [
     [6.0, 0.6, 0.5],
     [25.0, 3.0, 2.0],
@@ -149,7 +149,7 @@ fn in_shadow(p: DVec3, sun: DVec3) -> bool {
     })
 }
 
-/// Pixels of the ground that are lit or dark against the truth, away from edges, and all that were looked at.
+/// Ground pixels with the wrong visibility, and all tested ones; pixels near shadow edges are left out.
 fn wrong(picture: &Picture, camera: &Camera, sun: DVec3) -> [usize; 2] {
     let (mut wrong, mut all) = (0, 0);
     for (pixel, v) in picture.pixels() {
@@ -157,7 +157,7 @@ fn wrong(picture: &Picture, camera: &Camera, sun: DVec3) -> [usize; 2] {
             continue;
         };
         let far = (p - camera.eye.as_dvec3()).length();
-        // Not beneath the squares themselves, which hide what is behind them.
+        // Leave out pixels where a square hides the ground.
         if far > 600.0 || hides(camera, p) {
             continue;
         }
@@ -174,7 +174,7 @@ fn wrong(picture: &Picture, camera: &Camera, sun: DVec3) -> [usize; 2] {
     [wrong, all]
 }
 
-/// Whether a square is between the eye and a point of the ground.
+/// Whether a square hides a point of the ground from the eye.
 fn hides(camera: &Camera, p: DVec3) -> bool {
     let eye = camera.eye.as_dvec3();
     SQUARES.iter().any(|[distance, half, height]| {
@@ -217,7 +217,7 @@ fn cascades_shade_near_and_far() {
     }
 }
 
-/// A long wall along z: the edge of its shadow runs away from the viewer through all cascades.
+/// A long wall along z: the edge of its shadow crosses all cascades as it recedes from the viewer.
 fn long_wall() -> Scene {
     let grey = matt(0.5);
     let wall = ([-2.0, 0.0, 5.0], [0.0, 0.0, -900.0], [0.0, 3.0, 0.0]);
@@ -227,8 +227,8 @@ fn long_wall() -> Scene {
         .build()
 }
 
-/// Width of the edge of the wall's shadow at distances down the view, metres: from 5 % to 95 % of the light, by the integral
-/// of what is between. Only where a pixel is narrower than the edge.
+/// Width of the wall's shadow edge at distances along the view, metres: from 5 % to 95 % of the light, by integration of
+/// the values in between. Only where a pixel is narrower than the edge.
 fn edge_widths(picture: &Picture, camera: &Camera, edge: f64) -> Vec<(f64, f64)> {
     let [width, height] = picture.size;
     let row_at = |y: usize| -> Option<(f64, f64)> {
@@ -238,7 +238,7 @@ fn edge_widths(picture: &Picture, camera: &Camera, edge: f64) -> Vec<(f64, f64)>
             .collect();
         let pixel = points.get(1)?.0.x - points.first()?.0.x;
         let away = (points[0].0.z - f64::from(camera.eye.z)).abs();
-        // A ramp from dark to light has the integral of 4 V (1 - V) of two thirds of its width.
+        // For a linear ramp from dark to light, the integral of 4 V (1 - V) is two thirds of its width.
         let sum: f64 = points
             .iter()
             .map(|(_, v)| 4.0 * v * (1.0 - v) * pixel)
@@ -253,7 +253,7 @@ fn edge_widths(picture: &Picture, camera: &Camera, edge: f64) -> Vec<(f64, f64)>
 fn cascades_are_far_sharper_near_the_viewer_and_widen_without_a_seam() {
     let mut device = Device::new();
     let scene = long_wall();
-    // From the west: the shadow of 3 m lies to the east of the wall.
+    // Sun in the west: the 3 m shadow lies east of the wall.
     let day = clear_day(270.0, 40.0);
     let edge = -2.0 + 3.0 / 40f64.to_radians().tan();
     let camera = Camera {
@@ -282,7 +282,7 @@ fn cascades_are_far_sharper_near_the_viewer_and_widen_without_a_seam() {
     println!("the edge is {sharp:.3} m wide within 8 m of the viewer, with one map {soft:.2} m");
     assert!(sharp < 0.12 && soft > 10.0 * sharp, "{sharp} {soft}");
 
-    // The nearest map ends at 20 m: its blend from 17 m on. The width goes there step by step.
+    // The nearest cascade ends at 20 m and blends from 17 m on. The width changes gradually there.
     let at = |from: f64, to: f64| {
         let rows: Vec<f64> = many
             .iter()

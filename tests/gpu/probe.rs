@@ -1,4 +1,4 @@
-//! Read-outs of single pixels: they are those of the picture on the screen.
+//! Read-outs of single pixels match the picture on the screen.
 
 use glam::DVec3;
 use skylight::daylight::colour::luminance;
@@ -13,7 +13,7 @@ use crate::gpu::{Device, Model, Picture, camera, clear_day, matt, on_ground, set
 const EDGE: u32 = 96;
 const SAMPLES: u32 = 32;
 
-/// A roof of 4 m at a height of 2 m on the left, a cube on the right.
+/// A roof of 4 m at a height of 2 m on the left, a cube on the right; a camera and a daylight.
 fn scene() -> (Scene, Camera, Daylight) {
     let scene = Model::default()
         .ground(12.0, &matt(0.5))
@@ -25,14 +25,14 @@ fn scene() -> (Scene, Camera, Daylight) {
     (scene, view, clear_day(92.0, 45.0))
 }
 
-/// Points of the ground in the sun, in the cube's shadow, and under the roof.
+/// Ground points in the sun, in the cube's shadow, and under the roof.
 const POINTS: [(&str, DVec3); 3] = [
     ("in the sun", DVec3::new(0.0, 0.0, 4.0)),
     ("in the shade", DVec3::new(1.2, 0.0, 0.0)),
     ("under the roof", DVec3::new(-3.8, 0.0, 0.5)),
 ];
 
-/// The pixel that shows a point of the ground.
+/// The pixel that shows a ground point.
 fn pixel_of(view: &Camera, point: DVec3) -> [u32; 2] {
     let edge = EDGE as usize;
     let pixels = (0..edge * edge).map(|i| [i % edge, i / edge]);
@@ -44,7 +44,7 @@ fn pixel_of(view: &Camera, point: DVec3) -> [u32; 2] {
     nearest.expect("a pixel of the ground").1.map(|i| i as u32)
 }
 
-/// Settings as of the window: half floats, ambient occlusion while the view moves.
+/// Settings of the window: half floats, ambient occlusion while the view moves.
 fn as_in_the_window(visibility: Visibility) -> FrameSettings {
     let mut set = settings(EDGE, EDGE);
     set.samples = SAMPLES;
@@ -63,7 +63,7 @@ fn read(device: &mut Device, frame: &mut Frame, pixel: [u32; 2]) -> Reading {
     frame.picked().expect("a reading")
 }
 
-/// Reads the three points off a drawn frame, and compares with a picture of irradiance (klx).
+/// Reads the three points from a drawn frame and compares them with a picture of irradiance (klx).
 fn compare(
     device: &mut Device,
     frame: &mut Frame,
@@ -78,7 +78,7 @@ fn compare(
         let reading = read(device, frame, pixel);
         assert_eq!(reading.pixel, pixel);
         let [x, y] = pixel.map(|i| i as usize);
-        // What is shown, in its unit.
+        // The shown quantity, in its unit.
         let unit = f64::from(frame.settings().lighting.show.file_unit());
         let texel = shown.at(x, y) * unit;
         let radiance = glam::Vec3::from(reading.radiance).as_dvec3();
@@ -95,21 +95,21 @@ fn compare(
         );
         read_outs.push(found);
     }
-    // The places are what they are called.
+    // The points are lit as their names say.
     let [sun, shade, roof] = read_outs[..] else {
         panic!("three places")
     };
     assert!(sun > 50e3 && shade < 0.3 * sun && roof < 0.3 * sun);
 }
 
-/// The picture of irradiance that a file would have of these settings.
+/// The picture of irradiance that `render` would write with these settings.
 fn irradiance(device: &mut Device, mut set: FrameSettings) -> Picture {
     let (scene, view, day) = scene();
     set.lighting.precision = Precision::Float;
     device.picture(&scene, showing(Show::Irradiance, set), &day, &view)
 }
 
-/// Draws a preview, then all frames of the average, and reads off both.
+/// Draws a preview, then accumulates all frames, and compares the read-outs of both.
 fn check(visibility: Visibility, file: Visibility, show: Show) {
     let mut device = Device::new();
     let (scene, view, day) = scene();

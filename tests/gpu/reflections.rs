@@ -1,4 +1,4 @@
-//! Mirrors: the balance of energy of the normalised lobe, and what hides the sky from it.
+//! Specular reflection: energy balance of the normalised lobe, and occlusion of the sky in reflections.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ use skylight::passes::dome::specular::{Mirrors, Phong, Reflections};
 use skylight::passes::light::lighting::Show;
 use skylight::scene::Material;
 
-/// Black but for its mirror.
+/// A purely specular material.
 fn mirror(rho_s: f32, shininess: f32) -> Material {
     Material {
         diffuse: [0.0; 3],
@@ -43,7 +43,7 @@ fn a_normalised_lobe_reflects_its_share_head_on_and_never_more() {
             let mut set = showing(Show::SkySpecular, settings(32, 32));
             set.samples = 16;
             set = with(Phong::Normalized, reflections, set);
-            // Straight down, and across the ground.
+            // Straight down, and at a shallow angle over the ground.
             for (target, is_head_on) in [([0.0, 0.0, -0.01], true), ([0.0, 1.0, -3.0], false)] {
                 let view = camera([0.0, 2.0, 0.0], target);
                 let picture = device.picture(&scene, set, &constant_sky(L), &view);
@@ -66,7 +66,7 @@ fn the_normalised_highlight_of_the_sun_is_the_lobe_times_the_cosine() {
     let (rho_s, p) = (0.3, 30.0f32);
     let scene = Model::default().ground(50.0, &mirror(rho_s, p)).build();
     let day = clear_day(180.0, 50.0);
-    // The sun stands in the south, the eye north of the middle.
+    // The sun is in the south, the eye north of the centre.
     let view = camera([0.0, 2.0, -2.0], [0.0, 0.0, 0.0]);
     let set = showing(Show::SunSpecular, settings(24, 24));
     let lecture = device.picture(&scene, set, &day, &view);
@@ -88,7 +88,7 @@ fn the_normalised_highlight_of_the_sun_is_the_lobe_times_the_cosine() {
     assert!(seen > 50, "{seen}");
 }
 
-/// Where the mirrored ray of a pixel of the floor meets the roof.
+/// Where the reflection vector of a floor pixel meets the roof.
 fn on_the_roof(
     view: &skylight::scene::Camera,
     size: [usize; 2],

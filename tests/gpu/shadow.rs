@@ -10,12 +10,12 @@ use skylight::passes::sun_shadow::fit;
 use skylight::passes::view::View;
 use skylight::scene::{Camera, Scene};
 
-/// Texels around a shadow's edge that nothing is said about: 2 for the map, 1.5 for the half width of the 3x3 tent
-/// (four bilinear taps), which the normal offset of up to 1.5 texels moves about.
+/// Width of the untested band around a shadow's edge, texels: 2 for the map, 1.5 for the half width of the 3x3 tent filter
+/// (four bilinear taps), which is shifted by the normal offset of up to 1.5 texels.
 const EDGE_TEXELS: f64 = 3.5;
 
-/// Texels (across the light) of ground at a wall's foot that may be lit by mistake: the normal offset lifts the receiver by
-/// up to 1.5 texels, the filter reaches 1.5 texels.
+/// Width of wrongly lit ground (light leak) allowed at a wall's foot, texels across the light: the normal offset moves the
+/// receiver by up to 1.5 texels, the filter reaches 1.5 texels.
 const FOOT_TEXELS: f64 = 3.0;
 
 const SIZE: (u32, u32) = (240, 180);
@@ -24,7 +24,7 @@ fn visibility_settings() -> FrameSettings {
     crate::gpu::showing(Show::Visibility, settings(SIZE.0, SIZE.1))
 }
 
-/// V and the distance along the view axis.
+/// Pictures of V and of the distance along the view axis.
 fn draw(device: &mut Device, scene: &Scene, day: &Daylight, camera: &Camera) -> (Picture, Picture) {
     let mut frame = device.frame(scene, visibility_settings(), day, camera);
     let visibility = device.picture_of(&frame);
@@ -33,7 +33,7 @@ fn draw(device: &mut Device, scene: &Scene, day: &Daylight, camera: &Camera) -> 
     (visibility, device.picture_of(&frame))
 }
 
-/// Edge of a texel of the map that the frame uses, metres.
+/// Edge of a texel of the frame's shadow map, metres.
 fn texel(scene: &Scene, day: &Daylight, camera: &Camera) -> f64 {
     let set = visibility_settings();
     let view = View {
@@ -72,7 +72,7 @@ fn under_square(p: DVec3, sun: DVec3) -> bool {
     at.x.abs() <= 2.0 && at.z.abs() <= 2.0
 }
 
-/// The ground point of a pixel, where the ground is what is seen there.
+/// The ground point of a pixel; `None` if the pixel does not show the ground.
 fn ground_point(camera: &Camera, depth: &Picture, pixel: [usize; 2]) -> Option<DVec3> {
     let p = on_ground(camera, depth.size, pixel)?;
     let along = (p - camera.eye.as_dvec3()).dot(camera.forward().as_dvec3());
@@ -144,7 +144,7 @@ fn an_open_plane_has_no_acne() {
 fn light_does_not_leak_under_a_wall() {
     let mut device = Device::new();
     let grey = matt(0.5);
-    // The wall stands at z = 0 and looks south; the sun is in the north, so the ground south of it is dark.
+    // The wall stands at z = 0 and faces south; the sun is in the north, so the ground south of it is in shadow.
     let scene = Model::default()
         .ground(12.0, &grey)
         .quad([-6.0, 0.0, 0.0], [12.0, 0.0, 0.0], [0.0, 4.0, 0.0], &grey)
@@ -161,7 +161,7 @@ fn light_does_not_leak_under_a_wall() {
             let Some(p) = ground_point(&camera, &depth, pixel) else {
                 continue;
             };
-            // Where the wall meets the ray to the sun; well inside of the wall's other edges.
+            // Where the ray to the sun meets the wall; well inside the wall's other edges.
             let at = p - sun * (p.z / sun.z);
             if p.z <= 0.0 || at.x.abs() > 5.0 || at.y > 3.0 {
                 continue;

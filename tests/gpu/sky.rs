@@ -13,11 +13,11 @@ const MODELS: [SkyModel; 4] = [
     SkyModel::CieClear,
 ];
 
-/// Smallest step of 16-bit floats, kcd/m²: what storing costs the dark sky of late twilight.
+/// Smallest step of 16-bit floats, kcd/m²: the storage error of the dark sky in late twilight.
 const HALF_STEP: f64 = 1.0 / 16_777_216.0;
 
-/// Relative to the brightest channel of the texel, beyond the rounding to 16 bits: the shader evaluates in float32
-/// (2^-24), and the chain of exp, pow and XYZ to RGB (factors up to 3.2, differences of them) magnifies that.
+/// Relative error, of the texel's brightest channel, besides rounding to 16 bits: the shader evaluates in float32 (2^-24),
+/// and the chain of exp, pow and XYZ to RGB (differences of terms with factors up to 3.2) amplifies that.
 const EVALUATION: f64 = 1e-4;
 
 fn draw(device: &mut Device, cube: &mut SkyCube, daylight: &Daylight) -> Cube {
@@ -27,7 +27,7 @@ fn draw(device: &mut Device, cube: &mut SkyCube, daylight: &Daylight) -> Cube {
     device.read_cube(cube.image())
 }
 
-/// Error of a texel in units of what is allowed.
+/// Error of a texel relative to the allowed error.
 fn error(found: DVec3, daylight: &Daylight, direction: DVec3) -> f64 {
     let expected = daylight.radiance(direction) * 1e-3;
     let allowed =
@@ -115,7 +115,7 @@ fn a_sky_is_drawn_again_only_when_it_changes() {
     assert_eq!(drawn, [true, false, true, false, true]);
 }
 
-/// The guard holds on the device too: no input gives a texel that is not finite or negative.
+/// The guard holds on the device as well: no input gives a negative or non-finite texel.
 #[test]
 fn no_input_gives_a_bad_texel() {
     let mut device = Device::new();
@@ -128,7 +128,7 @@ fn no_input_gives_a_bad_texel() {
                     model: *model,
                     turbidity,
                     sun_elevation_deg: elevation,
-                    // Toward a texel of the row above the horizon, where the glow of a low sun leaves the gamut.
+                    // Toward a texel in the row above the horizon, where the glow of a low sun is out of gamut.
                     sun_azimuth_deg: 1.79,
                     ..Conditions::default()
                 });

@@ -1,4 +1,4 @@
-//! Ambient occlusion: an open plane, a corner in closed form, the limits, and the path-traced truth.
+//! Ambient occlusion: an open plane, a corner in closed form, limiting cases, and path-traced references.
 
 use std::f64::consts::PI;
 
@@ -10,8 +10,8 @@ use skylight::passes::light::lighting::Show;
 use skylight::passes::occlusion::ssao::SsaoSettings;
 use skylight::scene::{Camera, Scene};
 
-/// Radii (m) at which the truth is known, and the RMSE allowed there by occluders at every and at every second pixel, on geometry
-/// 2 pixels away from the background. Pictures of 640x360 have one at every pixel by default.
+/// Radii (m) with a path-traced reference, and the RMSE allowed with occluders at every and at every second pixel, on geometry
+/// 2 pixels away from the background. By default pictures of 640x360 have an occluder at every pixel.
 const TRUTH_RMSE: [(f32, [f64; 2]); 2] = [(1.0, [0.065, 0.085]), (5.0, [0.1, 0.115])];
 const TRUTH_BIAS: f64 = 0.03;
 
@@ -64,11 +64,11 @@ fn an_open_plane_sees_the_whole_sky() {
 #[test]
 fn the_facets_of_a_smooth_body_do_not_hide_the_sky_from_it() {
     let mut device = Device::new();
-    // Normals lean up to 11 degrees from the facets.
+    // Shading normals lean up to 11 degrees from the facets.
     let scene = Model::default()
         .sphere([0.0; 3], 1.0, 8, &matt(0.5))
         .build();
-    // Single pixels at the edge of two facets take a face between them.
+    // A pixel on the edge of two facets may get a facet between them.
     let mut worst = Worst::new("A of a sphere in the open against 1", 0.06);
     let mut mean = Worst::new("its mean", 0.003);
     for eye in [[0.0, 0.5, 3.5], [2.0, 2.4, 1.7]] {
@@ -87,17 +87,16 @@ fn the_facets_of_a_smooth_body_do_not_hide_the_sky_from_it() {
     worst.finish();
 }
 
-/// A on the ground at a distance from the foot of a wall, both endless, counting what is nearer than `radius`.
+/// A on the ground at a distance from the foot of a wall, both infinite, counting occluders nearer than `radius`.
 ///
-/// The wall at distance x is met within the radius by directions w with w·wall > c = x / radius. Cosine-weighted directions are
-/// uniform on the unit disc below (Nusselt), so they cover the segment beyond c: (acos c - c sqrt(1 - c²)) / π; one half at
-/// the foot.
+/// The wall at distance x occludes directions w with w·wall > c = x / radius. Cosine-weighted directions are uniform on the
+/// unit disc (Nusselt), so the occluded fraction is the segment beyond c: (acos c - c sqrt(1 - c²)) / π; one half at the foot.
 fn beside_wall(x: f64, radius: f64) -> f64 {
     let c = (x / radius).clamp(0.0, 1.0);
     1.0 - (c.acos() - c * (1.0 - c * c).sqrt()) / PI
 }
 
-/// Mean errors of A in tenths of the radius from the foot.
+/// Mean errors of A by distance from the foot, in bins of a tenth of the radius.
 fn ramp_errors(picture: &Picture, camera: &Camera, radius: f64) -> Vec<(usize, f64)> {
     let mut bins = [(0.0, 0.0); 10];
     for (pixel, a) in picture.pixels() {
@@ -127,10 +126,10 @@ fn the_foot_of_a_wall_sees_half_of_the_sky() {
         )
         .build();
     let camera = camera([0.5, 2.5, 4.0], [0.0, 0.3, 0.0]);
-    // The mean along the wall: single pixels keep the noise of a slice.
+    // The mean along the wall: single pixels have the noise of their slice.
     let mut foot = Worst::new("A at the foot of a wall against its closed form", 0.04);
     let mut ramp = Worst::new("A up to the radius from the foot", 0.04);
-    // Half a metre is a few texels at half resolution.
+    // Half a metre is only a few texels at half resolution.
     for (downscale, radii) in [(1, vec![0.5, 1.0, 2.0]), (2, vec![1.0, 2.0])] {
         for radius in radii {
             let picture = occlusion(&mut device, &scene, &camera, radius, downscale);
@@ -191,7 +190,7 @@ fn occlusion_stays_within_nothing_and_everything() {
     assert!(darkest < 0.4, "nothing is occluded");
 }
 
-/// Bias and root mean square of A against the truth.
+/// Bias and RMSE of A against the path-traced reference.
 fn against_truth(device: &mut Device, view: &View, radius: f32, downscale: u32) -> (f64, f64) {
     let truth = view.exr(&format!("ao_{radius}m"));
     let set = with_occlusion(
@@ -218,8 +217,8 @@ fn against_truth(device: &mut Device, view: &View, radius: f32, downscale: u32) 
     (bias, rmse)
 }
 
-/// Share of the cosine-weighted hemisphere that a rectangle takes, parallel to the ground at a height, its corners at `x` and
-/// `z` from the point (the configuration factor of parallel rectangles, summed over its quarters).
+/// Cosine-weighted fraction of the hemisphere that a rectangle parallel to the ground covers. Its edges are at `x` and `z`
+/// relative to the point (configuration factor of parallel rectangles, summed over its quarters).
 fn overhead(x: [f64; 2], z: [f64; 2], height: f64) -> f64 {
     let quarter = |a: f64, b: f64| {
         let (a, b) = (a / height, b / height);

@@ -1,4 +1,4 @@
-//! What the CPU does for a frame: no memory is allocated once the passes run, and every material is one draw.
+//! CPU cost of a frame: recording allocates no memory in the steady state, and each material is one draw call.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -11,20 +11,20 @@ use skylight::frame::Frame;
 use skylight::gpu::{Context, Recorder, Timing};
 use skylight::scene::{Bounds, Camera, Material, Part, Scene};
 
-/// The system's allocator, which counts what this thread asks of it.
+/// The system's allocator, counting the allocations of the current thread.
 struct Counting;
 
 thread_local! {
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
-// SAFETY: every call is passed on to the system's allocator as it is; counting touches a cell of this thread that needs no
-// memory and has no destructor.
+// SAFETY: every call is forwarded unchanged to the system's allocator; the counter is a thread-local cell that does not
+// allocate and has no destructor.
 #[allow(unsafe_code)]
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.set(ALLOCATIONS.get() + 1);
-        // SAFETY: the caller keeps the contract of `alloc`.
+        // SAFETY: the caller upholds the contract of `alloc`.
         unsafe { System.alloc(layout) }
     }
 
@@ -37,7 +37,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// A wall of `parts` separate squares, each of a material of its own.
+/// A wall of `parts` separate squares, each with its own material.
 fn wall(parts: u32) -> Scene {
     let mut scene = Scene::default();
     let columns = f64::from(parts).sqrt().ceil() as u32;
@@ -66,7 +66,7 @@ fn wall(parts: u32) -> Scene {
     scene
 }
 
-/// A frame and what it shows.
+/// A frame and its inputs.
 struct Shown {
     recorder: Recorder,
     frame: Frame,
@@ -90,7 +90,7 @@ impl Shown {
         }
     }
 
-    /// Draws a frame with the camera a little farther on. Returns how many allocations its recording made.
+    /// Moves the camera a little and draws a frame. Returns the number of allocations made while recording.
     fn step(&mut self) -> u64 {
         self.camera.eye.x += 1e-3;
         self.recorder.begin().expect("begun");
@@ -102,7 +102,7 @@ impl Shown {
         allocations
     }
 
-    /// Allocations of the third to the twentieth frame.
+    /// Allocations per frame, from the third to the twentieth.
     fn steady_allocations(&mut self) -> Vec<u64> {
         let all: Vec<u64> = (0..20).map(|_| self.step()).collect();
         println!("allocations of each frame: {all:?}");

@@ -1,4 +1,4 @@
-//! Times of passes: every pass is named once, in order, with a positive time, by both ways of timing.
+//! Pass timings: both timing modes list every pass once, in order, with a positive time.
 
 use crate::gpu::Device;
 use skylight::frame::Frame;

@@ -1,5 +1,6 @@
-//! The tone curves of the shader against `shared/reference`, in 32-bit floats,
-//! and exposure and false colours against the CPU's. Seen to fail with the white of Reinhard's curve left out, and with the rows of AgX's inset matrix transposed.
+//! The shader's tone curves against `shared/reference` in 32-bit floats; exposure and false colours against the CPU.
+//!
+//! Verified to fail without the white of Reinhard's curve, and with the rows of AgX's inset matrix transposed.
 
 use crate::common::{Table, Worst};
 use crate::gpu::Device;
@@ -15,7 +16,7 @@ use skylight::passes::light::lighting::Show;
 use skylight::passes::picture::exposure::Exposure;
 use skylight::passes::picture::tone_map::{Push, Scale, ToneMap, ToneSettings};
 
-/// A column of the reference, and how the shader is set to compute it.
+/// A column of the reference, and the shader settings that reproduce it.
 struct Case {
     column: &'static str,
     constant: Option<&'static str>,
@@ -105,12 +106,12 @@ fn the_shaders_curves_meet_the_reference() {
         .collect();
     let mut device = Device::new();
     for case in cases() {
-        // What the reference data allow; AgX comes nearest to it, whose polynomial multiplies the error of `log2`.
+        // Tolerance of the reference data. AgX comes closest to it: its polynomial amplifies the error of `log2`.
         let mut worst = Worst::new(case.column, 1e-5);
         let outputs = mapped(&mut device, &inputs, &case);
         for (row, output) in table.rows().zip(&outputs) {
             for (channel, end) in ["r", "g", "b"].into_iter().enumerate() {
-                // What is displayed is cut to 0..1.
+                // Displayed values are clamped to 0..1.
                 let expected = row.get(&format!("{}_{end}", case.column)).clamp(0.0, 1.0);
                 worst.see(f64::from(output[channel]) - expected, row.index);
             }
@@ -126,7 +127,7 @@ fn the_false_colours_are_those_of_the_cpu() {
         min: 20.0,
         max: 5e4,
     };
-    // From far below the range to far above it, and no light at all; cd/m².
+    // From far below to far above the range, and zero; cd/m².
     let mut values: Vec<f64> = (0..2000)
         .map(|i| 10f64.powf(-3.0 + f64::from(i) / 200.0))
         .collect();
@@ -153,7 +154,7 @@ fn the_false_colours_are_those_of_the_cpu() {
     let bytes = read_back(&mut device.recorder, tone_map.image())
         .expect("read")
         .bytes;
-    // Half a step of rounding, and what an encoding to sRGB may be off.
+    // Half a step for rounding, and the allowed error of sRGB encoding.
     let mut worst = Worst::new("false colours, 8 bits", 1.0);
     for (value, pixel) in values.iter().zip(bytes.chunks_exact(4)) {
         let expected = range
@@ -167,10 +168,10 @@ fn the_false_colours_are_those_of_the_cpu() {
     worst.finish();
 }
 
-/// A picture of the grid on which the device samples: every pixel is a sample.
+/// Size of the grid on which the device samples luminance: with this size every pixel is a sample.
 const GRID: [u32; 2] = [128, 72];
 
-/// A repeatable value in 0..1 for a pixel.
+/// A deterministic value in 0..1 for a pixel.
 fn noise(pixel: u32) -> f32 {
     (pixel.wrapping_mul(2_654_435_761) >> 8) as f32 / (1 << 24) as f32
 }
@@ -180,7 +181,7 @@ fn uploaded(device: &mut Device, size: [u32; 2], texels: &[[f32; 4]]) -> Image {
     device.run(|rec| upload_texture(rec, &desc, &[bytemuck::cast_slice(texels)]).expect("uploaded"))
 }
 
-/// Average luminance of a picture by the device, cd/m².
+/// Average luminance of a picture as computed by the device, cd/m².
 fn average(device: &mut Device, exposure: &Exposure, picture: &Image) -> f64 {
     device.run(|rec| {
         exposure.record(rec, picture);
@@ -212,7 +213,7 @@ fn the_automatic_exposure_is_that_of_the_cpu() {
     ];
     let mut device = Device::new();
     let exposure = Exposure::new(&device.context).expect("a pass");
-    // Sums of 9216 floats.
+    // Rounding of the sum of 9216 floats.
     let mut worst = Worst::new("automatic exposure, stops", 2e-4);
     for (name, texel) in scenes {
         let colours: Vec<[f32; 3]> = (0..GRID[0] * GRID[1]).map(|i| texel(noise(i))).collect();
@@ -236,7 +237,7 @@ fn pictures_of_any_size_are_metered_and_black_ones_too() {
         let picture = uploaded(&mut device, size, &grey);
         let value = average(&mut device, &exposure, &picture);
         assert!((value / 2500.0 - 1.0).abs() < 1e-5, "{size:?} {value}");
-        // Black keeps the exposure where there was one, and is 1000 cd/m² at first.
+        // A black picture keeps the current exposure; without one, it counts as 1000 cd/m².
         let black = uploaded(&mut device, size, &vec![[0.0; 4]; grey.len()]);
         exposure.set_share(0.5);
         let kept = average(&mut device, &exposure, &black);
@@ -252,7 +253,7 @@ fn the_exposure_adapts_along_the_cpus_curve_both_ways() {
     let mut exposure = Exposure::new(&device.context).expect("a pass");
     let [dark, bright] = [0.25, 64.0].map(|l| uploaded(&mut device, [4, 4], &[[l; 4]; 16]));
     let mut worst = Worst::new("adaptation, stops", 1e-4);
-    // The first picture is adapted to at once.
+    // The first picture sets the exposure without adaptation.
     exposure.set_share(0.0);
     worst.see(
         (average(&mut device, &exposure, &dark) / 250.0).log2(),

@@ -1,4 +1,4 @@
-//! A change of the frame that fails half-way leaves the frame as it was.
+//! A frame change that fails halfway leaves the frame unchanged.
 
 use skylight::frame::{Frame, FrameSettings, Visibility};
 use skylight::gpu::{Recorder, Result};
@@ -7,10 +7,10 @@ use skylight::scene::Scene;
 
 use crate::gpu::{Device, Model, camera, clear_day, matt, settings};
 
-/// Calls that making passes and images comes down to.
+/// The kinds of calls made when passes and images are created.
 const CALLS: [&str; 4] = ["memory", "buffer", "image", "pipeline"];
 
-/// A small picture of few samples.
+/// A small picture with few samples.
 fn small(samples: u32, visibility: Visibility) -> FrameSettings {
     let mut set = settings(32, 18);
     set.samples = samples;
@@ -31,8 +31,8 @@ fn scene() -> Scene {
         .build()
 }
 
-/// Makes each call of a change fail, one after the other, and draws the next picture: it is that of the old settings.
-/// Returns how many calls failed.
+/// Makes each call of a change fail, one at a time, and checks that the next picture is that of the old settings. Returns the
+/// number of failed calls.
 fn fail_everywhere(
     set: FrameSettings,
     change: impl Fn(&mut Frame, &mut Recorder) -> Result<()>,
@@ -53,7 +53,7 @@ fn fail_everywhere(
             device.context.plan_fault(None).expect("none");
             if changed.is_ok() {
                 device.recorder.finish().expect("finished");
-                // There are not so many calls of this kind. Back to the old settings.
+                // All calls of this kind have been tried. Restore the old settings.
                 let reverted = device.run(|rec| frame.apply(rec, old));
                 reverted.expect("memory");
             } else {
@@ -75,7 +75,7 @@ fn fail_everywhere(
     failed
 }
 
-/// The three ways to a picture: one frame, the mean of frames, the dome.
+/// Settings for the three kinds of frames: a single frame, a mean of frames, dome visibility.
 fn ways() -> [FrameSettings; 3] {
     [
         small(1, Visibility::Ssao),

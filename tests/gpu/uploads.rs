@@ -11,7 +11,7 @@ use skylight::passes::sun_shadow::map::CutOutPush;
 /// Edge of the targets, pixels.
 const EDGE: u32 = 8;
 
-/// An RGBA texture with all mip levels, opaque in one of them only.
+/// An RGBA texture with all mip levels, opaque in only one of them.
 fn opaque_in_level(recorder: &mut Recorder, size: u32, level: u32) -> Image {
     let desc = ImageDesc::flat("levels", Format::R8G8B8A8_SRGB, [size; 2]).mipmapped();
     let texels = |k: u32| ((size >> k).max(1) * (size >> k).max(1)) as usize;
@@ -21,8 +21,8 @@ fn opaque_in_level(recorder: &mut Recorder, size: u32, level: u32) -> Image {
     upload_texture(recorder, &desc, &levels).expect("a texture")
 }
 
-/// Uploads a quad and a texture of `size` texels and draws them in the same submission, without holes where the texture is
-/// opaque. The depth of every pixel.
+/// Uploads a quad and a texture of `size` texels and draws them in the same submission; alpha testing keeps the texels that
+/// are opaque. Returns the depth of every pixel.
 fn draw_uploaded_quad(device: &mut Device, size: u32, opaque: u32) -> Vec<f32> {
     let formats = [Format::R32G32B32_SFLOAT, Format::R32G32_SFLOAT];
     let depth_format = Format::D32_SFLOAT;
@@ -47,7 +47,7 @@ fn draw_uploaded_quad(device: &mut Device, size: u32, opaque: u32) -> Vec<f32> {
         shadow_from_world: glam::Mat4::IDENTITY.to_cols_array_2d(),
         cutoff: 0.5,
     };
-    // Resources live until the work is done.
+    // Resources must outlive the submission.
     let kept = device.run(|rec| {
         let mut vertices =
             |name, bytes| upload_buffer(rec, name, BufferKind::Vertex, bytes).expect("a buffer");
@@ -70,7 +70,7 @@ fn draw_uploaded_quad(device: &mut Device, size: u32, opaque: u32) -> Vec<f32> {
     device.read(&target).iter().map(|texel| texel[0]).collect()
 }
 
-/// The layer reports a copy that is followed by a read without a barrier; a device test fails on its messages.
+/// The validation layer reports a read after a copy without a barrier, and a device test fails on any message.
 #[test]
 fn staged_uploads_are_visible_to_draws_of_the_same_submission() {
     let mut device = Device::with(&ContextOptions {
@@ -87,7 +87,7 @@ fn each_mip_level_of_a_texture_gets_its_own_texels() {
     for level in 0..4 {
         for opaque in 0..4 {
             let depth = if level == opaque { 0.5 } else { 0.0 };
-            // The quad has EDGE pixels: each step of the texture's size is one of the level.
+            // The quad covers EDGE pixels, so each doubling of the texture's size selects the next mip level.
             let drawn = draw_uploaded_quad(&mut device, EDGE << level, opaque);
             assert_eq!(drawn, [depth; 64], "level {level}, opaque {opaque}");
         }
@@ -96,7 +96,7 @@ fn each_mip_level_of_a_texture_gets_its_own_texels() {
 
 #[test]
 fn a_texture_of_many_levels_takes_one_staging_buffer() {
-    // The uniforms of the recorders are the first two buffers, the staging buffer is the third.
+    // The first two buffers are the uniforms of the recorders, the third is the staging buffer.
     let mut device = Device::with(&ContextOptions {
         fault: Some("buffer@4=out-of-device-memory".into()),
         ..ContextOptions::default()
@@ -106,14 +106,14 @@ fn a_texture_of_many_levels_takes_one_staging_buffer() {
     let image = opaque_in_level(&mut recorder, 64, 0);
     recorder.finish().expect("finished");
     assert_eq!(image.levels(), 7);
-    // The fault was not spent.
+    // The fault has not been triggered yet.
     device.recorder.begin().expect("begun");
     let fourth = upload_buffer(&mut device.recorder, "fourth", BufferKind::Staging, &[0; 4]);
     assert!(fourth.is_err(), "fewer buffers than expected");
     device.recorder.finish().expect("finished");
 }
 
-/// Draws with two textures in turn, `draws` times, each with a new descriptor set; the colour of the last.
+/// Draws `draws` times with two textures alternately, each time with a new descriptor set; returns the last colour.
 fn draw_in_turn(device: &mut Device, draws: usize) -> [f32; 4] {
     let format = Format::R32G32B32A32_SFLOAT;
     let desc = PipelineDesc {
@@ -154,7 +154,7 @@ fn ten_thousand_descriptor_sets_fit_a_frame() {
         without: vec![Optional::PushDescriptor],
         ..ContextOptions::default()
     });
-    // Twice: the pools of the first frame are used again.
+    // Twice: the second run reuses the pools of the first.
     for draws in [10_000, 10_001] {
         let expected = if draws % 2 == 0 { 1.0 } else { 2.0 };
         assert_eq!(draw_in_turn(&mut device, draws)[0], expected, "{draws}");

@@ -1,4 +1,4 @@
-//! Real, odd and hostile files: each loads or fails with one line that says why.
+//! Valid, odd and hostile files: each one loads or fails with one line that gives the reason.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use skylight::scene::{LoadOptions, Loaded, Scene, load, load_with_progress};
 
 use crate::support::{assert_valid, files_below};
 
-/// Shared files that must fail, and a part of the error.
+/// Shared files that must fail, with a part of the error message.
 const REFUSED: [(&str, &str); 12] = [
     (
         "tinyobj_odd/invalid-face-definition.obj",
@@ -33,7 +33,7 @@ const REFUSED: [(&str, &str); 12] = [
     ("trimesh_odd/obj_wireframe.obj", "has no triangles"),
 ];
 
-/// Numbers of triangles by INDEX.md, including those without area.
+/// Triangle counts from INDEX.md, including degenerate triangles.
 const COUNTS: [(&str, usize); 12] = [
     ("gltf_small/BoxTextured.glb", 12),
     ("gltf_small/BoxInterleaved.glb", 12),
@@ -49,7 +49,7 @@ const COUNTS: [(&str, usize); 12] = [
     ("trimesh_odd/cube.OBJ", 12),
 ];
 
-/// The number in the warning about triangles without area.
+/// The number in the warning about degenerate triangles.
 fn without_area(scene: &Scene) -> usize {
     let warning = scene
         .warnings
@@ -138,7 +138,7 @@ fn textures_are_found_and_upright() {
             "{name}"
         );
     }
-    // The cow's muzzle is pink in the texture; upside down it would have the colour of the hide.
+    // The cow's muzzle is pink in the texture; with flipped v it would have the colour of the hide.
     let spot = load("spot/spot_triangulated.obj");
     let texture = &spot.textures[0];
     let front = (0..spot.positions.len())
@@ -153,7 +153,7 @@ fn textures_are_found_and_upright() {
 /// Names and contents of files.
 type Files<'a> = &'a [(&'a str, &'a [u8])];
 
-/// Writes these files to a scratch folder; also gives the path of the first.
+/// Writes these files to a scratch folder; also returns the path of the first.
 fn folder(files: Files) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().expect("a scratch folder");
     for (name, bytes) in files {
@@ -269,7 +269,7 @@ fn a_picture_that_claims_to_be_huge_is_not_decoded() {
     image::RgbaImage::new(1, 1)
         .write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png)
         .expect("a PNG");
-    // Width and height are the first fields of the header chunk; its checksum is wrong now, but the size is checked first.
+    // Width and height are the first fields of the header chunk. Its checksum becomes wrong, but the size is checked first.
     png[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
     let obj = format!("mtllib m.mtl\n{TRIANGLE}usemtl a\nf 1 2 3\n");
     let files: [(&str, &[u8]); 3] = [

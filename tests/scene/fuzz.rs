@@ -1,5 +1,5 @@
-//! Fuzz tests of files and command lines: valid ones with random edits and with words that have broken parsers before. The
-//! result must be a valid scene or an error of one line, in bounded time.
+//! Fuzz tests of files and command lines: valid input with random edits and with words known to break parsers. The result
+//! must be a valid scene or a one-line error, in bounded time.
 //!
 //! `SKYLIGHT_FUZZ_CASES=1000000 cargo test --release --test scene fuzz` runs a million cases of each target.
 
@@ -15,12 +15,12 @@ use skylight::scene::{LoadOptions, Scene, load};
 
 use crate::support::{assert_valid, glb};
 
-/// Default number of cases of a target.
+/// Default number of cases per target.
 const SHORT_RUN: u32 = 400;
-/// Time after which loading counts as a hang, and the addition for each byte of the files.
+/// Time after which loading counts as a hang, plus an allowance per byte of the files.
 const LIMIT: Duration = Duration::from_secs(30);
 const LIMIT_PER_BYTE: Duration = Duration::from_micros(50);
-/// Limits so small that exceeding them is noticed.
+/// Small limits, so that exceeding them shows.
 const OPTIONS: LoadOptions = LoadOptions {
     smooth_deg: None,
     max_texture_edge: 512,
@@ -31,8 +31,8 @@ const OPTIONS: LoadOptions = LoadOptions {
     cache: None,
 };
 
-/// Runs a property with `SKYLIGHT_FUZZ_CASES` random cases, or with the default cases, which are always the same. Failures
-/// are shrunk and shown, not stored.
+/// Tests a property with `SKYLIGHT_FUZZ_CASES` random cases, or with the default cases, which are always the same. Failures
+/// are shrunk and printed, not stored.
 fn run<S: Strategy>(strategy: S, property: impl Fn(S::Value)) {
     let asked = std::env::var("SKYLIGHT_FUZZ_CASES").ok();
     let is_short = asked.is_none();
@@ -68,7 +68,7 @@ enum Edit {
     CutOff,
 }
 
-/// Edits with their positions as fractions of the length of the file.
+/// Edits; positions are fractions of the file's length.
 fn edits() -> impl Strategy<Value = Vec<(f64, Edit)>> {
     let edit = prop_oneof![
         any::<u8>().prop_map(Edit::Overwrite),
@@ -117,7 +117,7 @@ fn assert_bounded(scene: &Scene) {
     assert!(scene.warnings.len() <= 101);
 }
 
-/// Writes the files and loads the first.
+/// Writes the files and loads the first one.
 fn try_files(folder: &Path, files: &[(&str, &[u8])]) {
     for (name, bytes) in files {
         fs::write(folder.join(name), bytes).expect("a scratch file");
@@ -210,7 +210,7 @@ fn obj_and_mtl() {
     });
 }
 
-/// Two instances of a textured quad and a camera: the JSON and the binary chunk.
+/// A glTF file with two instances of a textured quad and a camera: the JSON and the binary chunk.
 fn gltf_seed() -> (String, Vec<u8>) {
     let floats: [f32; 44] = std::array::from_fn(|i| match i {
         0..12 => [0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.][i],
@@ -296,7 +296,7 @@ fn gltf_json_and_chunks() {
     );
 }
 
-/// Failures that longer runs have found.
+/// Regressions: failures found by longer runs.
 #[test]
 fn former_crashes() {
     let folder = tempfile::tempdir().expect("a scratch folder");
@@ -387,7 +387,7 @@ fn headers_of_pictures() {
         "#?RADIANCE\n",
         "-Y 99999 +X 99999\n",
     ];
-    // Half of the edits are in the headers, at the start.
+    // Half of the edits hit the headers, at the start of the file.
     let place = prop_oneof![Just(1.0f64), Just(0.15)];
     run(
         (0..seeds.len(), edits(), place),

@@ -1,4 +1,4 @@
-//! Models that are made to cost time and memory: each loads or fails in bounded time and memory.
+//! Models crafted to cost time and memory: each one loads or fails in bounded time and memory.
 
 use std::fs;
 use std::path::Path;
@@ -39,7 +39,7 @@ fn error_of(result: Result<Loaded, SceneError>) -> String {
 fn a_library_of_many_spellings_is_read_once() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     fs::create_dir(folder.path().join("x")).expect("a folder");
-    // One megabyte; the limit allows to read it sixteen times.
+    // One megabyte; the limit allows reading it sixteen times.
     let library = "newmtl a\nKd 1 0 0\n".repeat(60_000);
     fs::write(folder.path().join("m.mtl"), library).expect("written");
     let spellings: String = (0..500)
@@ -96,7 +96,7 @@ fn the_work_on_pictures_that_fail_is_bounded() {
         .write_to(&mut png, image::ImageFormat::Png)
         .expect("an encoder");
     let png = png.into_inner();
-    // The end is missing, so decoders fail after nearly all of the work.
+    // The end is missing, so decoders fail only after nearly all of the work.
     let cut = &png[..png.len() - 40];
     let (mut mtl, mut faces) = (String::new(), String::new());
     for i in 0..400 {
@@ -118,7 +118,7 @@ fn the_work_on_pictures_that_fail_is_bounded() {
 fn buffers_and_primitives_that_are_the_same_are_not_copied() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let path = folder.path().join("a.glb");
-    // A thousand buffers of 8 MB, all of the same chunk: 8 GB if each were copied.
+    // A thousand buffers of 8 MB that share one chunk: 8 GB if each were copied.
     let binary = vec![0u8; 8 << 20];
     let buffers = vec![format!(r#"{{"byteLength":{}}}"#, binary.len()); 1000].join(",");
     let json = format!(
@@ -130,12 +130,12 @@ fn buffers_and_primitives_that_are_the_same_are_not_copied() {
         vec![r#"{"attributes":{"POSITION":0}}"#; 20_000].join(","),
     );
     fs::write(&path, glb(json.as_bytes(), &binary)).expect("written");
-    // All of its 400 million triangles are degenerate: none is drawn, but they count.
+    // All of its 400 million triangles are degenerate: none is drawn, but they count toward the limit.
     let line = error_of(load_within(&path, 20));
     assert!(line.contains("--max-triangles"), "{line}");
 }
 
-/// Runs the program on a model; gives its peak memory, bytes.
+/// Runs the program on a model; returns its peak memory, bytes.
 #[cfg(target_os = "linux")]
 fn peak(model: Option<&Path>, folder: &Path) -> u64 {
     let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_skylight"))
@@ -167,7 +167,7 @@ fn peak(model: Option<&Path>, folder: &Path) -> u64 {
     peak
 }
 
-/// Limit on peak memory over the size of the model. Ordinary models need less than 6; a material for each face needs most.
+/// Limit on peak memory relative to the model's size. Ordinary models need less than 6; one material per face needs most.
 #[cfg(target_os = "linux")]
 const MULTIPLE: f64 = 60.0;
 
@@ -176,7 +176,7 @@ const MULTIPLE: f64 = 60.0;
 fn memory_is_bounded_by_a_multiple_of_the_file() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let base = peak(None, folder.path());
-    // Tiny faces, so that drawing them takes no time.
+    // Tiny faces, so that drawing takes no time.
     let corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 0\nv 1e-4 0 0\nv 0 1e-4 0\nf 1 2 3\n";
     for (name, body) in [
         ("triangles", "f 4 5 6\n".repeat(1_000_000)),

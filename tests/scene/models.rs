@@ -1,4 +1,4 @@
-//! Models of other authors, drawn by the whole frame under the validation layer.
+//! Models by other authors, drawn by a whole frame under the validation layer.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fs;
@@ -47,7 +47,7 @@ fn settings() -> FrameSettings {
     set
 }
 
-/// The picture, kcd/m², the albedo and the depth of a scene as its default camera sees it.
+/// Radiance (kcd/m²), albedo and depth of a scene, seen from its default camera.
 fn pictures(context: &Arc<Context>, scene: &Scene) -> [Vec<[f32; 4]>; 3] {
     let aspect = SIZE.x as f32 / SIZE.y as f32;
     let camera = Camera::from_parts(None, None, None, &scene.bounds, aspect);
@@ -81,11 +81,11 @@ fn kenney(scenes: &Path) -> Vec<PathBuf> {
     models
 }
 
-/// What is wrong with the pictures of a model, if anything.
+/// A description of what is wrong with a model's pictures; `None` if they are plausible.
 fn wrong(scene: &Scene, [beauty, albedo, depth]: &[Vec<[f32; 4]>; 3]) -> Option<String> {
     let seen: Vec<usize> = (0..depth.len()).filter(|i| depth[*i][0] > 0.0).collect();
     let share = seen.len() as f64 / depth.len() as f64;
-    // The default view shows the whole model: it covers part of the picture (little for paths and lamps), never all of it.
+    // The default view frames the model: it covers part of the picture (little for paths and lamps), never all of it.
     if !(0.01..0.999).contains(&share) {
         return Some(format!("covers {share:.3} of the picture"));
     }
@@ -98,7 +98,7 @@ fn wrong(scene: &Scene, [beauty, albedo, depth]: &[Vec<[f32; 4]>; 3]) -> Option<
     }
     let quantised = |i: &usize| albedo[*i].map(|v| (v * 64.0) as u32);
     let colours: HashSet<[u32; 4]> = seen.iter().map(quantised).collect();
-    // A model may use a single colour of a palette.
+    // All texture coordinates may point to one colour of a palette.
     let spread = scene.texcoords.iter().any(|t| *t != scene.texcoords[0]);
     let textured = spread && scene.materials.iter().any(|m| m.diffuse_texture.is_some());
     println!("{:5.1} % | {} albedos", 100.0 * share, colours.len());
@@ -114,7 +114,7 @@ fn context() -> Arc<Context> {
     .expect("a device and the validation layer")
 }
 
-/// Draws a model: gives a row of the table and whether it is drawn, or what is wrong.
+/// Draws a model. Returns a row of the table and whether the model is drawn, or what is wrong.
 fn row(context: &Arc<Context>, path: &Path) -> Result<(String, bool), String> {
     let scene = match load(path, &LoadOptions::default()) {
         Ok(loaded) => loaded.scene,

@@ -1,4 +1,4 @@
-//! Helpers of several modules: finding files, writing GLB, checking a scene.
+//! Shared helpers: finding files, writing GLB, checking a scene.
 
 use std::path::{Path, PathBuf};
 
@@ -20,7 +20,7 @@ pub fn files_below(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
     found
 }
 
-/// A GLB file of a JSON chunk and a binary chunk.
+/// A GLB file with a JSON chunk and a binary chunk.
 pub fn glb(json: &[u8], binary: &[u8]) -> Vec<u8> {
     let pad = |bytes: &[u8], with: u8| {
         let mut padded = bytes.to_vec();
@@ -48,7 +48,7 @@ pub fn assert_valid(name: &str, scene: &Scene) {
     assert!(warnings.iter().all(one_line), "{name}: {warnings:?}");
 }
 
-/// Attributes of one length, all numbers finite, unit normals, indices in range.
+/// Attributes have equal lengths, all numbers are finite, normals are unit vectors, indices are in range.
 fn assert_geometry(name: &str, scene: &Scene) {
     let vertices = scene.positions.len();
     let required = [scene.normals.len(), scene.texcoords.len()];
@@ -67,7 +67,7 @@ fn assert_geometry(name: &str, scene: &Scene) {
     assert!(scene.indices.iter().all(in_range), "{name}");
 }
 
-/// Parts that cover all indices without gaps.
+/// Parts cover all indices without gaps.
 fn assert_parts(name: &str, scene: &Scene) {
     let mut next = 0;
     for part in &scene.parts {
@@ -83,7 +83,7 @@ fn assert_parts(name: &str, scene: &Scene) {
     );
 }
 
-/// Reflectances within 0..1, textures in range and of their size.
+/// Reflectances are within 0..1, texture indices are in range, textures match their size.
 fn assert_materials(name: &str, scene: &Scene) {
     for material in &scene.materials {
         let maps = [

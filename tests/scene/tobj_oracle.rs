@@ -1,15 +1,15 @@
-//! OBJ files read by this program and by the crate `tobj`: the same triangles, corner by corner, to the bit.
+//! OBJ files read by this program and by the crate `tobj`: the same triangles, corner by corner, bit for bit.
 //!
-//! Compared are positions, normals, texture coordinates, colours and material names. Where the two readers define a thing
-//! differently, the comparison follows what both define:
+//! Positions, normals, texture coordinates, colours and material names are compared. Where the two readers differ by
+//! definition, the comparison is limited to what they have in common:
 //!
-//! - v runs downward here and upward in the file: 1 − v.
-//! - Normals have unit length here. A corner without a normal gets a computed one here (flat, smoothing group or crease
-//!   angle) and none from tobj: such normals are not compared.
+//! - v points down here and up in the file: 1 − v.
+//! - Normals have unit length here. For a corner without a normal this program computes one (flat, smoothing group or crease
+//!   angle) and tobj gives none: such normals are not compared.
 //! - Colours are sRGB in the file, and linear 16-bit numbers here.
-//! - Concave polygons are split by ear clipping here and into a fan by tobj: the same corners and the same area vector.
-//! - Triangles without area, with positions that are not finite, and of transparent materials are left out here.
-//! - The weight w of a position scales it in tobj and is ignored here: it belongs to rational curves.
+//! - Concave polygons are ear-clipped here and split into a fan by tobj: the corners and the area vector are the same.
+//! - Degenerate triangles, those with non-finite positions and those of transparent materials are dropped here.
+//! - tobj scales a position by its weight w; it is ignored here, since it belongs to rational curves.
 
 use std::collections::{BTreeSet, HashMap};
 use std::fs;
@@ -23,31 +23,31 @@ use skylight::scene::{LoadOptions, Scene, load};
 
 use crate::support::files_below;
 
-/// Points and lines left out, polygons as triangles, one index for all attributes.
+/// Points and lines are skipped, polygons are triangulated, all attributes share one index.
 const TOBJ: tobj::LoadOptions = tobj::GPU_LOAD_OPTIONS;
 
-/// Generated files.
+/// Number of generated files.
 const CASES: u32 = 400;
 
-/// What of a file both readers define.
+/// The parts of a file to which both readers give the same meaning.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Compared {
     All,
-    /// Not texture coordinates.
+    /// All but texture coordinates.
     ExceptTexcoords,
-    /// Not normals.
+    /// All but normals.
     ExceptNormals,
-    /// Not material names.
+    /// All but material names.
     ExceptMaterials,
     /// Positions and material names only.
     Positions,
     /// Nothing.
     Nothing,
-    /// Everything, and triangles that differ only in how a concave polygon is split.
+    /// Everything; triangles may differ in how a concave polygon is split.
     ExceptSplit,
 }
 
-/// A corner but for its normal, to the bit.
+/// A corner without its normal, as bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 struct Corner {
     position: [u32; 3],
@@ -55,12 +55,12 @@ struct Corner {
     colour: [u16; 4],
 }
 
-/// Name of the material, and the corners in order.
+/// Material name, and the corners in order.
 type Triangle = (String, [Corner; 3]);
 /// The normals of a triangle's corners.
 type Normals = [[u32; 3]; 3];
 
-/// The bits of numbers; −0 is 0.
+/// Bit patterns of numbers; −0 becomes 0.
 fn bits<const N: usize>(numbers: [f32; N]) -> [u32; N] {
     numbers.map(|x| (x + 0.0).to_bits())
 }
@@ -81,7 +81,7 @@ fn named(compared: Compared, name: &str) -> String {
     if skipped { "" } else { name }.to_owned()
 }
 
-/// The triangles of a scene, each with the normals of all triangles that equal it otherwise.
+/// The triangles of a scene, each with the normals of all its duplicates.
 fn ours(scene: &Scene, compared: Compared) -> HashMap<Triangle, Vec<Normals>> {
     let mut found: HashMap<Triangle, Vec<Normals>> = HashMap::new();
     for part in &scene.parts {
@@ -102,16 +102,16 @@ fn ours(scene: &Scene, compared: Compared) -> HashMap<Triangle, Vec<Normals>> {
     found
 }
 
-/// The vertices of a tobj mesh as this program defines them.
+/// The vertices of a tobj mesh, converted to this program's definitions.
 struct Vertices<'m> {
     mesh: &'m tobj::Mesh,
     compared: Compared,
-    /// Factor on colours: 1/255 where any colour of the file is above 1.
+    /// Factor on colours: 1/255 if any colour of the file is above 1.
     colour_scale: f32,
 }
 
 impl Vertices<'_> {
-    /// Numbers of an attribute, `N` for each vertex; none where no corner of the mesh has the attribute.
+    /// The `N` numbers of an attribute at a vertex; `None` if no corner of the mesh has the attribute.
     fn attribute<const N: usize>(&self, numbers: &[f32], v: usize) -> Option<[f32; N]> {
         let all = (!numbers.is_empty()).then(|| &numbers[N * v..N * v + N]);
         all.map(|all| std::array::from_fn(|i| all[i]))
@@ -134,7 +134,7 @@ impl Vertices<'_> {
         corner(self.compared, position, texcoord, [r, g, b, u16::MAX])
     }
 
-    /// The unit normal; none where the file has none, or a zero vector.
+    /// The unit normal; `None` if the file has none, or a zero vector.
     fn normal(&self, v: usize) -> Option<[u32; 3]> {
         if matches!(self.compared, Compared::Positions | Compared::ExceptNormals) {
             return None;
@@ -155,7 +155,7 @@ fn linear(signal: f32) -> f32 {
     light as f32
 }
 
-/// Refuses a mesh of which some corners have an attribute and others do not: tobj does not tell which.
+/// Rejects a mesh in which only some corners have an attribute: tobj does not tell which.
 fn check_uniform(mesh: &tobj::Mesh, compared: Compared) -> Result<(), String> {
     let count = mesh.positions.len() / 3;
     let is_uniform = |numbers: &[f32], width: usize| [0, width * count].contains(&numbers.len());
@@ -175,7 +175,7 @@ fn check_uniform(mesh: &tobj::Mesh, compared: Compared) -> Result<(), String> {
     Ok(())
 }
 
-/// Triangles of tobj's models that are drawn here, and their normals where the file has them.
+/// Triangles of tobj's models that this program draws, with their normals if the file has them.
 fn theirs(
     models: &[tobj::Model],
     materials: &[tobj::Material],
@@ -211,7 +211,7 @@ fn theirs(
     Ok(found)
 }
 
-/// Twice the area as a vector along the normal, m².
+/// Area vector of a triangle, doubled: along the normal, m².
 fn area(triangle: &Triangle) -> DVec3 {
     let [a, b, c] = triangle
         .1
@@ -228,7 +228,7 @@ fn is_drawn(triangle: &Triangle) -> bool {
     area(triangle).length() > 1e-10 * edges.into_iter().fold(0.0, f64::max)
 }
 
-/// Compares one file; gives the number of triangles that agree, or what does not.
+/// Compares one file. Returns the number of triangles that agree, or the first difference.
 fn compare(
     scene: &Scene,
     models: &[tobj::Model],
@@ -237,7 +237,7 @@ fn compare(
 ) -> Result<usize, String> {
     let mut ours = ours(scene, compared);
     let all = theirs(models, materials, compared)?;
-    // Those with normals first: the others agree with any normals.
+    // Triangles with normals come first: the others match any normals.
     let (with, without): (Vec<_>, Vec<_>) = all.into_iter().partition(|(_, n)| n.is_some());
     let (mut agreeing, mut only_theirs) = (0, Vec::new());
     for (triangle, normals) in with.into_iter().chain(without) {
@@ -269,7 +269,7 @@ fn compare(
     }
 }
 
-/// Checks that two sets of triangles can be the same polygons.
+/// Checks that two sets of triangles can be triangulations of the same polygons.
 fn same_polygons(ours: &[Triangle], theirs: &[Triangle]) -> Result<(), String> {
     if ours.is_empty() {
         return Err("no polygon is split differently".to_owned());
@@ -277,16 +277,16 @@ fn same_polygons(ours: &[Triangle], theirs: &[Triangle]) -> Result<(), String> {
     let corners = |set: &[Triangle]| -> BTreeSet<Corner> { set.iter().flat_map(|t| t.1).collect() };
     let sum = |set: &[Triangle]| set.iter().map(area).sum::<DVec3>();
     let (a, b) = (sum(ours), sum(theirs));
-    // A corner on a straight edge can lie in triangles without area only.
+    // A corner on a straight edge may occur in degenerate triangles only.
     let agree = corners(ours).is_subset(&corners(theirs)) && (a - b).length() <= 1e-5 * a.length();
     agree
         .then_some(())
         .ok_or_else(|| format!("polygons of area {a} here and {b} by tobj"))
 }
 
-/// Files that tobj refuses, and its reason.
+/// Files that tobj rejects, and its error.
 const REFUSED: [(&str, &str); 5] = [
-    // A corner without a vertex that exists.
+    // A corner refers to a vertex that does not exist.
     (
         "tinyobj_odd/invalid-relative-texture-index.obj",
         "FaceVertexOutOfBounds",
@@ -305,7 +305,7 @@ const REFUSED: [(&str, &str); 5] = [
     ("trimesh_odd/wallhole.obj", "MaterialParseError"),
 ];
 
-/// Files of which the readers do not define the same, and why.
+/// Files that the readers define differently, and why.
 const PARTLY: [(&str, Compared, &str); 13] = [
     ("colonnade.obj", Compared::ExceptNormals, MIXED),
     (
@@ -370,7 +370,7 @@ const CONCAVE: &str = "concave polygons";
 const OPTIONS: &str = "scale and offset of a texture";
 const LIBRARIES: &str = "several libraries, or spaces, in one `mtllib`";
 
-/// What tobj makes of a file; it panics on some.
+/// What tobj reads from a file; it panics on some.
 fn by_tobj(path: &Path) -> Result<(Vec<tobj::Model>, Vec<tobj::Material>), String> {
     let path = path.to_owned();
     let read = catch_unwind(move || tobj::load_obj(&path, &TOBJ));
@@ -410,7 +410,7 @@ fn tobj_reads_the_same_of_every_file() {
     assert!(agreeing >= least, "{agreeing}");
 }
 
-/// Compares one file with the expectation of the tables.
+/// Compares one file with the expectation in the tables.
 fn outcome(path: &Path, name: &str) -> Result<String, String> {
     let partly = PARTLY.iter().find(|(file, ..)| *file == name);
     if let Some((_, Compared::Nothing, why)) = partly {
@@ -447,7 +447,7 @@ fn outcome(path: &Path, name: &str) -> Result<String, String> {
     }
 }
 
-/// One statement of a generated file, with raw numbers that the writer brings into range.
+/// One statement of a generated file, with raw numbers that the writer maps into range.
 #[derive(Debug, Clone)]
 enum Step {
     Object,
@@ -455,29 +455,29 @@ enum Step {
     Material(usize),
     Smoothing(u32),
     Comment,
-    /// More lines of all three kinds of numbers.
+    /// More positions, texture coordinates and normals.
     Numbers(Vec<[f32; 8]>),
-    /// Which attributes the faces that follow have: texture coordinates, normals.
+    /// Whether the following faces have texture coordinates and normals.
     Attributes(bool, bool),
     Triangle([usize; 3]),
-    /// A convex polygon: its centre, two half axes, the number of its corners.
+    /// A convex polygon: its centre, two semi-axes, number of corners.
     Polygon([[f32; 3]; 3], usize),
 }
 
-/// How a whole file is written.
+/// Style of a whole file.
 #[derive(Debug, Clone, Copy)]
 struct Style {
     carriage_return: bool,
     tabs: bool,
-    /// 0 without colours, 1 of 0..1, 2 of 0..255.
+    /// 0: no colours; 1: colours in 0..1; 2: colours in 0..255.
     colours: u8,
-    /// Whether positions without colours have the weight 1.
+    /// Whether positions without colours may have the weight 1.
     weights: bool,
-    /// Whether faces count back from the newest number.
+    /// Whether faces use negative (relative) indices.
     negative: bool,
 }
 
-/// Two that the library defines, a name with spaces, one that it does not define.
+/// Two that the library defines, a name with spaces, and one that is undefined.
 const MATERIALS: [&str; 4] = ["red", "brick wall 2", "glass.007", "undefined"];
 const LIBRARY: &str = "# three materials\nnewmtl red\nKd 0.8 0.1 0.1\nKs 0 0 0\nNs 10\nillum 2\n\n\
     newmtl brick wall 2\nKa 0 0 0\nKd 0.4 0.3 0.2\nKs 0.1 0.1 0.1\nNs 50\nd 1\nillum 2\n\n\
@@ -523,7 +523,7 @@ impl Writer {
             0 if self.style.weights && self.counts[0].is_multiple_of(2) => words.push("1.0".into()),
             0 => {}
             1 => words.extend([r, g, b].map(|c| format!("{:.4}", c.fract()))),
-            // All above 1, so that no choice of vertices hides which of the two scales it is.
+            // All above 1, so that the scale is unambiguous for every subset of the vertices.
             _ => words.extend([r, g, b].map(|c| format!("{:.0}", 2.0 + c % 254.0))),
         }
         self.line(&words);
@@ -545,7 +545,7 @@ impl Writer {
         self.counts[2] += 1;
     }
 
-    /// A face of these positions; its other numbers follow from them.
+    /// A face with these positions; its other indices follow from them.
     fn face(&mut self, positions: &[usize]) {
         let number = |at: usize, count: usize| {
             if self.style.negative {
@@ -583,7 +583,7 @@ impl Writer {
             Step::Comment => self.statement("# f 1 2 3"),
             Step::Numbers(list) => list.iter().for_each(|numbers| self.numbers(*numbers)),
             Step::Attributes(texcoords, normals) => {
-                // tobj does not tell which corners of a mesh have an attribute.
+                // A new group, because tobj does not tell which corners of a mesh have an attribute.
                 self.statement(&format!("g attributes{number}"));
                 self.attributes = (*texcoords, *normals);
             }
@@ -616,7 +616,7 @@ fn text_of(style: Style, first: &[[f32; 8]], steps: &[Step]) -> String {
     for (number, step) in steps.iter().enumerate() {
         writer.step(number, step);
     }
-    // Something to draw in every file.
+    // At least one visible triangle per file.
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let first = writer.counts[0];
     corners.iter().for_each(|at| writer.position(*at, [3.5; 3]));

@@ -1,4 +1,4 @@
-//! What the page `skylight::lecture` names exists: shaders, identifiers in them, tests.
+//! Shaders, their identifiers, and tests named on the page `skylight::lecture` exist.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// All Rust text under `folder`, as one.
+/// All Rust code under `folder`, concatenated.
 fn rust_text(folder: &Path) -> String {
     let entries = fs::read_dir(folder).expect("a folder");
     let paths = entries.map(|entry| entry.expect("an entry").path());
@@ -25,7 +25,7 @@ fn names(cell: &str) -> Vec<&str> {
     cell.split('`').skip(1).step_by(2).collect()
 }
 
-/// The rows of the map: slide, formula, Rust, shader, test.
+/// The rows of the page's table: slide, formula, Rust, shader, test.
 fn rows(page: &str) -> Vec<[&str; 5]> {
     let lines = page.lines().filter_map(|line| line.strip_prefix("//! | "));
     let cells = lines.filter_map(|line| {

@@ -1,4 +1,4 @@
-//! The structure of the crate: imports, `unsafe`, the map of the lecture.
+//! The structure of the crate: imports, `unsafe`, and the table of the lecture.
 
 mod lecture;
 mod rooms;

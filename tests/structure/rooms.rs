@@ -1,4 +1,4 @@
-//! Which top-level module imports which, and where `unsafe` and barriers may be written.
+//! Which top-level modules may import which, and where `unsafe` and barriers are allowed.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Every Rust file below a folder; finding none is a failure.
+/// Every Rust file below a folder; it is a failure if there are none.
 fn sources(folder: &str) -> Vec<Source> {
     let mut found = Vec::new();
     collect(&root().join(folder), &mut found);
@@ -38,7 +38,7 @@ fn collect(folder: &Path, found: &mut Vec<Source>) {
     }
 }
 
-/// Lines of code with their numbers: comments left out.
+/// Lines of code with their line numbers, without comments.
 fn code(source: &Source) -> impl Iterator<Item = (usize, &str)> {
     source
         .text
@@ -47,14 +47,14 @@ fn code(source: &Source) -> impl Iterator<Item = (usize, &str)> {
         .map(|(i, line)| (i + 1, line.split("//").next().unwrap_or_default()))
 }
 
-/// Prints and fails when something was found.
+/// Prints the result and fails if anything was found.
 fn none(what: &str, checked: usize, faults: &[String]) {
     println!("{what}: {checked} checked, {} faults", faults.len());
     assert!(checked > 0, "{what}: nothing was checked");
     assert!(faults.is_empty(), "{what}:\n{}", faults.join("\n"));
 }
 
-/// Rooms of the crate that a line names: what follows `crate::`.
+/// Top-level modules named in a line: the words after `crate::`.
 fn rooms_named(line: &str) -> impl Iterator<Item = &str> {
     line.split("crate::").skip(1).map(|rest| {
         let end = rest
@@ -64,7 +64,7 @@ fn rooms_named(line: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Lines of `room` that name a room of the crate other than those allowed.
+/// Lines of the module `room` that name a module outside of `allowed`.
 fn imports_beyond(room: &str, allowed: &[&str]) -> (usize, Vec<String>) {
     let files = sources(&format!("src/{room}"));
     let faults = files
@@ -80,7 +80,7 @@ fn imports_beyond(room: &str, allowed: &[&str]) -> (usize, Vec<String>) {
     (files.len(), faults)
 }
 
-/// The top-level modules that each one names outside of its tests.
+/// For each top-level module, the modules that it names outside its tests.
 fn imports() -> (usize, BTreeMap<String, BTreeSet<String>>) {
     let files = sources("src");
     let mut imports: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
@@ -91,7 +91,7 @@ fn imports() -> (usize, BTreeMap<String, BTreeSet<String>>) {
             continue;
         }
         let named = imports.entry(module.to_owned()).or_default();
-        // Tests stand at the end of a file.
+        // Tests are at the end of a file.
         let lines = code(file).take_while(|(_, line)| *line != "#[cfg(test)]");
         let found = lines.flat_map(|(_, line)| rooms_named(line));
         // The macro of `gpu` is exported at the root of the crate.
@@ -108,7 +108,7 @@ fn imports_have_no_cycle() {
         left["frame"].contains("passes"),
         "the search finds imports: {left:?}"
     );
-    // Takes away modules that import nothing of what is left: a cycle stays.
+    // Repeatedly removes modules that import none of the remaining ones: only cycles remain.
     loop {
         let names: BTreeSet<String> = left.keys().cloned().collect();
         let before = left.len();
@@ -131,7 +131,7 @@ fn imports_have_no_cycle() {
 #[test]
 fn gpu_scene_and_daylight_import_nothing_of_ours() {
     for room in ["gpu", "scene", "daylight"] {
-        // Macros of a room are exported at the crate's root: `$crate::gpu` is the room itself.
+        // Macros are exported at the crate's root: `$crate::gpu` refers to the module itself.
         let (files, faults) = imports_beyond(room, &[room]);
         none(room, files, &faults);
     }
@@ -152,7 +152,7 @@ fn scene_and_daylight_know_no_vulkan() {
             .iter()
             .flat_map(|f| code(f).map(move |(n, line)| (f, n, line)))
             .filter(|(_, _, line)| {
-                // As a word: std::hash:: is no Vulkan.
+                // Match whole words: std::hash:: is not Vulkan.
                 let names = |c: char| !c.is_alphanumeric() && c != '_' && c != ':';
                 let mut paths = line.split(names);
                 paths.any(|path| path.starts_with("ash::") || path.starts_with("vk::"))

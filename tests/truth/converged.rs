@@ -1,7 +1,7 @@
-//! The picture that converges against a path tracer's, under exactly the same light (`../shared/truth`), edges included.
+//! Converged renders against path-traced references under identical light (`../shared/truth`), edges included.
 //!
-//! 64 samples, unless SKYLIGHT_TRUTH_SAMPLES says otherwise. The truth has about 1 % of noise of its own in each pixel of sky
-//! light; means over many pixels have none of it.
+//! 64 samples, or SKYLIGHT_TRUTH_SAMPLES. Sky light in the references has about 1 % of noise per pixel, which averages out
+//! over many pixels.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,13 +12,13 @@ use skylight::compare::{Picture, Referred, Statistics, eroded, exposure_of, flip
 
 const SAMPLES: u32 = 64;
 
-/// Bounds of every number of samples.
+/// Limits for any number of samples.
 const MEAN_RATIO: f64 = 0.01;
 const FLIP: f64 = 0.03;
-/// Bounds of 64 samples.
+/// Limits for 64 samples.
 const RMSE_OF_FEW: f64 = 0.03;
 const MEDIAN_OF_FEW: f64 = 0.015;
-/// Bounds of 256 samples. Of the median, 1.18 % are the truth's own under the low sun: that of 1 024 samples.
+/// Limits for 256 samples. With 1 024 samples the median is 1.18 % under the low sun: the reference's own noise.
 const RMSE: f64 = 0.03;
 const MEDIAN: f64 = 0.012;
 
@@ -29,13 +29,13 @@ fn samples() -> u32 {
     }
 }
 
-/// A view of the truth, and ours.
+/// A view's reference and our render.
 struct Compared {
     folder: PathBuf,
     name: &'static str,
     reference: Picture,
     ours: Picture,
-    /// Geometry one pixel away from the background.
+    /// Pixels with geometry, eroded by one pixel.
     inside: Vec<bool>,
 }
 
@@ -80,7 +80,7 @@ impl Compared {
         flip::mean(&kept.map(|(v, _)| *v).collect::<Vec<_>>())
     }
 
-    /// Pixels whose visible share of the sky is of `range`, and which look up (or anywhere).
+    /// Pixels whose visible fraction of the sky is in `range`; with `up`, only those that face up.
     fn region(&self, range: std::ops::Range<f32>, up: bool) -> Vec<bool> {
         let read = |what: &str| Exr::read(&self.folder.join(format!("{}_{what}.exr", self.name)));
         let (share, aov) = (read("ao_inf"), read("aov"));

@@ -1,4 +1,4 @@
-//! Pictures against path-traced ones.
+//! Renders against path-traced references.
 
 #[path = "../common/mod.rs"]
 mod common;

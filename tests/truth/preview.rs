@@ -1,7 +1,7 @@
-//! The picture against a path tracer's, under exactly the same light (`../shared/truth`), term by term.
+//! Single-frame renders against path-traced references under identical light (`../shared/truth`), term by term.
 //!
-//! No specular, no ground light, and the sun's and the sky's own light without interreflection. Pixels in doubt are left
-//! out and counted: those within 2 pixels of an edge of the geometry or of a shadow.
+//! No specular reflection, no ground light, and direct light of sun and sky without interreflection. Uncertain pixels are
+//! excluded and counted: those within 2 pixels of an edge of the geometry or of a shadow.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -14,12 +14,12 @@ use serde_json::Value;
 const SIZE: [usize; 2] = [640, 360];
 const PIXELS: usize = SIZE[0] * SIZE[1];
 
-/// A view, and bounds of the whole picture about a tenth above what was measured.
+/// A view, and limits for the whole picture about a tenth above the measured values.
 struct View {
     name: &'static str,
-    /// Mean of ours / mean of the truth: lowest and highest.
+    /// Mean of our render over mean of the reference: lowest and highest.
     ratio: [f64; 2],
-    /// RMSE / mean of the truth.
+    /// RMSE over mean of the reference.
     rmse: f64,
     /// 95th percentile of the relative error.
     p95: f64,
@@ -66,7 +66,7 @@ impl Picture {
         (0..PIXELS).map(|i| DVec3::new(x[i], y[i], z[i])).collect()
     }
 
-    /// Luminance of the layer; the nameless one is the picture itself.
+    /// Luminance of a layer; the unnamed one is the picture itself.
     fn luminance(&self, layer: &str) -> Vec<f64> {
         let dot = if layer.is_empty() { "" } else { "." };
         let names = ["R", "G", "B"].map(|c| format!("{layer}{dot}{c}"));
@@ -79,7 +79,7 @@ fn luminance(rgb: DVec3) -> f64 {
     rgb.dot(DVec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// The value below which the share `q` lies.
+/// The `q` quantile.
 fn quantile(values: &[f64], q: f64) -> f64 {
     assert!(!values.is_empty(), "nothing to look at");
     let mut sorted = values.to_vec();
@@ -93,14 +93,14 @@ fn relative(ours: &[f64], truth: &[f64], mask: &[bool]) -> Vec<f64> {
     pixels.map(|i| (ours[i] / truth[i] - 1.0).abs()).collect()
 }
 
-/// Pixels no farther than `reach` (in both axes) from one of `mask`.
+/// Dilates `mask` by `reach` pixels in both axes.
 fn grown(mask: &[bool], reach: usize) -> Vec<bool> {
     (0..PIXELS)
         .map(|i| neighbours(i, reach).any(|j| mask[j]))
         .collect()
 }
 
-/// The pixel itself and those around it, within the picture.
+/// The pixels within `reach` of a pixel, itself included, inside the picture.
 fn neighbours(i: usize, reach: usize) -> impl Iterator<Item = usize> {
     let (x, y) = (i % SIZE[0], i / SIZE[0]);
     let columns = move || x.saturating_sub(reach)..=(x + reach).min(SIZE[0] - 1);
@@ -121,7 +121,7 @@ fn vector(value: &Value) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
-/// A view of the truth beside ours.
+/// A view's reference and our render.
 struct Compared {
     parameters: Value,
     truth: BTreeMap<&'static str, Picture>,
@@ -142,7 +142,7 @@ impl Compared {
         }
     }
 
-    /// Where the truth sees a surface.
+    /// Pixels that show a surface in the reference.
     fn geometry(&self) -> Vec<bool> {
         let depth = self.truth["aov"].channel("depth.T");
         depth.iter().map(|d| *d > 0.0).collect()
@@ -153,7 +153,7 @@ impl Compared {
         normals.into_iter().map(DVec3::normalize_or_zero).collect()
     }
 
-    /// Where each pixel's centre meets the scene, by the truth's distances.
+    /// World position at each pixel's centre, from the reference's distances.
     fn positions(&self) -> Vec<DVec3> {
         let camera = &self.parameters["camera"];
         let eye = vector(&camera["origin"]);
@@ -171,8 +171,8 @@ impl Compared {
         (0..PIXELS).map(position).collect()
     }
 
-    /// Surfaces away from the background and from folds and steps of the geometry: where a neighbour's normal is more
-    /// than 18° off, or it lies off the pixel's plane by 1 % of the distance (half floats hold 0.05 %).
+    /// Surfaces away from the background and from creases and depth discontinuities: where a neighbour's normal differs by more
+    /// than 18°, or the neighbour is off the pixel's plane by 1 % of the distance (half floats resolve 0.05 %).
     fn inner(&self) -> Vec<bool> {
         let (normals, positions) = (self.normals(), self.positions());
         let (geometry, depth) = (self.geometry(), self.truth["aov"].channel("depth.T"));
@@ -188,8 +188,8 @@ impl Compared {
         both(&geometry, &far)
     }
 
-    /// The truth's V, from its sun term: L = ρ_d/π (n·l) V E_sun. None where the sun only grazes the surface or stands
-    /// behind it, and where nearly nothing is reflected.
+    /// The reference's V, from its sun term: L = ρ_d/π (n·l) V E_sun. `None` at grazing incidence, on surfaces that face away from
+    /// the sun, and where the albedo is nearly zero.
     fn true_visibility(&self) -> Vec<Option<f64>> {
         let sun = &self.parameters["sun"];
         let (direction, illuminance) = (
@@ -207,7 +207,7 @@ impl Compared {
         (0..PIXELS).map(visibility).collect()
     }
 
-    /// Relative errors of the sky's background.
+    /// Relative errors of the sky in the background.
     fn background(&self) -> Vec<f64> {
         let near = grown(&self.geometry(), 1);
         let truth = self.truth["direct"].luminance("");
@@ -215,7 +215,7 @@ impl Compared {
         relative(&self.ours.luminance(""), &truth, &sky)
     }
 
-    /// Mean ratio, RMSE / mean, and relative errors of surfaces, as run.py has them.
+    /// Mean ratio, RMSE over mean, and relative errors of surfaces, defined as in run.py.
     fn whole(&self) -> (f64, f64, Vec<f64>) {
         let outside: Vec<bool> = self.geometry().iter().map(|g| !g).collect();
         let near = grown(&outside, 1);
@@ -235,7 +235,7 @@ impl Compared {
     }
 }
 
-/// What is asked of every view; failures are collected, so that all figures are seen.
+/// Checks of one view. Failures are collected, so that all figures are printed.
 struct Checks {
     view: &'static str,
     failures: Vec<String>,
@@ -243,7 +243,7 @@ struct Checks {
 
 impl Checks {
     fn at_most(&mut self, what: &str, value: f64, limit: f64) {
-        // What is not a number is above every limit.
+        // NaN exceeds every limit.
         if value.is_nan() || value > limit {
             self.fail(format!("{what} is {value:.4}, allowed {limit}"));
         }
@@ -270,7 +270,7 @@ fn check(shared: &Path, view: &View) -> Vec<String> {
     let (sky_median, sky_p95) = (quantile(&sky, 0.5), quantile(&sky, 0.95));
     checks.at_most("median error of the background", sky_median, 0.0025);
 
-    // Lit or not, away from the penumbrae: within 2 pixels of where the truth is neither or changes.
+    // Sunlit or not, away from penumbrae: not within 2 pixels of partial visibility or a shadow edge in the reference.
     let truth_v = compared.true_visibility();
     let penumbra: Vec<bool> = truth_v
         .iter()

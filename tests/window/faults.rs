@@ -1,5 +1,5 @@
-//! A driver that fails, made with `SKYLIGHT_FAULT`: the program says so in one line and ends, or its window goes on; a file
-//! that was there stays as it was.
+//! A failing driver, simulated with `SKYLIGHT_FAULT`: the program exits with a one-line error, or its window recovers; existing
+//! files stay unchanged.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use std::process::Output;
 use crate::running::{Running, difference, program, shared_machine};
 use crate::x::until;
 
-/// A small picture, quickly.
+/// A small, quick picture.
 const SMALL: [&str; 6] = [
     "--size",
     "64x36",
@@ -41,7 +41,7 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Numbers of calls to fail at: the first ones, then fewer and fewer.
+/// The calls that fail: all of the first ones, then ever fewer.
 const NUMBERS: [u32; 8] = [1, 2, 3, 5, 9, 17, 33, 65];
 
 #[test]
@@ -67,7 +67,7 @@ fn whatever_call_fails_render_says_so_and_loses_nothing() {
             let output = render(folder.path(), "old.png", &fault);
             let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
             if output.status.success() {
-                // There are not so many calls of this kind.
+                // There are fewer calls of this kind.
                 assert!(number > 1, "{fault} did not strike");
                 fs::write(folder.path().join("old.png"), "old").expect("written");
                 break;
@@ -127,13 +127,13 @@ fn a_window_lives_on_without_its_surface() {
     ] {
         let variables = [("SKYLIGHT_FAULT", Path::new(fault))];
         let running = Running::bare_with(&view, &variables);
-        // A busy machine may rest on the way: on what the window shows while it loads.
+        // While the scene loads on a busy machine, the picture may stand still: wait for the expected one.
         until("the picture of the sound window", || {
             let flip = difference(&expected, &running.picture());
             println!("{fault}: FLIP against the sound window {flip:.5}");
             (flip < 0.01).then_some(())
         });
-        // It still follows.
+        // The window still reacts.
         running.after(|d| d.typed('3'));
         running.close_well();
     }
@@ -142,18 +142,18 @@ fn a_window_lives_on_without_its_surface() {
 #[test]
 fn a_window_whose_device_is_lost_ends_with_one_line_and_is_resumed() {
     let _machine = shared_machine();
-    // While the scene is uploaded, and with the first frames.
+    // While the scene is uploaded, and during the first frames.
     for number in [2, 6] {
         lose_device(number);
     }
-    // When all is shown. On a busy machine the panel is drawn often before the scene is open: then later.
+    // Once everything is shown. On a busy machine the panel is drawn many times before the scene is loaded: try later ones.
     assert!(
         [40, 160, 640].into_iter().any(lose_device),
         "settings are kept for --resume"
     );
 }
 
-/// Runs a window whose device is lost at a submission, counted from 1. Returns whether it kept its settings.
+/// Runs a window whose device is lost at the given submission (from 1). Returns whether it saved its settings.
 fn lose_device(number: u32) -> bool {
     let state = tempfile::tempdir().expect("a scratch folder");
     let fault = format!("submit@{number}=device-lost");

@@ -1,4 +1,4 @@
-//! R in the window: shaders from their sources again, errors on the screen, the last good ones stay.
+//! R in the window recompiles the shaders; errors are shown on screen, and the last valid shaders stay in use.
 
 use std::fs;
 use std::path::Path;
@@ -9,7 +9,7 @@ use crate::running::{Running, difference, shared_machine};
 
 const STAGE: &str = "picture/tone_map.frag";
 
-/// Copies a folder and those in it.
+/// Copies a folder recursively.
 fn copy(from: &Path, to: &Path) {
     fs::create_dir_all(to).expect("a folder");
     for entry in fs::read_dir(from).expect("sources") {
@@ -36,7 +36,7 @@ fn a_changed_shader_is_seen_and_a_broken_one_is_told() {
     let running = Running::bare_with(&words, &variables);
     let before = running.picture();
 
-    // As it is compiled in: the same picture.
+    // The sources are those that were compiled in: the picture stays the same.
     running.display.typed('r');
     sleep(Duration::from_secs(2));
     assert!(difference(&before, &running.picture()) < 0.01);
@@ -49,7 +49,7 @@ fn a_changed_shader_is_seen_and_a_broken_one_is_told() {
 
     fs::write(&file, good.replace("display =", "no such thing =")).expect("written");
     let told = running.after(|d| d.typed('r'));
-    // The message lies over the picture, which is still the swapped one.
+    // The message overlays the picture, which still has the swapped shader.
     assert!(difference(&red, &told) < difference(&before, &told));
     let output = running.close();
     let said = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -1,4 +1,4 @@
-//! The real window on a display of its own: what it shows, what it takes, what it survives. No display server is a failure.
+//! The window on a private X server: display, input and robustness. Fails without an X server.
 
 use std::fs;
 use std::path::Path;
@@ -38,7 +38,7 @@ fn the_window_shows_what_render_writes() {
     println!("FLIP of the window against render: {flip:.5}");
     assert!(flip <= 0.02, "{flip}");
 
-    // P writes what is shown, and EXR beside it.
+    // P writes the shown picture, and an EXR beside it.
     running.display.typed('p');
     let png = running.folder.path().join("skylight-bundled-1.png");
     let exr = running.folder.path().join("skylight-bundled-1.exr");
@@ -143,7 +143,7 @@ fn resident(pid: u32) -> u64 {
     pages * 4096
 }
 
-/// Sizes that windows get: ordinary, odd, tiny, and one pixel.
+/// Window sizes: ordinary, odd, tiny, and one pixel.
 fn nth_size(n: u32) -> (u32, u32) {
     match n % 10 {
         9 => (1, 1),
@@ -152,8 +152,8 @@ fn nth_size(n: u32) -> (u32, u32) {
     }
 }
 
-/// Resizes until memory has settled, resizes after that, and how much more memory the latter may take. The C library returns freed
-/// memory of the driver to the system as it sees fit: resident memory fluctuates by 1 % to 8 % between the resizes 50 and 100.
+/// Number of resizes until memory settles, number of resizes after that, and allowed growth in the latter (relative). The C
+/// library returns freed driver memory to the system at times: resident memory fluctuates by 1 % to 8 % in resizes 50 to 100.
 fn resizes() -> (u32, u32, f64) {
     if is_soaking() {
         (400, 300, 0.02)
@@ -179,7 +179,7 @@ fn resizes_leave_nothing_behind() {
         }
         sleep(Duration::from_millis(30));
         if n % 50 == 0 {
-            // Measured at one size, at rest.
+            // Measured at a fixed size, at rest.
             running.display.resize(running.window, 320, 180);
             running.display.focus(running.window);
             running.picture();
@@ -220,7 +220,7 @@ fn a_window_at_rest_costs_nothing() {
     let _machine = quiet_machine();
     let running = Running::new(&["--size", "640x360", "--samples", "2"]);
     running.picture();
-    // What egui animates after a start is over by then.
+    // By then egui's start animations are over.
     sleep(Duration::from_secs(2));
     let before = running.cpu_seconds();
     sleep(Duration::from_secs(10));

@@ -1,5 +1,5 @@
-//! The window when nothing moves: it converges from ambient occlusion to the sky's true visibility, and its exposure
-//! adapts, both without a jump.
+//! The idle window: it converges from ambient occlusion to the true visibility of the sky, and its exposure adapts, both
+//! without a jump.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -8,7 +8,7 @@ use crate::running::{Running, difference, program, quiet_machine};
 use crate::x::{keysym, until};
 use skylight::compare::{Picture, read};
 
-/// Under a porch, where ambient occlusion lets in too much sky.
+/// A view under a porch, where ambient occlusion lets in too much sky.
 const VIEW: [&str; 8] = [
     "--size",
     "160x90",
@@ -20,13 +20,13 @@ const VIEW: [&str; 8] = [
     "13",
 ];
 
-/// Frames averaged at rest.
+/// Frames accumulated at rest.
 const FRAMES: &str = "32";
 
-/// A part of the picture that shows nothing but sky: first and last pixel.
+/// A region of the picture that shows only sky: first and last pixel.
 const SKY: [[usize; 2]; 2] = [[27, 24], [31, 28]];
 
-/// Mean light of the display, 0..1.
+/// Mean luminance of the displayed picture, 0..1.
 fn brightness(picture: &Picture) -> f64 {
     picture
         .luminance()
@@ -36,7 +36,7 @@ fn brightness(picture: &Picture) -> f64 {
         / picture.rgb.len() as f64
 }
 
-/// A picture of [`VIEW`] by `render`.
+/// [`VIEW`] as drawn by `render`.
 fn rendered(words: &[&str]) -> Picture {
     rendered_with(&[&VIEW, words].concat())
 }
@@ -52,7 +52,7 @@ fn rendered_with(words: &[&str]) -> Picture {
     read(&file).expect("a picture")
 }
 
-/// Mean colour of the sky: of the light alone, whatever hides it from the surfaces.
+/// Mean colour of the sky region: it depends on the daylight only, not on occlusion of surfaces.
 fn sky(picture: &Picture) -> [f32; 3] {
     let [[left, top], [right, bottom]] = SKY;
     let pixels = (top..=bottom).flat_map(|y| (left..=right).map(move |x| y * picture.size[0] + x));
@@ -62,7 +62,7 @@ fn sky(picture: &Picture) -> [f32; 3] {
     sum.map(|v| v / ((right - left + 1) * (bottom - top + 1)) as f32)
 }
 
-/// Whether two pictures show the same light.
+/// Whether two pictures have the same daylight.
 fn same_light(a: &Picture, b: &Picture) -> bool {
     let (a, b) = (sky(a), sky(b));
     (0..3).all(|c| (a[c] - b[c]).abs() < 0.002)
@@ -73,7 +73,7 @@ fn at_rest_the_window_converges_to_the_dome_without_a_jump() {
     let _machine = quiet_machine();
     let running = Running::bare(&[&VIEW[..], &["--samples", FRAMES]].concat());
     let shown = || running.display.picture(running.window, None);
-    // Half an hour on and back: the light of the command line again, from the first preview on.
+    // Half an hour forward and back: the original daylight again, from the first preview on.
     let first = until("a picture", || {
         let now = shown();
         now.rgb.iter().any(|p| *p != now.rgb[0]).then_some(now)
@@ -83,7 +83,7 @@ fn at_rest_the_window_converges_to_the_dome_without_a_jump() {
         (!same_light(&first, &shown())).then_some(())
     });
     running.display.key('H'.into(), true);
-    // Everything that is shown until nothing changes for a while.
+    // Records every picture until nothing changes for a while.
     let (mut seen, mut changed) = (Vec::<Picture>::new(), Instant::now());
     while changed.elapsed() < Duration::from_secs(3) {
         let now = shown();
@@ -118,12 +118,12 @@ fn at_rest_the_window_converges_to_the_dome_without_a_jump() {
         100.0 * whole,
         100.0 * largest
     );
-    // It begins with ambient occlusion..
+    // It begins with ambient occlusion.
     assert!(from_ssao < 0.5 * to_ssao, "{from_ssao} {to_ssao}");
-    // ..from which the porch gets much darker, but never at once: pictures of the screen may fall between a few frames.
+    // From there the porch gets much darker, but never abruptly; screenshots may skip a few frames.
     assert!(seen.len() > 8 && whole < -0.05, "{} {whole}", seen.len());
     assert!(largest < 0.03, "{largest}: {list:?}");
-    // What is shown in the end is what a file of as many samples shows, with nothing left of the beginning.
+    // The final picture equals a file with as many samples, without a trace of the preview.
     assert!(to_dome < 0.003, "{to_dome}");
     assert!(to_converged < 0.4 * to_ssao, "{to_converged} {to_ssao}");
     running.close_well();
@@ -173,7 +173,7 @@ fn the_exposure_adapts_smoothly_to_what_a_file_has() {
         rising[0],
         rising.len()
     );
-    // Dark at first, since the light went and the exposure had not followed yet; then only brighter.
+    // Dark at first, since the light dropped before the exposure adapted; from then on it only brightens.
     assert!(rising[0] < 0.9 * last, "{list:?}");
     assert!(rising.windows(2).all(|w| w[1] > 0.98 * w[0]), "{list:?}");
     assert!(flip < 0.01, "{flip}");
@@ -188,7 +188,7 @@ fn at_rest_the_panel_tells_of_the_last_frame() {
         (running.display.title(running.window) != "skylight").then_some(())
     });
     let rested = running.picture();
-    // Away and back: laid out anew, with nothing more to draw.
+    // Hide and show the panel: it is laid out again, but there is nothing to draw.
     running.after(|display| display.key(keysym::TAB, false));
     let again = running.after(|display| display.key(keysym::TAB, false));
     let apart = difference(&rested, &again);

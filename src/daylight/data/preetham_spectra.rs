@@ -36,7 +36,7 @@ pub const WATER_VAPOUR: &[(f64, f64)] = &[
     (750.0, 0.001), (760.0, 1e-05), (770.0, 1e-05), (780.0, 0.0006), (790.0, 0.0175), (800.0, 0.036),
 ];
 
-/// Absorption coefficient k_g of the mixed gases, 1/cm. Not zero only where the sun's table has ended.
+/// Absorption coefficient k_g of the mixed gases, 1/cm. Nonzero only beyond the end of the sun's table.
 #[rustfmt::skip]
 pub const MIXED_GASES: &[(f64, f64)] = &[
     (759.0, 0.0),

@@ -399,7 +399,7 @@ fn entablature(model: &mut Model) {
     }
 }
 
-/// Four beams around the rectangle of columns, from `inner` inside its axis to `outer` outside.
+/// Four beams around the rectangle of columns, from 0.46 − `narrower` inside its sides to `outer` outside, metres.
 fn ring(model: &mut Model, outer: f64, narrower: f64, low: f64, high: f64) {
     let inner = 0.46 - narrower;
     let [x, z] = HALF;

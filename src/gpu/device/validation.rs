@@ -186,7 +186,7 @@ unsafe fn text<'a>(pointer: *const std::ffi::c_char) -> std::borrow::Cow<'a, str
     if pointer.is_null() {
         return "".into();
     }
-    // SAFETY: as asked of the caller.
+    // SAFETY: guaranteed by the caller.
     unsafe { CStr::from_ptr(pointer) }.to_string_lossy()
 }
 

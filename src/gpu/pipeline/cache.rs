@@ -164,7 +164,7 @@ impl PipelineCache {
     /// The device must be alive, and no thread may be creating pipelines.
     pub(in crate::gpu) unsafe fn save_and_destroy(&self, device: &ash::Device) {
         if let Some(path) = &self.path {
-            // SAFETY: as asked of the caller.
+            // SAFETY: guaranteed by the caller.
             let data = unsafe { device.get_pipeline_cache_data(self.raw) };
             // A missing file only makes the next start slower, so errors are ignored.
             if let Ok(data) = data
@@ -173,7 +173,7 @@ impl PipelineCache {
                 let _ = write(path, &encode(&self.key, &data));
             }
         }
-        // SAFETY: as asked of the caller.
+        // SAFETY: guaranteed by the caller.
         unsafe { device.destroy_pipeline_cache(self.raw, None) };
     }
 }

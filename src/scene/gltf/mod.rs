@@ -1,7 +1,7 @@
 //! glTF 2.0 models (`.gltf`, `.glb`).
 //!
-//! Skins and morph targets are drawn in their rest pose, textures always repeat, and blended materials become cut-outs at half
-//! their opacity.
+//! Skins and morph targets are drawn in their rest pose, textures always repeat, and blended materials become cut-outs with an
+//! alpha threshold of 0.5.
 
 mod buffers;
 mod material;

@@ -19,7 +19,7 @@ pub enum Timing {
     Timestamps,
     /// Wall clock, with each pass submitted and waited for separately. Also reliable on software drivers.
     Isolated,
-    /// No times: counts bytes and pipeline statistics, which would distort them.
+    /// Not timed: bytes and pipeline statistics are counted instead, because counting would distort times.
     Work,
 }
 

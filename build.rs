@@ -1,6 +1,6 @@
-//! Compiles every stage of `shaders_glsl/` to SPIR-V for Vulkan 1.3 and writes, beside the words, what each stage
-//! declares: descriptor bindings, push constants, block members with their offsets, specialization constants.
-//! The renderer checks what a pass binds against these declarations, so nothing is stated twice.
+//! Compiles every shader stage in `shaders_glsl/` to SPIR-V for Vulkan 1.3 and writes the words together with the interface of
+//! each stage: descriptor bindings, push constants, block members with their offsets, specialization constants. The renderer
+//! checks the resources of a pass against this interface, so it is declared only once, in the shader.
 
 #[path = "src/gpu/shader_build/mod.rs"]
 mod shader_build;
@@ -37,7 +37,7 @@ fn build() -> Result<(), String> {
         let file = name.rsplit('/').next().unwrap_or_default();
         let constant = file.to_uppercase().replace(['.', '-', '+'], "_");
         let declared = declarations(&name, &reflected)?;
-        // What a stage declared when it was compiled in: a stage that is reloaded must declare the same.
+        // The interface at build time; a reloaded stage must have the same one.
         let kept = if reloads {
             format!(", declared: {declared:?}")
         } else {
@@ -60,7 +60,7 @@ fn build() -> Result<(), String> {
     fs::write(&out, generated).map_err(|e| format!("{}: {e}", out.display()))
 }
 
-/// The stage of a file, by its extension.
+/// The shader stage of a file, from its extension.
 fn stage_name(name: &str) -> Option<&'static str> {
     let file = name.split('+').next()?;
     match Path::new(file).extension()?.to_str()? {
@@ -72,8 +72,8 @@ fn stage_name(name: &str) -> Option<&'static str> {
     }
 }
 
-/// The commit that is built, for measurements. Only release builds are measured: other builds are spared from being
-/// made again at every commit.
+/// Sets `SKYLIGHT_COMMIT`, which benchmark reports quote. Only release builds look up the commit, so that other builds are not
+/// rebuilt after every commit.
 fn tell_commit() {
     let git = |arguments: &[&str]| {
         let output = process::Command::new("git").args(arguments).output().ok()?;
@@ -96,8 +96,9 @@ fn tell_commit() {
     println!("cargo:rustc-env=SKYLIGHT_COMMIT={commit}");
 }
 
-/// Variants of a stage, as its source lists them: each line `// Variant: A B` asks for the stage with the macros A and B defined,
-/// which is called by the name of its file, `+A+B`. Specialization constants do for all that is not an interface of the stage.
+/// The variants listed in the source of a stage. Each line `// Variant: A B` requests the stage with the macros A and B
+/// defined; its name is the file name followed by `+A+B`. Variants are only for differences in the interface; everything else
+/// is a specialization constant.
 fn variants(source: &str) -> impl Iterator<Item = String> {
     let listed = source
         .lines()
@@ -105,8 +106,8 @@ fn variants(source: &str) -> impl Iterator<Item = String> {
     listed.map(|macros| macros.split_whitespace().map(|m| format!("+{m}")).collect())
 }
 
-/// Every stage and its variants, as paths below the folder of all shaders with `/` between their parts. File names are unique:
-/// they name constants.
+/// All stages and their variants, as paths relative to the shader folder with `/` as separator. File names must be unique
+/// because the constants are named after them.
 fn stage_files() -> Result<Vec<String>, String> {
     let mut found = Vec::new();
     let mut folders = vec![String::new()];

@@ -1,4 +1,4 @@
-//! CPU benchmarks: sky, irradiance, models, tone curves. `cargo bench`.
+//! CPU benchmarks: sky, irradiance, model loading, tone curves. Run with `cargo bench`.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -18,14 +18,14 @@ fn daylight(model: SkyModel) -> Daylight {
     })
 }
 
-/// Directions over the whole sphere.
+/// Directions over the full sphere.
 fn directions() -> Vec<DVec3> {
     texels(16)
         .map(|(face, i, j)| texel_direction(face, i, j, 16))
         .collect()
 }
 
-/// Sky radiance of one direction.
+/// Sky radiance in one direction.
 fn sky(c: &mut Criterion) {
     let directions = directions();
     let mut group = c.benchmark_group("sky radiance");
@@ -45,7 +45,7 @@ fn sky(c: &mut Criterion) {
     });
 }
 
-/// The exact sum over the texels of a sky cube with faces of 32².
+/// Exact irradiance sum over all texels of a sky cube with 32² faces.
 fn irradiance(c: &mut Criterion) {
     let day = daylight(SkyModel::Preetham);
     let sky = CubeMap::from_fn(32, |d| day.radiance(d));
@@ -57,7 +57,7 @@ fn irradiance(c: &mut Criterion) {
     group.bench_function("one normal of a 32² cube", |b| {
         b.iter(|| black_box(exact.at(black_box(DVec3::new(0.6, 0.64, 0.48)))));
     });
-    // 6144 normals times 6144 texels: one map takes most of a second.
+    // 6144 normals times 6144 texels: one map takes almost a second.
     group.sample_size(10);
     group.bench_function("a whole 32² cube", |b| {
         b.iter(|| black_box(CubeMap::from_fn(32, |n| exact.at(n))));
@@ -65,7 +65,7 @@ fn irradiance(c: &mut Criterion) {
     group.finish();
 }
 
-/// Loading of the bundled model.
+/// Loads the bundled model.
 fn obj(c: &mut Criterion) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/colonnade.obj");
     let options = LoadOptions::default();
@@ -82,7 +82,7 @@ fn obj(c: &mut Criterion) {
     group.finish();
 }
 
-/// Tone curves of single colours.
+/// Applies the tone curves to single colours.
 fn tone(c: &mut Criterion) {
     let colours: Vec<DVec3> = (0..1024)
         .map(|i| DVec3::new(0.004, 0.003, 0.002) * f64::from(i))

@@ -1,8 +1,8 @@
-//! How fast a large model is read and shown: an OBJ of a million triangles, read by this program and by the crate `tobj`
-//! (each in a process of its own, in turn), then rendered by the program, first without and then with its cache. Prints wall
-//! times as ratios of one run, and peak memory as a multiple of the file.
+//! Benchmark of loading a large model. An OBJ of a million triangles is read by this program and by the crate `tobj`
+//! (alternating, each in its own process), then rendered by the program, first without and then with its cache. Prints wall
+//! times as ratios within one run, and peak memory as a multiple of the file size.
 //!
-//! `cargo bench --bench load`; `SKYLIGHT_LOAD_TRIANGLES=100000` makes a smaller one.
+//! Run with `cargo bench --bench load`; `SKYLIGHT_LOAD_TRIANGLES=100000` uses a smaller model.
 
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
@@ -12,9 +12,9 @@ use std::time::{Duration, Instant};
 
 use skylight::scene::{LoadOptions, hills, load};
 
-/// Peak memory of a render over the size of the file, at most.
+/// Upper bound on the peak memory of a render, as a multiple of the file size.
 const MEMORY: f64 = 6.0;
-/// Runs of each reader; the quickest counts.
+/// Runs per reader; the fastest counts.
 const RUNS: usize = 3;
 
 fn main() {
@@ -36,7 +36,7 @@ fn main() {
     println!("{triangles} triangles, {:.1} MB", bytes as f64 / 1e6);
     let parsed = compare_readers(&model, bytes);
 
-    // Shaders are compiled once in the life of a machine: not the model's matter.
+    // Warm-up: shaders are compiled once per machine, which says nothing about the model.
     let _ = render(folder.path(), None);
     for name in ["without cache", "from the cache"] {
         let (wall, peak) = render(folder.path(), Some(&model));
@@ -49,7 +49,7 @@ fn main() {
     }
 }
 
-/// Prints time and memory of both readers; gives the seconds of tobj.
+/// Prints time and memory of both readers; returns the time of `tobj`, seconds.
 fn compare_readers(model: &Path, bytes: u64) -> f64 {
     let mut best = [
         ("skylight", [f64::INFINITY; 3]),
@@ -81,8 +81,8 @@ fn compare_readers(model: &Path, bytes: u64) -> f64 {
     parsed
 }
 
-/// Reads a model by one reader; gives the seconds, the peak memory in bytes, and the seconds of the draw layout (bodies and
-/// clusters) alone.
+/// Reads a model with one reader. Returns the time in seconds, the peak memory in bytes, and the time of the draw layout
+/// (bodies and clusters) alone in seconds.
 fn read(reader: &str, model: &Path) -> [f64; 3] {
     let started = Instant::now();
     let since = |started: Instant| started.elapsed().as_secs_f64();
@@ -99,7 +99,7 @@ fn read(reader: &str, model: &Path) -> [f64; 3] {
     [reading, peak, since(started)]
 }
 
-/// Renders and gives seconds and peak memory in bytes; of the bundled scene without a model.
+/// Renders the model, or the bundled scene if there is none; returns seconds and peak memory in bytes.
 fn render(folder: &Path, model: Option<&Path>) -> (f64, u64) {
     let started = Instant::now();
     let mut child = Command::new(env!("CARGO_BIN_EXE_skylight"))
@@ -120,7 +120,7 @@ fn render(folder: &Path, model: Option<&Path>) -> (f64, u64) {
     (started.elapsed().as_secs_f64(), peak)
 }
 
-/// Peak memory of a process, bytes.
+/// Peak resident memory of a process, bytes.
 fn peak_of(process: &str) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
@@ -128,7 +128,7 @@ fn peak_of(process: &str) -> Option<u64> {
     Some(kib << 10)
 }
 
-/// Hills with normals and texture coordinates.
+/// Writes a hilly terrain with normals and texture coordinates.
 fn write_hills(path: &Path, triangles: usize) {
     let scene = hills(triangles);
     let mut file = BufWriter::new(File::create(path).expect("a file"));

@@ -1,14 +1,15 @@
-//! Writes the bundled scene, a small open temple above a pool, to `assets/colonnade.obj` and `assets/colonnade.mtl`. The
-//! output is deterministic. `cargo run --example make_colonnade`
+//! Generates the bundled scene, a small open temple next to a pool, as `assets/colonnade.obj` and `assets/colonnade.mtl`. The
+//! output is deterministic. Run with `cargo run --example make_colonnade`.
 //!
-//! Metres, +Y up, +X east, −Z north. The temple stands on the xz plane around the origin and faces south over the pool.
+//! Units are metres, +Y up, +X east, −Z north. The temple stands on the xz plane around the origin and faces south over the
+//! pool.
 
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Reflectances: ρ_d, ρ_s and p of each material.
+/// ρ_d, ρ_s and p of each material.
 const MATERIALS: &str = "\
 newmtl ground
 Kd 0.30 0.27 0.19
@@ -61,7 +62,7 @@ impl Model {
         let _ = writeln!(self.text, "usemtl {name}");
     }
 
-    /// A number with three digits: millimetres.
+    /// Writes a position with three decimals (millimetres).
     fn vertex(&mut self, p: Point) -> usize {
         let line = format!("v {} {} {}", short(p[0]), short(p[1]), short(p[2]));
         numbered(&mut self.text, &mut self.vertices, line)
@@ -73,7 +74,7 @@ impl Model {
         numbered(&mut self.text, &mut self.normals, format!("vn {x} {y} {z}"))
     }
 
-    /// A flat polygon, counter-clockwise, without normals.
+    /// Adds a flat polygon, counter-clockwise, without normals.
     fn flat(&mut self, points: &[Point]) {
         let numbers: Vec<usize> = points.iter().map(|p| self.vertex(*p)).collect();
         self.text.push('f');
@@ -83,7 +84,7 @@ impl Model {
         self.text.push('\n');
     }
 
-    /// A box between two corners.
+    /// Adds a box between two opposite corners.
     fn cuboid(&mut self, a: Point, b: Point) {
         let at =
             |i: usize| [0, 1, 2].map(|axis| if i >> axis & 1 == 1 { b[axis] } else { a[axis] });
@@ -99,8 +100,8 @@ impl Model {
         }
     }
 
-    /// A grid of smooth quads: `at(row, column)` gives point and normal. Seen from the front, rows run up and columns to the
-    /// right.
+    /// Adds a grid of smooth quads; `at(row, column)` returns position and normal. Seen from the front, rows run up and columns
+    /// run right.
     fn surface(
         &mut self,
         rows: usize,
@@ -121,8 +122,8 @@ impl Model {
         }
     }
 
-    /// A surface of revolution around the vertical axis through `centre`; `profile` is (radius, height) from below to
-    /// above. A repeated point makes a sharp edge.
+    /// Adds a surface of revolution around the vertical axis through `centre`. `profile` lists (radius, height) from bottom to
+    /// top; a repeated point makes a sharp edge.
     fn lathe(&mut self, centre: Point, profile: &[(f64, f64)], sides: usize) {
         for piece in smooth_pieces(profile) {
             self.surface(piece.len(), sides + 1, |row, column| {
@@ -161,13 +162,13 @@ fn grid(rows: usize, columns: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..rows).flat_map(move |row| (0..columns).map(move |column| (row, column)))
 }
 
-/// Rounded to a thousandth, which keeps the file small.
+/// Rounds to three decimals, which keeps the file small.
 fn short(value: f64) -> f64 {
     let rounded = (value * 1e3).round() / 1e3;
     if rounded == 0.0 { 0.0 } else { rounded }
 }
 
-/// The index (from 1) of a line, which is written at first use.
+/// Index (from 1) of a line, which is written on first use.
 fn numbered(text: &mut String, known: &mut HashMap<String, usize>, line: String) -> usize {
     if let Some(number) = known.get(&line) {
         return *number;
@@ -178,7 +179,7 @@ fn numbered(text: &mut String, known: &mut HashMap<String, usize>, line: String)
     known.len()
 }
 
-/// Deterministic numbers between −1 and 1: SplitMix64 of a counter.
+/// Deterministic random numbers in −1..1: SplitMix64 of a counter.
 struct Chance(u64);
 
 impl Chance {
@@ -191,11 +192,11 @@ impl Chance {
     }
 }
 
-/// Top of the plinth, metres: where the columns stand.
+/// Top of the plinth, on which the columns stand, metres.
 const FLOOR: f64 = 1.05;
 /// Half the length (x) and depth (z) of the rectangle of columns, metres.
 const HALF: [f64; 2] = [7.2, 4.0];
-/// Columns along the front and along the sides.
+/// Number of columns along the front and along the sides.
 const COLUMNS: [usize; 2] = [7, 4];
 const COLUMN_HEIGHT: f64 = 5.2;
 const FLUTES: usize = 20;
@@ -239,7 +240,7 @@ fn column_places() -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// The ground: gravel near the temple, meadow around; flat near it, rolling farther away, with a hole for the pool.
+/// The ground: gravel near the temple, meadow around it; flat nearby, rolling farther away, with a hole for the pool.
 fn ground(model: &mut Model) {
     model.material("ground");
     let (steps, size) = (72, 140.0);
@@ -273,7 +274,7 @@ fn ground(model: &mut Model) {
     );
 }
 
-/// Rectangle of the water, metres: smallest x and z, largest x and z.
+/// Rectangle of the water, metres: minimum x and z, maximum x and z.
 const POOL: [[f64; 2]; 2] = [[-4.6, 10.2], [4.6, 19.2]];
 
 /// A flat rectangle at height `y` with a rectangular hole.
@@ -296,7 +297,7 @@ fn plinth(model: &mut Model) {
     for i in 0..3 {
         let out = 1.1 + 0.42 * (2 - i) as f64;
         let (x, z) = (HALF[0] + out, HALF[1] + out);
-        // A nosing: each tread overhangs its riser and casts a line of shadow.
+        // Nosing: each tread overhangs its riser and casts a line of shadow.
         let (low, high) = (step * i as f64, step * (i + 1) as f64);
         model.cuboid([-x, low, -z], [x, high - 0.06, z]);
         model.cuboid(
@@ -309,7 +310,7 @@ fn plinth(model: &mut Model) {
     model.flat(&[[-x, y, z], [x, y, z], [x, y, -z], [-x, y, -z]]);
 }
 
-/// Square base, torus, a fluted tapering shaft with entasis, and a Doric capital.
+/// Square base, torus, fluted and tapered shaft with entasis, and Doric capital.
 fn column(model: &mut Model, foot: Point) {
     let [x, y, z] = foot;
     model.material("marble");
@@ -357,14 +358,14 @@ fn shaft(model: &mut Model, foot: Point, from: f64, to: f64) {
             let height = from + (to - from) * row as f64 / (rows - 1) as f64;
             let s = column as f64 / facets as f64;
             let angle = -TAU * (flute as f64 + s) / FLUTES as f64;
-            // The flute ends before both ends of the shaft.
+            // The flutes end short of both ends of the shaft.
             let ends = (8.0
                 * (row as f64 / (rows - 1) as f64).min(1.0 - row as f64 / (rows - 1) as f64))
             .min(1.0);
             let depth = 0.036 * ends * (TAU / 2.0 * s).sin();
             let r = radius(height) - depth;
             let (sin, cos) = angle.sin_cos();
-            // Rotated against the slope of the arc.
+            // Tilts the normal by the slope of the arc.
             let slope =
                 -0.036 * ends * (TAU / 2.0) * (TAU / 2.0 * s).cos() / (TAU / FLUTES as f64) / r;
             let normal = [cos - slope * sin, 0.02, sin + slope * cos];
@@ -398,7 +399,7 @@ fn entablature(model: &mut Model) {
     }
 }
 
-/// Four beams around the rectangle of columns, from `inner` inside its axis to `outer` outside.
+/// Four beams around the rectangle of columns, from 0.46 − `narrower` inside its sides to `outer` outside, metres.
 fn ring(model: &mut Model, outer: f64, narrower: f64, low: f64, high: f64) {
     let inner = 0.46 - narrower;
     let [x, z] = HALF;
@@ -416,7 +417,7 @@ fn ring(model: &mut Model, outer: f64, narrower: f64, low: f64, high: f64) {
     }
 }
 
-/// Three upright bars on the frieze, in a row along `axis`.
+/// Three vertical bars on the frieze, in a row along `axis`.
 fn triglyph(model: &mut Model, foot: Point, axis: usize, side: f64) {
     for bar in [-0.13, 0.0, 0.13] {
         let mut from = foot;
@@ -432,7 +433,7 @@ fn triglyph(model: &mut Model, foot: Point, axis: usize, side: f64) {
     }
 }
 
-/// A low hipped roof of terracotta with an opening over the centre, through which the sky lights the floor.
+/// A low hipped terracotta roof with an opening at the centre, through which sky light reaches the floor.
 fn roof(model: &mut Model) {
     let eave = FLOOR + COLUMN_HEIGHT + 1.56;
     let (x, z) = (HALF[0] + 0.95, HALF[1] + 0.95);
@@ -479,7 +480,7 @@ fn roof(model: &mut Model) {
     }
 }
 
-/// One slope with rolls of tiles: `corners` are two at the eave and two at the top, `y` their heights.
+/// One roof slope with rolls of tiles. `corners` are two at the eave and two at the top; `y` holds their heights.
 fn slope_of_tiles(model: &mut Model, corners: [[f64; 2]; 4], y: [f64; 2]) {
     let [a, b, c, d] = corners;
     let length = (b[0] - a[0]).hypot(b[1] - a[1]);
@@ -510,7 +511,7 @@ fn slope_of_tiles(model: &mut Model, corners: [[f64; 2]; 4], y: [f64; 2]) {
             ],
         )
     });
-    // The face of the eave follows the rolls.
+    // The eave face follows the rolls.
     model.surface(2, columns, |row, column| {
         let (p, phase) = place(0, column);
         let height = if row == 0 {
@@ -522,7 +523,7 @@ fn slope_of_tiles(model: &mut Model, corners: [[f64; 2]; 4], y: [f64; 2]) {
     });
 }
 
-/// A rim of marble around still, dark water, a little below the rim.
+/// A marble rim around still, dark water, slightly below the rim.
 fn pool(model: &mut Model) {
     let [[x0, z0], [x1, z1]] = POOL;
     model.material("water");
@@ -540,7 +541,7 @@ fn pool(model: &mut Model) {
     model.cuboid([x1, -0.3, z0], [x1 + rim, top, z1]);
 }
 
-/// Slabs of three tones around the pool, with joints of gravel; some are missing at the edge.
+/// Slabs in three tones around the pool, with gravel joints; some are missing at the edge.
 fn paving(model: &mut Model) {
     let mut chance = Chance(4);
     let ([columns, rows], edge, joint) = ([18, 18], 1.0, 0.025);
@@ -568,7 +569,7 @@ fn paving(model: &mut Model) {
     }
 }
 
-/// Fallen drums and blocks in the grass, some rotated.
+/// Fallen drums and blocks in the grass, some of them rotated.
 fn stones(model: &mut Model) {
     model.material("limestone");
     for (x, z, width, height, turn) in [
@@ -666,7 +667,7 @@ const CYPRESSES: [[f64; 3]; 9] = [
     [5.8, -19.0, 12.4],
 ];
 
-/// A slender tree: a lumpy spindle on a short trunk.
+/// A slender tree: an irregular spindle on a short trunk.
 fn cypress(model: &mut Model, foot: Point, height: f64, seed: u64) {
     model.material("bark");
     model.lathe(foot, &[(0.17, -0.3), (0.13, 0.9)], 10);
@@ -697,7 +698,7 @@ fn cypress(model: &mut Model, foot: Point, height: f64, seed: u64) {
             point(row, column),
             [foot[0], point(row, column)[1], foot[2]],
         );
-        // At the tips all points of a row coincide: the normal is vertical.
+        // At the tips all points of a row coincide, so the normal is vertical.
         let tip = if row == 0 {
             [0.0, -1.0, 0.0]
         } else {

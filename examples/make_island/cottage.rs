@@ -15,13 +15,13 @@ pub struct Cottage {
     pub stone: Mesh,
 }
 
-/// Half size of the house, and the height of its walls.
+/// Half size of the house (x, z), and the height of its walls, metres.
 const HOUSE: Vec2 = vec2(4.0, 2.6);
 const WALL: f32 = 2.7;
-/// How far the veranda reaches to the south.
+/// Depth of the veranda to the south, metres.
 const VERANDA: f32 = 2.6;
 
-/// Floor at y = 0, the veranda toward +z.
+/// The floor is at y = 0, the veranda on the +z side.
 pub fn cottage() -> Cottage {
     let mut c = Cottage::default();
     c.stone.cuboid(
@@ -35,7 +35,7 @@ pub fn cottage() -> Cottage {
     c
 }
 
-/// Walls around openings: pairs of start and end along the south wall, with sill and head.
+/// Walls with openings: pairs of start and end along the south wall, with sill and head heights.
 fn walls(c: &mut Cottage) {
     let (x, z, t) = (HOUSE.x, HOUSE.y, 0.3);
     let openings = [
@@ -66,7 +66,7 @@ fn walls(c: &mut Cottage) {
     }
 }
 
-/// A window with a frame, and blue shutters at its sides.
+/// A window with a frame and blue shutters on both sides.
 fn window(c: &mut Cottage, a: f32, b: f32, sill: f32, head: f32) {
     let z = HOUSE.y - 0.12;
     c.glass.quad([
@@ -104,7 +104,7 @@ fn gable(mesh: &mut Mesh, side: f32) {
     mesh.quad([a, b, apex, apex]);
 }
 
-/// Two slopes of rolled tiles and a chimney.
+/// Two slopes of rolled tiles, and a chimney.
 fn roof(c: &mut Cottage) {
     let (x, z) = (HOUSE.x + EAVE, HOUSE.y + EAVE);
     let drop = RISE * EAVE / HOUSE.y;
@@ -135,7 +135,7 @@ fn roof(c: &mut Cottage) {
     );
 }
 
-/// Rolls of tiles that run down a slope, in courses.
+/// Rolls of tiles running down a slope, in courses.
 fn tiles(mesh: &mut Mesh, eave: [Vec3; 2], ridge: [Vec3; 2]) {
     let across = eave[1] - eave[0];
     let rolls = (across.length() / 0.26).round() as usize;
@@ -156,7 +156,7 @@ fn tiles(mesh: &mut Mesh, eave: [Vec3; 2], ridge: [Vec3; 2]) {
     }
 }
 
-/// Posts, a lower roof, a floor of boards and a railing.
+/// Posts, a lower roof, a floor of boards, and a railing.
 fn veranda(c: &mut Cottage) {
     let (x, z0, z1) = (HOUSE.x, HOUSE.y, HOUSE.y + VERANDA);
     for board in 0..11 {
@@ -236,7 +236,7 @@ fn furniture(c: &mut Cottage) {
     }
 }
 
-/// Planks on posts from the beach into the sea; heights are above the sea.
+/// Planks on posts from the beach into the sea; heights are above sea level.
 pub fn pier(from: Vec2, to: Vec2) -> Mesh {
     let mut mesh = Mesh::default();
     let length = (to - from).length();

@@ -1,4 +1,4 @@
-//! A writer of binary glTF: meshes with materials, instances, pictures.
+//! A writer for binary glTF: meshes with materials, instances and images.
 
 use glam::{Affine3A, Quat, Vec3};
 use serde_json::{Value, json};
@@ -13,15 +13,15 @@ pub struct Material {
     pub metallic: f32,
     pub roughness: f32,
     pub ior: f32,
-    /// Index of the picture of the base colour.
+    /// Index of the base colour image.
     pub picture: Option<usize>,
     /// Index of the normal map, and the factor on its slopes.
     pub normals: Option<(usize, f32)>,
-    /// There is a hole where alpha is less.
+    /// Alpha below this value is cut out.
     pub cutoff: Option<f32>,
 }
 
-/// The transform of an instance.
+/// An upright instance of a mesh.
 pub struct Node {
     pub mesh: usize,
     pub at: Vec3,
@@ -45,7 +45,7 @@ pub struct Glb {
 }
 
 impl Glb {
-    /// Adds bytes; returns the index of their buffer view.
+    /// Appends bytes; returns the index of their buffer view.
     fn view(&mut self, bytes: &[u8]) -> usize {
         let offset = self.binary.len();
         self.binary.extend_from_slice(bytes);
@@ -68,7 +68,7 @@ impl Glb {
         self.accessor(&bytes, kind, 5126, count)
     }
 
-    /// Adds a PNG picture; returns its index.
+    /// Adds a PNG image; returns its index.
     pub fn picture(&mut self, name: &str, png: &[u8]) -> usize {
         let view = self.view(png);
         self.images
@@ -146,7 +146,7 @@ impl Glb {
         json!({ "attributes": attributes, "indices": indices, "material": material })
     }
 
-    /// Normalised 16-bit RGBA.
+    /// Writes vertex colours as normalised 16-bit RGBA.
     fn colours(&mut self, mesh: &Mesh) -> usize {
         let unorm = |v: f32| (v.clamp(0.0, 1.0) * 65_535.0).round() as u16;
         let rgba = |c: Vec3| [c.x, c.y, c.z, 1.0].map(unorm);
@@ -182,7 +182,7 @@ impl Glb {
         }));
     }
 
-    /// Adds an instance of a mesh.
+    /// Adds an instance of a mesh with any transform.
     pub fn placed(&mut self, mesh: usize, place: Affine3A) {
         self.drawn += self.triangles[mesh];
         let (scale, rotation, translation) = place.to_scale_rotation_translation();
@@ -192,12 +192,12 @@ impl Glb {
         }));
     }
 
-    /// Number of triangles stored, and of those drawn with all instances.
+    /// Number of triangles stored, and number drawn including all instances.
     pub fn triangles(&self) -> (usize, usize) {
         (self.triangles.iter().sum(), self.drawn)
     }
 
-    /// The whole file.
+    /// Encodes the whole file.
     pub fn finish(self) -> Vec<u8> {
         let all: Vec<usize> = (0..self.nodes.len()).collect();
         let textures: Vec<Value> = (0..self.images.len())

@@ -1,11 +1,11 @@
-//! Lindenmayer systems and the turtle that draws them (Prusinkiewicz and Lindenmayer 1990, "The Algorithmic Beauty of
-//! Plants", chapter 1).
+//! Lindenmayer systems and their turtle interpretation (Prusinkiewicz and Lindenmayer 1990, "The Algorithmic Beauty of Plants",
+//! chapter 1).
 
 use glam::{Quat, Vec3};
 
 use crate::noise::Chance;
 
-/// A grammar: an axiom, and for some letters their possible replacements.
+/// A grammar: an axiom, and the possible replacements of some letters.
 pub struct Grammar {
     pub axiom: &'static str,
     pub rules: &'static [(char, &'static [&'static str])],
@@ -13,7 +13,7 @@ pub struct Grammar {
 }
 
 impl Grammar {
-    /// The word after all steps.
+    /// The word after all derivation steps.
     pub fn derive(&self, chance: &mut Chance) -> String {
         let mut word = self.axiom.to_owned();
         for _ in 0..self.steps {
@@ -35,16 +35,16 @@ impl Grammar {
 /// Parameters of the turtle.
 #[derive(Clone, Copy)]
 pub struct Walk {
-    /// Length of `F`, metres; every `!` shortens it by `shorter`.
+    /// Length of `F`, metres; each `!` scales it by `shorter`.
     pub step: f32,
     pub shorter: f32,
-    /// Angle of a turn and how much it varies, degrees.
+    /// Turning angle and its variation, degrees.
     pub angle: f32,
     pub jitter: f32,
-    /// Radius at the foot, metres; every `!` thins it by `thinner`.
+    /// Radius at the foot, metres; each `!` scales it by `thinner`.
     pub radius: f32,
     pub thinner: f32,
-    /// How much each step bends up (negative: down).
+    /// How much each step bends up (down if negative).
     pub tropism: f32,
 }
 
@@ -54,7 +54,7 @@ pub struct Branch {
     pub radii: [f32; 2],
 }
 
-/// A position of leaves and the direction of its twig.
+/// A leaf position and the direction of its twig.
 pub struct Leaf {
     pub at: Vec3,
     pub along: Vec3,
@@ -68,7 +68,7 @@ struct Turtle {
     radius: f32,
 }
 
-/// Interprets a word: `F` forward, `+ - & ^ / \` turns, `!` thinner and shorter, `[ ]` a side branch, `L` leaves.
+/// Interprets a word: `F` forward, `+ - & ^ / \` rotations, `!` thinner and shorter, `[ ]` side branch, `L` leaves.
 pub fn walk(word: &str, how: &Walk, chance: &mut Chance) -> (Vec<Branch>, Vec<Leaf>) {
     let (mut branches, mut leaves, mut saved) = (Vec::new(), Vec::new(), Vec::new());
     let mut turtle = Turtle {
@@ -90,7 +90,7 @@ pub fn walk(word: &str, how: &Walk, chance: &mut Chance) -> (Vec<Branch>, Vec<Le
             '-' => turtle.turn *= turn(Vec3::Z, -angle),
             '&' => turtle.turn *= turn(Vec3::X, angle),
             '^' => turtle.turn *= turn(Vec3::X, -angle),
-            // A random rotation about the branch.
+            // A random rotation about the branch axis.
             '/' => {
                 turtle.turn *= turn(
                     Vec3::Y,

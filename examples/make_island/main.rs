@@ -1,11 +1,11 @@
-//! Writes `assets/island.glb`: an island with a temple, a cottage, a pier and a calm sea.
+//! Generates `assets/island.glb`: an island with a temple, a cottage, a pier and a calm sea.
 //!
 //! ```text
 //! cargo run --release --example make_island            # writes assets/island.glb
 //! cargo run --release --example make_island -- out.glb
 //! ```
 //!
-//! The land is turbulence noise, the trees are L-systems, the seed is fixed: every run writes the same bytes.
+//! The terrain is turbulence noise and the trees are L-systems. The seed is fixed, so every run writes the same bytes.
 
 mod cottage;
 mod glb;

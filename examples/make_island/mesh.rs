@@ -2,22 +2,22 @@
 
 use glam::{Affine3A, Mat3, Quat, Vec2, Vec3, vec2, vec3};
 
-/// A corner of a mesh.
+/// A mesh vertex.
 #[derive(Clone, Copy)]
 pub struct Point {
     pub position: Vec3,
     pub normal: Vec3,
     pub uv: Vec2,
-    /// Linear RGB factor on the colour of the material.
+    /// Linear RGB factor on the material colour.
     pub colour: Vec3,
 }
 
-/// Triangles of one material.
+/// Triangles with one material.
 #[derive(Clone, Default)]
 pub struct Mesh {
     pub points: Vec<Point>,
     pub indices: Vec<u32>,
-    /// Colour of the vertices that are added next.
+    /// Colour of the vertices added next.
     tint: Option<Vec3>,
 }
 
@@ -32,7 +32,7 @@ pub fn point(position: Vec3, normal: Vec3, uv: Vec2) -> Point {
 }
 
 impl Mesh {
-    /// Sets the colour of the vertices that are added from now on.
+    /// Sets the colour of vertices added from now on.
     pub fn tint(&mut self, colour: Vec3) {
         self.tint = Some(colour);
     }
@@ -44,7 +44,7 @@ impl Mesh {
         self.points.push(point);
     }
 
-    /// A grid of `rows` x `columns` points; rows run up and columns to the right as seen from the front.
+    /// Adds a grid of `rows` x `columns` vertices. Seen from the front, rows run up and columns run right.
     pub fn grid(&mut self, rows: usize, columns: usize, at: impl Fn(usize, usize) -> Point) {
         let first = self.points.len() as u32;
         for row in 0..rows {
@@ -62,7 +62,7 @@ impl Mesh {
         }
     }
 
-    /// A flat quad, corners counter-clockwise; texture coordinates in metres along its edges.
+    /// Adds a flat quad with counter-clockwise corners; texture coordinates are metres along its edges.
     pub fn quad(&mut self, corners: [Vec3; 4]) {
         let [a, b, c, d] = corners;
         let normal = (b - a).cross(d - a);
@@ -74,7 +74,7 @@ impl Mesh {
         });
     }
 
-    /// A box with its axes along x, y and z.
+    /// Adds an axis-aligned box.
     pub fn cuboid(&mut self, low: Vec3, high: Vec3) {
         self.boxed(
             Affine3A::from_translation(0.5 * (low + high)),
@@ -82,7 +82,7 @@ impl Mesh {
         );
     }
 
-    /// A box of half extents `half` around the origin, transformed.
+    /// Adds a transformed box with half extents `half`, centred on the origin.
     pub fn boxed(&mut self, place: Affine3A, half: Vec3) {
         for axis in 0..3 {
             for side in [-1.0, 1.0] {
@@ -100,7 +100,7 @@ impl Mesh {
         }
     }
 
-    /// A beam from `from` to `to`, `width` across and `height` high.
+    /// Adds a beam from `from` to `to`, `width` wide and `height` high.
     pub fn beam(&mut self, from: Vec3, to: Vec3, width: f32, height: f32) {
         let along = (to - from).normalize();
         let side = along.cross(Vec3::Y).normalize_or(Vec3::X);
@@ -111,7 +111,7 @@ impl Mesh {
         self.boxed(place, half);
     }
 
-    /// A surface of revolution about the y axis through `foot`: pairs of radius and height, from below.
+    /// Adds a surface of revolution about the y axis through `foot`. `profile` lists radius and height from bottom to top.
     pub fn lathe(&mut self, foot: Vec3, profile: &[(f32, f32)], sides: usize) {
         let at = |i: usize| vec2(profile[i].0, profile[i].1);
         self.grid(profile.len(), sides + 1, |row, column| {
@@ -126,7 +126,7 @@ impl Mesh {
         });
     }
 
-    /// A tapering tube between two points.
+    /// Adds a tapering tube between two points.
     pub fn tube(&mut self, ends: [Vec3; 2], radii: [f32; 2], sides: usize) {
         let along = (ends[1] - ends[0]).normalize_or(Vec3::Y);
         let turn = Quat::from_rotation_arc(Vec3::Y, along);
@@ -139,7 +139,7 @@ impl Mesh {
         });
     }
 
-    /// A card: a textured quad around `centre` spanned by two half axes, with one normal.
+    /// Adds a card: a textured quad around `centre`, spanned by two half axes, with a single normal.
     pub fn card(&mut self, centre: Vec3, half: [Vec3; 2], normal: Vec3, tile: [Vec2; 2]) {
         let [right, up] = half;
         self.grid(2, 2, |row, column| {
@@ -150,7 +150,7 @@ impl Mesh {
         });
     }
 
-    /// Skips triangles with two equal corners: the tips of gables, surfaces of revolution and balls.
+    /// Removes triangles with two equal corners, as at the tips of gables, surfaces of revolution and balls.
     pub fn without_degenerate(&self) -> Self {
         let at = |i: u32| self.points[i as usize].position;
         let kept = self.indices.chunks_exact(3).filter(|t| {
@@ -163,7 +163,7 @@ impl Mesh {
         }
     }
 
-    /// Adds another mesh, transformed.
+    /// Appends another mesh, transformed.
     pub fn append(&mut self, other: &Mesh, place: Affine3A) {
         let first = self.points.len() as u32;
         let normals = Mat3::from(place.matrix3).inverse().transpose();

@@ -25,7 +25,7 @@ impl Chance {
     }
 }
 
-/// A random number in −1..1 for a lattice point.
+/// A random value in −1..1 for a lattice point.
 fn lattice(x: i32, y: i32, seed: u32) -> f32 {
     let mut h = (x as u32).wrapping_mul(0x85EB_CA6B)
         ^ (y as u32).wrapping_mul(0xC2B2_AE35)
@@ -35,7 +35,7 @@ fn lattice(x: i32, y: i32, seed: u32) -> f32 {
     (h ^ (h >> 15)) as f32 / u32::MAX as f32 * 2.0 - 1.0
 }
 
-/// Smooth noise in −1..1 that changes over one unit; it repeats after `period` units (0: never).
+/// Smooth noise in −1..1 with a lattice spacing of one unit; it repeats after `period` units (0: never).
 pub fn noise(p: Vec2, period: i32, seed: u32) -> f32 {
     let cell = p.floor();
     let f = p - cell;
@@ -50,7 +50,7 @@ pub fn noise(p: Vec2, period: i32, seed: u32) -> f32 {
     low + (high - low) * s.y
 }
 
-/// Octaves of noise, each twice as fine and half as strong, about −1..1.
+/// Octaves of noise, each with double the frequency and half the amplitude, about −1..1.
 pub fn fractal(p: Vec2, octaves: u32, period: i32, seed: u32) -> f32 {
     let (mut sum, mut scale, mut weight) = (0.0, 1.0, 0.5);
     for octave in 0..octaves {
@@ -77,7 +77,7 @@ pub fn turbulence(p: Vec2, octaves: u32, period: i32, seed: u32) -> f32 {
     sum
 }
 
-/// 0 below `low`, 1 above `high`, smooth between.
+/// 0 below `low`, 1 above `high`, smooth in between.
 pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)

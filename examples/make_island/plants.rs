@@ -1,4 +1,4 @@
-//! Vegetation: instances of the trees, shrubs and tufts of grass.
+//! Vegetation: instances of trees, shrubs and tufts of grass.
 
 use glam::{Affine3A, Quat, Vec2, Vec3, vec2, vec3};
 
@@ -9,10 +9,10 @@ use crate::noise::{Chance, fractal, smoothstep};
 use crate::terrain::{COTTAGE, TEMPLE, height, is_free, slope};
 use crate::trees::{forest, tuft};
 
-/// Meshes of the species.
+/// Mesh indices per species.
 struct Species([Vec<usize>; 5]);
 
-/// The plants so far, so that none overlaps its neighbour.
+/// The plants placed so far, so that new ones do not overlap them.
 struct Garden<'g> {
     glb: &'g mut Glb,
     species: Species,
@@ -27,7 +27,7 @@ const PALM: usize = 3;
 const SHRUB: usize = 4;
 
 impl Garden<'_> {
-    /// Adds a plant if there is room; `room` is the radius that it needs, metres.
+    /// Adds a plant if there is room; `room` is the radius it needs, metres.
     fn plant(&mut self, species: usize, p: Vec2, room: f32, size: f32) -> bool {
         let crowded = self.taken.iter().any(|(q, r)| (p - *q).length() < room + r);
         if crowded {
@@ -45,7 +45,7 @@ impl Garden<'_> {
         true
     }
 
-    /// Tries random positions until there are so many plants.
+    /// Tries random positions until the requested number of plants is placed.
     fn scatter(
         &mut self,
         species: usize,
@@ -68,12 +68,12 @@ impl Garden<'_> {
     }
 }
 
-/// Whether there is a wood, in patches.
+/// Whether a point is wooded; woods form patches.
 fn wooded(p: Vec2) -> bool {
     fractal(p / 26.0, 3, 0, 71) > -0.06
 }
 
-/// Keeps the views to temple, cottage and sea open.
+/// Whether a point lies outside the views of temple, cottage and sea, which stay open.
 fn open_view(p: Vec2) -> bool {
     let temple = p - vec2(TEMPLE.x, TEMPLE.z);
     let before_cottage = p.x > COTTAGE.x - 11.0 && p.x < COTTAGE.x + 8.0 && p.y > COTTAGE.z;

@@ -4,13 +4,13 @@ use glam::{Affine3A, Vec2, Vec3, vec2, vec3};
 
 use crate::mesh::{Mesh, point};
 
-/// Columns along the front and the flank.
+/// Number of columns along the front and the flank.
 const COLUMNS: [usize; 2] = [6, 10];
-/// Half the distance between the axes of the outer columns, metres: x is the flank.
+/// Half the distance between the axes of the outer columns, metres; x is along the flank.
 const HALF: Vec2 = vec2(8.7, 4.8);
-/// Height of a column with its capital.
+/// Height of a column including its capital, metres.
 pub const COLUMN: f32 = 5.0;
-/// Top of the steps above the ground.
+/// Height of the top step above the ground, metres.
 pub const FLOOR: f32 = 0.9;
 const FLUTES: usize = 20;
 
@@ -31,7 +31,7 @@ pub fn column() -> Mesh {
     mesh
 }
 
-/// A broken column, or a drum: a shaft that ends early.
+/// A broken column or a drum: a shaft that ends early.
 pub fn stump(height: f32) -> Mesh {
     let mut mesh = Mesh::default();
     shaft(&mut mesh, height, 0.0);
@@ -44,7 +44,7 @@ pub fn stump(height: f32) -> Mesh {
     mesh
 }
 
-/// Radius of the shaft at a height: it tapers with entasis.
+/// Shaft radius at a height; the shaft tapers with entasis.
 fn radius(h: f32) -> f32 {
     let t = h / (COLUMN - 0.5);
     0.48 - 0.10 * t + 0.018 * (std::f32::consts::PI * t).sin()
@@ -71,7 +71,7 @@ fn shaft(mesh: &mut Mesh, height: f32, runs_out: f32) {
     }
 }
 
-/// Positions of the columns from the centre of the floor, and the heights of broken ones.
+/// Column positions relative to the centre of the floor, and the heights of broken columns.
 pub fn places() -> Vec<(Vec3, Option<f32>)> {
     let [across, along] = COLUMNS;
     let mut places = Vec::new();
@@ -114,13 +114,13 @@ pub fn building() -> Mesh {
     mesh
 }
 
-/// The walls of the cella, with a door to the east; the west wall is half its height.
+/// The walls of the cella, with a door to the east; the west wall is half as high.
 fn hall(mesh: &mut Mesh) {
     let (x0, x1, z, wall) = (-5.6, 5.4, 2.6, 0.55);
     let (low, high) = (FLOOR, FLOOR + COLUMN);
     for side in [-1.0f32, 1.0] {
         let (a, b) = (side * z, side * (z - wall));
-        // Courses of stone, each slightly narrower than the one below.
+        // Stone courses, each slightly narrower than the one below.
         for course in 0..8 {
             let t = [course, course + 1].map(|i| low + (high - low) * i as f32 / 8.0);
             let inset = 0.012 * (course % 2) as f32;
@@ -154,7 +154,7 @@ fn hall(mesh: &mut Mesh) {
     );
 }
 
-/// Beams over the standing columns, a frieze with triglyphs, a cornice.
+/// Beams on the standing columns, a frieze with triglyphs, and a cornice.
 fn entablature(mesh: &mut Mesh) {
     let base = FLOOR + COLUMN;
     let west = -HALF.x + 2.0 * HALF.x / 9.0 * 1.72;
@@ -211,7 +211,7 @@ fn triglyphs(mesh: &mut Mesh, low: f32, west: f32) {
     }
 }
 
-/// The east gable still stands, with its raking cornice.
+/// The east gable, still standing, with its raking cornice.
 fn gable(mesh: &mut Mesh) {
     let (y, x) = (FLOOR + COLUMN + 1.54, HALF.x);
     let (half, rise) = (HALF.y + 0.86, 1.55);

@@ -1,19 +1,19 @@
-//! The terrain: its height function, its mesh, and the sea around it.
+//! The terrain: its height function, its mesh and the surrounding sea.
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
 use crate::mesh::{Mesh, Point, point};
 use crate::noise::{fractal, noise, smoothstep, turbulence};
 
-/// Centre and floor of the temple, metres.
+/// Centre of the temple floor, metres.
 pub const TEMPLE: Vec3 = vec3(-24.0, 11.0, -2.0);
-/// Centre and floor of the cottage, metres.
+/// Centre of the cottage floor, metres.
 pub const COTTAGE: Vec3 = vec3(17.0, 3.4, 19.0);
-/// Where the pier leaves the beach, and where it ends (x and z).
+/// Start of the pier on the beach, and its end (x and z), metres.
 pub const PIER: [Vec2; 2] = [vec2(9.0, 33.0), vec2(3.0, 56.0)];
-/// The peak of the hill (x and z).
+/// Peak of the hill (x and z), metres.
 const PEAK: Vec2 = vec2(26.0, -20.0);
-/// The path from the cottage to the temple (x and z).
+/// Path from the cottage to the temple (x and z), metres.
 const PATH: [Vec2; 7] = [
     vec2(9.0, 34.0),
     vec2(11.0, 27.0),
@@ -24,7 +24,7 @@ const PATH: [Vec2; 7] = [
     vec2(-13.0, -2.0),
 ];
 
-/// Distance inside the coast, about 0..1; negative in the sea.
+/// Relative distance inside the coast, about 0..1; negative in the sea.
 fn inland(p: Vec2) -> f32 {
     let warp = vec2(
         fractal(p / 42.0, 4, 0, 11),
@@ -36,7 +36,7 @@ fn inland(p: Vec2) -> f32 {
     1.0 - (q / vec2(66.0, 50.0)).length() - bay - east
 }
 
-/// Height of the land before terraces and paths, metres above the sea.
+/// Height before terraces and paths, metres above sea level.
 fn wild(p: Vec2) -> f32 {
     let d = inland(p);
     if d < 0.0 {
@@ -47,7 +47,7 @@ fn wild(p: Vec2) -> f32 {
     let away = (p - PEAK) / vec2(21.0, 16.0);
     let hill = 15.0 * (-away.length_squared()).exp();
     let crags = 7.5 * turbulence(p / 15.0, 5, 0, 31) * smoothstep(2.0, 9.0, hill);
-    // The temple's headland falls to the sea in cliffs.
+    // The temple's headland drops to the sea in cliffs.
     let cape = (p - TEMPLE.xz() - vec2(-3.0, 0.0)) / vec2(21.0, 17.0);
     let cape = 8.5
         * smoothstep(
@@ -79,18 +79,18 @@ impl Ground for Vec3 {
     }
 }
 
-/// Distance to a rectangle around `middle`, metres; 0 inside.
+/// Distance to a rectangle centred on `middle`, metres; 0 inside.
 fn outside(p: Vec2, middle: Vec3, half: Vec2) -> f32 {
     ((p - middle.xz()).abs() - half).max(Vec2::ZERO).length()
 }
 
-/// Height of the land, metres above the sea.
+/// Height of the terrain, metres above sea level.
 pub fn height(p: Vec2) -> f32 {
     let mut h = wild(p);
     // Terraces for the buildings.
     let temple = smoothstep(7.0, 0.5, outside(p, TEMPLE, vec2(13.5, 8.5)));
     h += (TEMPLE.y - 0.05 - h) * temple;
-    // A lawn falls from the veranda to the beach: the pier is in view.
+    // A lawn slopes from the veranda to the beach, so that the pier is visible.
     let across = smoothstep(9.0, 4.0, (p.x - 11.5).abs()) * smoothstep(19.0, 24.0, p.y);
     let lawn = 0.7 + 2.4 * ((34.0 - p.y) / 13.0).clamp(0.0, 1.0);
     h += (lawn - h).min(0.0) * across;
@@ -99,7 +99,7 @@ pub fn height(p: Vec2) -> f32 {
     h - 0.12 * smoothstep(1.3, 0.4, off_path(p)) * smoothstep(0.3, 0.8, h)
 }
 
-/// The upward normal of the land.
+/// Upward normal of the terrain.
 pub fn slope(p: Vec2) -> Vec3 {
     let e = 0.4;
     let dx = height(p + vec2(e, 0.0)) - height(p - vec2(e, 0.0));
@@ -107,7 +107,7 @@ pub fn slope(p: Vec2) -> Vec3 {
     vec3(-dx, 2.0 * e, -dz).normalize()
 }
 
-/// Whether a plant could stand here: off paths, terraces, beaches and cliffs.
+/// Whether a plant may stand here: away from paths, terraces, beaches and cliffs.
 pub fn is_free(p: Vec2, room: f32) -> bool {
     height(p) > 1.5
         && slope(p).y > 0.72
@@ -153,7 +153,7 @@ fn ground_colour(p: Vec2, h: f32, normal: Vec3) -> Vec3 {
     mix(colour, vec3(0.50, 0.42, 0.30), 0.85 * trodden)
 }
 
-/// The land as a grid, finest where it is visible.
+/// The terrain as a grid, finest where it is visible.
 pub fn land() -> Mesh {
     const CELLS: usize = 172;
     const HALF: Vec2 = vec2(82.0, 66.0);
@@ -175,7 +175,7 @@ pub fn land() -> Mesh {
     mesh
 }
 
-/// Removes triangles deep in the sea.
+/// Removes triangles far below sea level.
 fn drop_drowned(mesh: &mut Mesh) {
     let points = &mesh.points;
     let kept = mesh.indices.chunks_exact(3);
@@ -184,7 +184,7 @@ fn drop_drowned(mesh: &mut Mesh) {
     mesh.indices = kept;
 }
 
-/// The sea: rings around the island out to the horizon, lighter where it is shallow.
+/// The sea: rings around the island out to the horizon, lighter in shallow water.
 pub fn sea() -> Mesh {
     const RINGS: usize = 74;
     const SPOKES: usize = 180;
@@ -196,7 +196,7 @@ pub fn sea() -> Mesh {
     let mut mesh = Mesh::default();
     mesh.grid(RINGS, SPOKES + 1, |ring, spoke| {
         let angle = std::f32::consts::TAU * spoke as f32 / SPOKES as f32;
-        // Inner rings first; seen from above, columns run counter-clockwise.
+        // Inner rings first. Seen from above, columns run counter-clockwise.
         let p = vec2(angle.cos(), angle.sin()) * radius(RINGS - 1 - ring);
         Point {
             colour: sea_colour(p),

@@ -1,10 +1,10 @@
-//! Pictures: leaves, ripples of the sea, grain of ground and stone.
+//! Images: leaves, sea ripples, grain of ground and stone.
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
 use crate::noise::{Chance, fractal, turbulence};
 
-/// Tiles of the atlas of leaves: corner and size in texture coordinates.
+/// Tiles of the leaf atlas: corner and size in texture coordinates.
 pub const BROAD: [Vec2; 2] = [vec2(0.0, 0.0), vec2(0.5, 0.5)];
 pub const NEEDLE: [Vec2; 2] = [vec2(0.5, 0.0), vec2(0.5, 0.5)];
 pub const SPRAY: [Vec2; 2] = [vec2(0.0, 0.5), vec2(0.5, 0.5)];
@@ -13,13 +13,13 @@ pub const FROND: [Vec2; 2] = [vec2(0.5, 0.5), vec2(0.5, 0.5)];
 const ATLAS: usize = 512;
 const TILE: f32 = 256.0;
 
-/// Linear RGB and coverage.
+/// An image of linear RGB and coverage.
 struct Canvas {
     texels: Vec<[f32; 4]>,
 }
 
 impl Canvas {
-    /// A leaf: a pointed oval from `foot` to `tip`, texels of the atlas, within its tile.
+    /// Draws a leaf: a pointed oval from `foot` to `tip` (atlas texels), clipped to its tile.
     fn leaf(&mut self, tile: [Vec2; 2], foot: Vec2, tip: Vec2, width: f32, colour: Vec3) {
         let origin = tile[0] * ATLAS as f32;
         let along = tip - foot;
@@ -55,7 +55,7 @@ fn blend(texel: &mut [f32; 4], colour: Vec3, cover: f32) {
     texel[3] = texel[3].max(cover);
 }
 
-/// The atlas of leaves, RGBA.
+/// The leaf atlas, RGBA.
 pub fn leaves() -> Vec<u8> {
     let mean = [0.085, 0.125, 0.035, 0.0];
     let mut canvas = Canvas {
@@ -85,7 +85,7 @@ fn green(chance: &mut Chance) -> Vec3 {
     vec3(0.055, 0.10, 0.025) * (1.0 - t) + vec3(0.14, 0.185, 0.05) * t
 }
 
-/// A sprig of some thirty small leaves.
+/// A sprig of about thirty small leaves.
 fn broad(canvas: &mut Canvas, chance: &mut Chance) {
     for _ in 0..26 {
         let angle = chance.within(0.0, std::f32::consts::TAU);
@@ -97,7 +97,7 @@ fn broad(canvas: &mut Canvas, chance: &mut Chance) {
     }
 }
 
-/// Needles that fan out from below.
+/// Needles fanning out from the bottom.
 fn needles(canvas: &mut Canvas, chance: &mut Chance) {
     for _ in 0..52 {
         let foot = vec2(
@@ -157,7 +157,7 @@ fn frond(canvas: &mut Canvas, chance: &mut Chance) {
     );
 }
 
-/// Fine grain around 1, for ground and stone: grey RGB. `sharp`: veins and pits instead of clouds.
+/// Fine grain around 1 for ground and stone, grey RGB. `sharp` gives veins and pits instead of clouds.
 pub fn grain(sharp: bool) -> Vec<u8> {
     const SIZE: usize = 256;
     let texel = |i: usize| {
@@ -172,14 +172,14 @@ pub fn grain(sharp: bool) -> Vec<u8> {
     png(SIZE, 3, (0..SIZE * SIZE).flat_map(texel))
 }
 
-/// The normal map of a height field that repeats; `height` in widths of the picture.
+/// Normal map of a repeating height field; `height` is in units of the image width.
 fn normal_map(size: usize, height: impl Fn(Vec2) -> f32) -> Vec<u8> {
     let e = 1.0 / size as f32;
     let texel = |i: usize| {
         let p = vec2((i % size) as f32, (i / size) as f32) * e;
         let dx = (height(p + vec2(e, 0.0)) - height(p - vec2(e, 0.0))) / (2.0 * e);
         let dy = (height(p + vec2(0.0, e)) - height(p - vec2(0.0, e))) / (2.0 * e);
-        // Rows run downward; the green channel points upward.
+        // Rows run down; the green channel points up.
         let n = vec3(-dx, dy, 1.0).normalize();
         (n * 127.5 + 127.5).round().to_array().map(|v| v as u8)
     };
@@ -202,7 +202,7 @@ pub fn bumps() -> Vec<u8> {
     })
 }
 
-/// IEC 61966-2-1: the sRGB byte of linear light.
+/// IEC 61966-2-1: the sRGB byte of a linear value.
 fn signal(light: f32) -> u8 {
     let v = if light <= 0.003_130_8 {
         12.92 * light

@@ -1,4 +1,4 @@
-//! Species of trees: a grammar, turtle parameters and leaves for each.
+//! Tree species: a grammar, turtle parameters and leaves for each.
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
@@ -13,17 +13,17 @@ pub struct Tree {
     pub leaves: Mesh,
 }
 
-/// The leaves of a species.
+/// Foliage of a species.
 struct Foliage {
-    /// Tile of the atlas.
+    /// Tile in the leaf atlas.
     tile: [Vec2; 2],
     /// Half size of a card, metres.
     size: f32,
-    /// Cards at every position of leaves.
+    /// Cards per leaf position.
     cards: usize,
-    /// Linear RGB factor on the atlas.
+    /// Linear RGB factor on the atlas colours.
     tint: Vec3,
-    /// 0: cards in random directions; 1: along their twigs.
+    /// 0: cards in random directions; 1: cards along their twigs.
     along: f32,
 }
 
@@ -33,7 +33,7 @@ struct Species {
     foliage: Foliage,
 }
 
-/// An oak or olive: branches fork by threes into a round crown.
+/// An oak or olive: branches fork in threes into a round crown.
 fn broadleaf() -> Species {
     Species {
         grammar: Grammar {
@@ -70,7 +70,7 @@ fn broadleaf() -> Species {
     }
 }
 
-/// An umbrella pine: a bare leaning trunk, then a flat dish of needles.
+/// An umbrella pine: a bare, leaning trunk and a flat dish of needles.
 fn pine() -> Species {
     Species {
         grammar: Grammar {
@@ -185,7 +185,7 @@ impl Species {
 }
 
 impl Foliage {
-    /// Cards whose normals point out of the crown, darker toward its inside and below.
+    /// Leaf cards whose normals point out of the crown; darker on the inside and the underside.
     fn cards(&self, leaves: &[Leaf], chance: &mut Chance) -> Mesh {
         let low = leaves.iter().map(|l| l.at).reduce(Vec3::min);
         let high = leaves.iter().map(|l| l.at).reduce(Vec3::max);
@@ -215,7 +215,7 @@ impl Foliage {
         };
         let loose = (random(chance) + vec3(0.0, 0.4, 0.0)).normalize_or(Vec3::Y);
         let up = (leaf.along * self.along + loose * (1.0 - self.along)).normalize_or(Vec3::Y);
-        // The card faces out of the crown, roughly.
+        // The card faces roughly out of the crown.
         let face = (out.normalize_or(Vec3::Y) + random(chance) * 0.75).normalize_or(Vec3::Y);
         let right = up.cross(face).normalize_or(Vec3::X);
         let size = self.size * chance.within(0.8, 1.2);
@@ -233,7 +233,7 @@ fn palm(seed: u64) -> Tree {
     let at = |t: f32| vec3(lean * t * t, height * t, 0.25 * lean * (3.0 * t).sin());
     for i in 0..12 {
         let [a, b] = [i, i + 1].map(|k| k as f32 / 12.0);
-        // Old leaf bases: each ring a little wider at its top.
+        // Old leaf bases: each ring is slightly wider at its top.
         wood.tube([at(a), at(b)], [0.17 - 0.05 * a, 0.20 - 0.05 * b], 8);
     }
     let fronds = 26;
@@ -245,7 +245,7 @@ fn palm(seed: u64) -> Tree {
     Tree { wood, leaves }
 }
 
-/// A strip of cards in the shape of a shallow gutter that bends down.
+/// A strip of cards shaped like a shallow gutter that bends down.
 fn frond(mesh: &mut Mesh, foot: Vec3, turn: f32, rise: f32, chance: &mut Chance) {
     let out = vec3(turn.cos(), 0.0, turn.sin());
     let side = vec3(-turn.sin(), 0.0, turn.cos());
@@ -286,7 +286,7 @@ pub fn tuft(seed: u64) -> Mesh {
     mesh
 }
 
-/// All trees, two or three variants of a species: broadleaf, pine, cypress, palm, shrub.
+/// All trees, two or three variants per species: broadleaf, pine, cypress, palm, shrub.
 pub fn forest() -> [Vec<Tree>; 5] {
     let grow = |species: &Species, seeds: &[u64]| seeds.iter().map(|s| species.grow(*s)).collect();
     [

@@ -1,11 +1,11 @@
-//! Errors of the device; each message names the cause and the remedy.
+//! Device errors. Each message names the cause and the remedy.
 
 use ash::vk;
 
 /// Result with a [`GpuError`].
 pub type Result<T> = std::result::Result<T, GpuError>;
 
-/// An error of the Vulkan driver, the choice of a device, or memory.
+/// An error of the Vulkan driver, device selection or memory allocation.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
     /// The Vulkan loader is not installed.
@@ -19,15 +19,15 @@ pub enum GpuError {
     /// No device matches `--device`.
     #[error("no device matches \"{wanted}\"; there are: {present}")]
     NoSuchDevice {
-        /// The text given.
+        /// The text given by the user.
         wanted: String,
-        /// Names of the devices that exist.
+        /// Names of the available devices.
         present: String,
     },
     /// The device lacks required features.
     #[error("{missing} not supported by \"{device}\"; choose another with --device")]
     Unsupported {
-        /// Features, extensions or formats, separated by commas.
+        /// Missing features, extensions or formats, comma-separated.
         missing: String,
         /// Name of the device.
         device: String,
@@ -37,13 +37,13 @@ pub enum GpuError {
         "the layer VK_LAYER_KHRONOS_validation is missing; install it (Debian, Ubuntu: vulkan-validationlayers)"
     )]
     NoValidationLayer,
-    /// The validation layer reported errors or warnings, a defect of this program: each message once.
+    /// The validation layer reported errors or warnings, each message once. This is a bug in the program.
     #[error("{} validation message(s): {}", .0.len(), .0.join("\n"))]
     Validation(Vec<String>),
     /// A Vulkan call failed.
     #[error("{what}: {}", describe(*result))]
     Vulkan {
-        /// The operation.
+        /// The operation that failed.
         what: &'static str,
         /// The result code.
         result: vk::Result,
@@ -53,28 +53,28 @@ pub enum GpuError {
     Memory {
         /// Name of the image or buffer.
         what: String,
-        /// The message of the allocator.
+        /// The allocator's message.
         reason: String,
     },
-    /// Text that does not describe a fault to inject.
+    /// The description of an injected fault is invalid.
     #[error(
         "\"{0}\" is not a fault; write CALL@OCCURRENCE=ERROR, for instance submit@1=device-lost"
     )]
     BadFault(String),
-    /// Shaders that cannot be reloaded, one line each.
+    /// Shaders failed to reload; one line each.
     #[error("{0}")]
     Shaders(String),
-    /// The surface of the window is unusable.
+    /// The window surface is unusable.
     #[error("the window cannot be drawn to: {0}")]
     Window(String),
-    /// A size beyond the limit of the device.
+    /// An image size exceeds the device limit.
     #[error(
         "{what} of {asked} exceeds what \"{device}\" supports ({limit}); choose a smaller --size"
     )]
     TooLarge {
         /// Name of the image.
         what: String,
-        /// The size wanted, pixels.
+        /// The requested size, pixels.
         asked: u32,
         /// The device's limit, pixels.
         limit: u32,
@@ -84,7 +84,7 @@ pub enum GpuError {
 }
 
 impl GpuError {
-    /// Whether the device is lost.
+    /// Whether the device was lost.
     pub fn is_device_lost(&self) -> bool {
         let lost = vk::Result::ERROR_DEVICE_LOST;
         matches!(self, Self::Vulkan { result, .. } if *result == lost)
@@ -102,7 +102,7 @@ fn describe(result: vk::Result) -> String {
     }
 }
 
-/// Names the operation of a failed Vulkan call.
+/// Attaches the name of the operation to a failed Vulkan call.
 pub(super) trait During<T> {
     fn during(self, what: &'static str) -> Result<T>;
 }

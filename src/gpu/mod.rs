@@ -1,13 +1,13 @@
-//! Vulkan objects: device, images, buffers, pipelines, command recording. The module knows no pass by name and imports
-//! nothing else of the crate.
+//! Vulkan objects: device, images, buffers, pipelines, command recording. This module is independent of the render passes and
+//! imports nothing else from the crate.
 //!
-//! All `unsafe` code of the program is here. Each raw handle is owned by a `Drop` type from the line that creates it; every
-//! resource keeps its [`Context`] alive.
+//! All `unsafe` code of the program is in this module. Each raw handle is owned by a `Drop` type as soon as it is created, and
+//! every resource keeps its [`Context`] alive.
 //!
-//! - An [`Image`] tracks its last [`ImageAccess`](access::ImageAccess), and [`access::barrier`] turns (last access, next
-//!   access) into a barrier: no pass writes a stage or an access mask.
-//! - A [`Shader`] carries its declarations, which build.rs reads from the SPIR-V; [`Recorder::pass`] checks each binding
-//!   against them.
+//! - An [`Image`] tracks its last [`ImageAccess`](access::ImageAccess), and [`access::barrier`] maps (last access, next
+//!   access) to a barrier, so passes never specify stages or access masks.
+//! - A [`Shader`] carries its interface, which build.rs reads from the SPIR-V; [`Recorder::pass`] checks each binding
+//!   against it.
 //! - A [`Recorder`] records, submits and waits; the name given to `pass` labels and times the pass.
 #![allow(unsafe_code)]
 

@@ -3,28 +3,28 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// An axis-aligned box in world space, metres. `min > max` on every axis means that it is empty.
+/// An axis-aligned box in world space, metres. Empty if `min > max` on every axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Bounds {
-    /// Smallest coordinates, metres.
+    /// Minimum corner, metres.
     pub min: Vec3,
-    /// Largest coordinates, metres.
+    /// Maximum corner, metres.
     pub max: Vec3,
 }
 
 impl Bounds {
-    /// The empty box, the neutral element of [`Bounds::union`].
+    /// The empty box, the identity of [`Bounds::union`].
     pub const EMPTY: Self = Self {
         min: Vec3::INFINITY,
         max: Vec3::NEG_INFINITY,
     };
 
-    /// The smallest box around the points.
+    /// The smallest box that contains the points.
     pub fn of(points: impl IntoIterator<Item = Vec3>) -> Self {
         points.into_iter().fold(Self::EMPTY, Self::with)
     }
 
-    /// The smallest box around this one and `point`.
+    /// The smallest box that contains this one and `point`.
     #[must_use]
     pub fn with(self, point: Vec3) -> Self {
         Self {
@@ -33,7 +33,7 @@ impl Bounds {
         }
     }
 
-    /// The smallest box around both.
+    /// The smallest box that contains both.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self {
@@ -55,7 +55,7 @@ impl Bounds {
         0.5 * (self.min + self.max)
     }
 
-    /// Length of the edges, metres; zero for an empty box.
+    /// Edge lengths, metres; zero for an empty box.
     pub fn extent(&self) -> Vec3 {
         if self.is_empty() {
             return Vec3::ZERO;
@@ -68,7 +68,7 @@ impl Bounds {
         self.extent().length()
     }
 
-    /// The eight corners, metres; bits 0, 1, 2 of the index choose `max` along x, y, z.
+    /// The eight corners, metres. Bits 0, 1 and 2 of the index select `max` along x, y and z.
     pub fn corners(&self) -> [Vec3; 8] {
         std::array::from_fn(|i| {
             let pick = |axis: usize| {

@@ -10,18 +10,18 @@ use crate::scene::progress::Reporter;
 use crate::scene::texture::picture::{TextureKey, TextureStore};
 use crate::scene::{LoadOptions, Scene};
 
-/// Most warnings of a scene: a hostile file could cause millions.
+/// Maximum number of warnings per scene: a malicious file could cause millions.
 const MAX_WARNINGS: usize = 100;
 
-/// A scene under construction and the source of its files.
+/// A scene under construction, and where its files are read from.
 #[derive(Debug)]
 pub(super) struct Builder<'p> {
     pub scene: Scene,
     pub files: Files,
     pub textures: TextureStore,
-    /// For the model that is being added.
+    /// Progress of the current model.
     pub progress: Reporter<'p>,
-    /// Threads to use, at least 1.
+    /// Number of threads to use, at least 1.
     pub threads: usize,
     materials: HashMap<MaterialKey, u32>,
     allow_outside: bool,
@@ -43,7 +43,7 @@ impl<'p> Builder<'p> {
         }
     }
 
-    /// Starts a model: its libraries and pictures must lie in its folder tree, unless `allow_outside` is set.
+    /// Starts a model. Its libraries and images must be inside its folder, unless `allow_outside` is set.
     pub fn begin_model(&mut self, path: &Path) {
         if !self.allow_outside {
             self.files.confine_to(path);
@@ -67,7 +67,7 @@ impl<'p> Builder<'p> {
         self.scene.warnings.push(line);
     }
 
-    /// Adds a warning about a file that was not read.
+    /// Warns that a file outside the model's folder was not read.
     pub fn warn_outside(&mut self, owner: &Path, path: &Path) {
         let what = format!(
             "{} is outside the model's folder and was not read; pass --allow-outside to allow it",
@@ -79,7 +79,7 @@ impl<'p> Builder<'p> {
     /// Checks that this many more triangles may be added to the scene.
     ///
     /// # Errors
-    /// They exceed the limit.
+    /// When the limit is exceeded.
     pub fn check_triangles(&self, path: &Path, triangles: usize) -> Result<(), SceneError> {
         let all = self.scene.triangles().saturating_add(triangles);
         if all <= self.max_triangles && self.scene.has_indices_for(triangles.saturating_mul(3)) {
@@ -92,10 +92,10 @@ impl<'p> Builder<'p> {
         })
     }
 
-    /// Checks that this many triangles may be read, drawn or not: a file may name the same ones many times.
+    /// Checks that this many triangles may be read, drawn or not. A file may reference the same triangles many times.
     ///
     /// # Errors
-    /// They exceed the limit.
+    /// When the limit is exceeded.
     pub fn check_read(&self, path: &Path, triangles: usize) -> Result<(), SceneError> {
         if triangles <= self.max_triangles {
             return Ok(());
@@ -107,13 +107,13 @@ impl<'p> Builder<'p> {
         })
     }
 
-    /// How many corners of triangles may still be added.
+    /// Number of triangle corners that may still be added.
     pub fn corners_left(&self) -> usize {
         let triangles = self.max_triangles.saturating_sub(self.scene.triangles());
         triangles.saturating_mul(3)
     }
 
-    /// Adds a material, unless there is an equal one; returns its index.
+    /// Adds a material unless an equal one exists; returns its index.
     pub fn add_material(&mut self, material: Material) -> u32 {
         let materials = &mut self.scene.materials;
         *self.materials.entry(material.key()).or_insert_with(|| {
@@ -122,7 +122,7 @@ impl<'p> Builder<'p> {
         })
     }
 
-    /// The index of a texture, made at first use; none (and a warning) if that fails.
+    /// Index of a texture, created on first use; `None` (with a warning) if that fails.
     pub fn texture(&mut self, owner: &Path, key: TextureKey) -> Option<usize> {
         let textures = &mut self.scene.textures;
         match self.textures.get(&self.files, key, textures) {
@@ -134,7 +134,7 @@ impl<'p> Builder<'p> {
         }
     }
 
-    /// The mean red, green and blue of a picture, 0..1 as encoded; 1 (and a warning) if that fails.
+    /// Mean red, green and blue of an image, 0..1 as encoded; 1 (with a warning) if that fails.
     pub fn mean(&mut self, owner: &Path, path: &Path) -> [f32; 3] {
         let mean = self.textures.mean(&self.files, path);
         mean.unwrap_or_else(|what| {

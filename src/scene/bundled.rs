@@ -1,4 +1,4 @@
-//! Scenes that are compiled into the program.
+//! Scenes compiled into the program.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use crate::scene::files::Files;
 use crate::scene::load::load_from;
 use crate::scene::{LoadOptions, Loaded, Progress, SceneError};
 
-/// Their files by name; `examples/make_colonnade.rs` and `examples/make_island` write the models.
+/// Embedded files by name. `examples/make_colonnade.rs` and `examples/make_island` generate the models.
 static FILES: &[(&str, &[u8])] = &[
     (
         "colonnade.toml",
@@ -30,12 +30,12 @@ pub const BUNDLED: [&str; 2] = ["colonnade", "island"];
 /// The default scene: a small colonnade with steps, a pool and a low sun.
 ///
 /// # Errors
-/// Limits in `options` that are too low for it.
+/// When a limit in `options` is too low.
 pub fn bundled(options: &LoadOptions) -> Result<Loaded, SceneError> {
     load_bundled(BUNDLED[0], options, &|_, _| ())
 }
 
-/// The bundled scene of this name, unless a file of this name exists.
+/// The bundled scene with this name, unless a file or folder of that name exists.
 pub fn bundled_name(path: &Path) -> Option<&'static str> {
     let name = BUNDLED.into_iter().find(|name| path == Path::new(name))?;
     (!path.exists()).then_some(name)

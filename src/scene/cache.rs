@@ -1,8 +1,8 @@
-//! A disk cache of processed scenes, so that a large model loads quickly the second time.
+//! A disk cache of processed scenes, which makes a large model load faster the second time.
 //!
-//! The key of an entry is the content of the model, its path and the options. An entry lists every other file that was read
-//! with the hash of its content, and ends with a checksum. If anything does not match, the model is read again and the
-//! entry is replaced.
+//! An entry is keyed by the content of the model, its path and the options. It lists every other file that was read, with the
+//! hash of its content, and ends with a checksum. If anything does not match, the model is loaded again and the entry is
+//! replaced.
 
 use std::fs;
 use std::io::{self, Read, Write};
@@ -18,17 +18,17 @@ use crate::scene::scene_file::NamedOptions;
 use crate::scene::texture::{Encoding, Texture};
 use crate::scene::{Layout, LoadOptions, Loaded, Part, Scene};
 
-/// Version of the format of entries and of the result of loading a model.
+/// Version of the entry format and of the result of loading a model.
 const VERSION: u32 = 3;
-/// Smallest model that is cached, bytes: smaller ones load as fast as an entry.
+/// Minimum size of a cached model, bytes. Smaller models load as fast as a cache entry.
 pub(super) const MIN_MODEL_BYTES: u64 = 4 << 20;
-/// Limit on the size of all entries together, bytes.
+/// Limit on the total size of all entries, bytes.
 const MAX_BYTES: u64 = 4 << 30;
 
-/// Arrays of an entry, without those of textures.
+/// Number of arrays in an entry, not counting textures.
 const ARRAYS: usize = 9;
 
-/// The start of an entry, before its arrays.
+/// Header of an entry, followed by its arrays.
 #[derive(Serialize, Deserialize)]
 struct Head {
     version: u32,
@@ -41,7 +41,7 @@ struct Head {
     options: Vec<NamedOptions>,
     cameras: Vec<NamedOptions>,
     moments: Vec<NamedOptions>,
-    /// Lengths of the arrays: positions, normals, texture coordinates, colours, tangents, indices; clusters, parts and
+    /// Lengths of the arrays: positions, normals, texture coordinates, colours, tangents, indices, then clusters, parts and
     /// thicknesses of the layout.
     lengths: [usize; ARRAYS],
 }
@@ -74,7 +74,7 @@ pub(super) fn entry_path(
     folder.join(format!("{name}.scene"))
 }
 
-/// Reads an entry; none if it does not exist, is damaged, or depends on a file that has changed.
+/// Reads an entry. `None` if it does not exist, is corrupt, or depends on a file that has changed.
 pub(super) fn read(entry: &Path, path: &Path) -> Option<Loaded> {
     let mut entry = Entry::open(entry)?;
     let [length] = entry.numbers::<u64>(1)?[..] else {
@@ -96,16 +96,16 @@ pub(super) fn read(entry: &Path, path: &Path) -> Option<Loaded> {
     })
 }
 
-/// An entry that is being read. Its content must not be used before [`Entry::checksum_agrees`].
+/// An entry being read. Its contents must not be used before [`Entry::checksum_agrees`].
 struct Entry {
     file: fs::File,
-    /// Unread bytes before the checksum.
+    /// Bytes left before the checksum.
     left: u64,
     hasher: blake3::Hasher,
 }
 
 impl Entry {
-    /// Bytes that are read and hashed at a time: they fit into the cache of a core.
+    /// Chunk size for reading and hashing, bytes: fits into the cache of a core.
     const STEP: usize = 1 << 18;
 
     fn open(path: &Path) -> Option<Self> {
@@ -121,7 +121,7 @@ impl Entry {
     /// Reads the next `count` numbers.
     fn numbers<T: bytemuck::Pod>(&mut self, count: usize) -> Option<Vec<T>> {
         let bytes = count.checked_mul(size_of::<T>())?;
-        // Before allocating: a damaged entry may claim any length.
+        // Checked before allocating: a corrupt entry may claim any length.
         self.left = self.left.checked_sub(bytes as u64)?;
         let mut values = vec![T::zeroed(); count];
         for step in bytemuck::cast_slice_mut(&mut values).chunks_mut(Self::STEP) {
@@ -139,16 +139,16 @@ impl Entry {
     }
 }
 
-/// Writes an entry, atomically.
+/// Writes an entry atomically.
 ///
 /// # Errors
-/// The folder cannot be written.
+/// When the folder is not writable.
 pub(super) fn write(entry: &Path, loaded: &Loaded, mut files: Vec<ReadFile>) -> io::Result<()> {
     let scene = &loaded.scene;
     let (Some(folder), Some(layout)) = (entry.parent(), scene.layout.as_ref()) else {
         return Ok(());
     };
-    // The key of the entry covers the model itself.
+    // The model itself is already covered by the key.
     files.retain(|file| file.path != loaded.path);
     fs::create_dir_all(folder)?;
     remove_oldest(folder);
@@ -169,7 +169,7 @@ pub(super) fn write(entry: &Path, loaded: &Loaded, mut files: Vec<ReadFile>) -> 
     Ok(())
 }
 
-/// The bytes and the length of each array.
+/// The bytes and the element count of each array.
 fn arrays<'s>(scene: &'s Scene, layout: &'s FlatLayout<'s>) -> [(&'s [u8], usize); ARRAYS] {
     fn array<T: bytemuck::Pod>(values: &[T]) -> (&[u8], usize) {
         (bytemuck::cast_slice(values), values.len())
@@ -187,7 +187,7 @@ fn arrays<'s>(scene: &'s Scene, layout: &'s FlatLayout<'s>) -> [(&'s [u8], usize
     ]
 }
 
-/// Removes the oldest entries while all together exceed [`MAX_BYTES`].
+/// Removes the oldest entries until the total size is within [`MAX_BYTES`].
 fn remove_oldest(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;
@@ -206,7 +206,7 @@ fn remove_oldest(folder: &Path) {
         if all <= MAX_BYTES {
             break;
         }
-        // Another process may have removed it already.
+        // Another process may already have removed it.
         let _ = fs::remove_file(path);
         all -= bytes;
     }

@@ -11,30 +11,30 @@ use crate::scene::bounds::Bounds;
 /// Default vertical field of view, degrees.
 pub const DEFAULT_FOV_DEG: f32 = 45.0;
 
-/// Direction from the model to the eye of the default view, degrees clockwise from north: south-south-east.
+/// Azimuth of the eye of the default view as seen from the model, degrees clockwise from north: south-south-east.
 const FRAMING_AZIMUTH_DEG: f32 = 152.0;
-/// Elevation of the eye of the default view above the model's centre, degrees.
+/// Elevation of the eye of the default view above the centre of the model, degrees.
 const FRAMING_ELEVATION_DEG: f32 = 14.0;
-/// Distance of the default view as a factor on the distance that just fits the model.
+/// Distance of the default view, as a factor on the distance at which the model just fits.
 const FRAMING_MARGIN: f32 = 1.05;
 
 /// A perspective camera without roll (+Y up).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// Position of the eye, metres.
+    /// Eye position, metres.
     pub eye: Vec3,
-    /// Point that the eye looks at, metres; never equal to `eye`.
+    /// Point the eye looks at, metres; never equal to `eye`.
     pub target: Vec3,
-    /// Vertical field of view, degrees, within (0, 180).
+    /// Vertical field of view, degrees, in (0, 180).
     pub fov_deg: f32,
-    /// Distance of the near plane, metres, positive.
+    /// Near plane distance, metres, positive.
     pub near: f32,
 }
 
 impl Camera {
-    /// A camera of these parts; missing parts are chosen so that the model within `bounds` is in view.
+    /// A camera with the given parts. Missing parts are chosen so that the model within `bounds` is in view.
     ///
-    /// Without a target it looks at the centre of the model; without an eye it views the target from the direction and the
+    /// Without a target, it looks at the centre of the model. Without an eye, it views the target from the direction and
     /// distance of the default view. `aspect` is width / height.
     pub fn from_parts(
         eye: Option<Vec3>,
@@ -50,7 +50,7 @@ impl Camera {
             (None, Some(target)) => (target + framed.eye - framed.target, target),
             (None, None) => (framed.eye, framed.target),
         };
-        // Without a direction it looks north.
+        // With no view direction given, look north.
         let target = if eye == target {
             eye + Vec3::NEG_Z
         } else {
@@ -63,23 +63,23 @@ impl Camera {
         }
     }
 
-    /// A view of everything within `bounds` from the south-south-east, slightly above the centre.
+    /// A view of all of `bounds` from the south-south-east, slightly above the centre.
     ///
-    /// `fov_deg` is the vertical field of view in degrees, within (0, 180); `aspect` is width / height.
+    /// `fov_deg` is the vertical field of view in degrees, in (0, 180); `aspect` is width / height.
     pub fn framing(bounds: &Bounds, fov_deg: f32, aspect: f32) -> Self {
         let toward_eye = direction(FRAMING_AZIMUTH_DEG, FRAMING_ELEVATION_DEG);
         Self::framing_from(bounds, toward_eye, fov_deg, aspect)
     }
 
-    /// A view of everything within `bounds`; `toward_eye` is the unit vector from the centre to the eye and not vertical. The
-    /// other arguments are those of [`Camera::framing`].
+    /// A view of all of `bounds`. `toward_eye` is the unit vector from the centre to the eye and must not be vertical. For the
+    /// other arguments see [`Camera::framing`].
     pub fn framing_from(bounds: &Bounds, toward_eye: Vec3, fov_deg: f32, aspect: f32) -> Self {
         let target = bounds.centre();
         let right = Vec3::Y.cross(toward_eye).normalize();
         let up = toward_eye.cross(right);
         let tan_y = (0.5 * fov_deg).to_radians().tan();
         let tan_x = tan_y * aspect;
-        // The corner q is in view if |x| <= (distance - depth) tan: each corner needs a distance of its own.
+        // A corner q is in view if |x| <= (distance − depth) tan, so each corner gives a minimum distance.
         let distance = bounds.corners().map(|corner| {
             let q = if bounds.is_empty() {
                 Vec3::ZERO
@@ -99,22 +99,22 @@ impl Camera {
         }
     }
 
-    /// World space to view space: a rotation and a translation.
+    /// World space to view space: rotation and translation.
     pub fn view_from_world(&self) -> Mat4 {
         view::look_at_mat4(self.eye, self.target, self.up())
     }
 
-    /// View space to world space; its last column is the eye.
+    /// View space to world space. The last column is the eye position.
     pub fn world_from_view(&self) -> Mat4 {
         self.view_from_world().inverse()
     }
 
-    /// View space to Vulkan clip space, reversed Z, infinite far plane. `aspect` is width / height.
+    /// View space to Vulkan clip space with reversed Z and an infinite far plane. `aspect` is width / height.
     pub fn clip_from_view(&self, aspect: f32) -> Mat4 {
         vulkan::perspective_infinite_reverse(self.fov_deg.to_radians(), aspect, self.near)
     }
 
-    /// View direction, unit.
+    /// View direction, unit length.
     pub fn forward(&self) -> Vec3 {
         (self.target - self.eye).normalize_or(Vec3::NEG_Z)
     }
@@ -129,15 +129,15 @@ impl Camera {
     }
 }
 
-/// Unit vector of an azimuth (degrees clockwise from north) and an elevation (degrees).
+/// Unit vector from an azimuth (degrees clockwise from north) and an elevation (degrees).
 fn direction(azimuth_deg: f32, elevation_deg: f32) -> Vec3 {
     let (sin_az, cos_az) = azimuth_deg.to_radians().sin_cos();
     let (sin_el, cos_el) = elevation_deg.to_radians().sin_cos();
     Vec3::new(sin_az * cos_el, sin_el, -cos_az * cos_el)
 }
 
-/// Distance of the near plane, metres. Reversed float depth keeps its relative precision at any distance, so the near plane
-/// may be very close; it only has to shrink with small models.
+/// Near plane distance, metres. Reversed floating-point depth keeps its relative precision at any distance, so the near plane
+/// can be very close; it only has to shrink for small models.
 fn near_plane(bounds: &Bounds) -> f32 {
     (1e-3 * bounds.diagonal()).clamp(1e-5, 0.05)
 }

@@ -1,28 +1,28 @@
-//! Errors of loading a scene: one line each, which names the file and the remedy.
+//! Errors of loading a scene. Each is one line that names the file and the remedy.
 
 use std::path::{Path, PathBuf};
 
 /// Why a scene cannot be loaded. The message is one line that names the file and the remedy.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
-    /// No such file.
+    /// The file does not exist.
     #[error("{}: no such file; check the path", shown(.0))]
     Missing(PathBuf),
-    /// A directory where a file is needed.
+    /// The path is a directory.
     #[error("{} is a directory; name a .toml, .obj, .gltf or .glb file in it", shown(.0))]
     Directory(PathBuf),
-    /// A pipe, a device, a socket.
+    /// The path is a pipe, a device or a socket.
     #[error("{} is not a regular file; save it to disk first", shown(.0))]
     NotAFile(PathBuf),
-    /// The system cannot read it.
+    /// The operating system cannot read the file.
     #[error("{}: cannot be read ({reason}); check its permissions", shown(path))]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// The message of the system.
+        /// The message of the operating system.
         reason: String,
     },
-    /// Larger than [`LoadOptions::max_file_bytes`](crate::scene::LoadOptions::max_file_bytes).
+    /// The file is larger than [`LoadOptions::max_file_bytes`](crate::scene::LoadOptions::max_file_bytes).
     #[error(
         "{} has {bytes} bytes, the limit is {limit}; split it or raise --max-file-mib",
         shown(path)
@@ -30,12 +30,13 @@ pub enum SceneError {
     TooLarge {
         /// The file.
         path: PathBuf,
-        /// Its size, bytes.
+        /// File size, bytes.
         bytes: u64,
         /// The limit, bytes.
         limit: u64,
     },
-    /// All files of the scene together are larger than [`LoadOptions::max_file_bytes`](crate::scene::LoadOptions::max_file_bytes).
+    /// The files of the scene together are larger than
+    /// [`LoadOptions::max_file_bytes`](crate::scene::LoadOptions::max_file_bytes).
     #[error(
         "{}: with this file the scene exceeds {limit} bytes; use fewer files or raise --max-file-mib",
         shown(path)
@@ -46,7 +47,8 @@ pub enum SceneError {
         /// The limit, bytes.
         limit: u64,
     },
-    /// More triangles than [`LoadOptions::max_triangles`](crate::scene::LoadOptions::max_triangles) or than 32-bit indices allow.
+    /// The scene has more triangles than [`LoadOptions::max_triangles`](crate::scene::LoadOptions::max_triangles) or 32-bit
+    /// indices allow.
     #[error(
         "{}: {triangles} triangles, the limit is {limit}; simplify it or raise --max-triangles",
         shown(path)
@@ -54,30 +56,30 @@ pub enum SceneError {
     TooMany {
         /// The file.
         path: PathBuf,
-        /// Triangles of the whole scene.
+        /// Number of triangles in the scene.
         triangles: usize,
         /// The limit.
         limit: usize,
     },
-    /// An unsupported file, or an unsupported feature of one.
+    /// The file, or a feature it uses, is not supported.
     #[error("{}: {what}", shown(path))]
     Unsupported {
         /// The file.
         path: PathBuf,
-        /// What is not supported, and the remedy.
+        /// What is unsupported, and the remedy.
         what: String,
     },
-    /// A malformed line of a model.
+    /// A line of a model is malformed.
     #[error("{}, line {line}: {what}", shown(path))]
     Malformed {
         /// The file.
         path: PathBuf,
-        /// Number of the line, from 1.
+        /// Line number, from 1.
         line: usize,
         /// What is wrong with it.
         what: String,
     },
-    /// Nothing to draw; `why` is empty or lists in brackets what was dropped.
+    /// There is nothing to draw; `why` is empty or lists in parentheses what was dropped.
     #[error("{} has no triangles{why}; export it with faces", shown(path))]
     NoTriangles {
         /// The file.
@@ -85,22 +87,22 @@ pub enum SceneError {
         /// What was dropped.
         why: String,
     },
-    /// An invalid key or value of a scene file.
+    /// A key or value of a scene file is invalid.
     #[error("{}: {what}", shown(path))]
     SceneFile {
         /// The file.
         path: PathBuf,
-        /// What is wrong, with the valid words.
+        /// What is wrong, with the valid values.
         what: String,
     },
 }
 
-/// A path for a message: file names may contain line breaks and control characters.
+/// A path formatted for a message: file names may contain line breaks and control characters.
 pub(crate) fn shown(path: &Path) -> String {
     printable(&path.display().to_string())
 }
 
-/// Text for one line of a terminal: control characters are escaped.
+/// Text for one line of a terminal, with control characters escaped.
 pub(crate) fn printable(text: &str) -> String {
     let letter = |c: char| {
         let escaped = c.is_control().then(|| c.escape_default());
@@ -110,7 +112,7 @@ pub(crate) fn printable(text: &str) -> String {
     text.chars().flat_map(letter).collect()
 }
 
-/// A message of another crate as one line.
+/// A message from another crate, on one line.
 pub(super) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

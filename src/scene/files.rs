@@ -1,4 +1,4 @@
-//! Sources of files: the disk, or the files that are compiled into the program.
+//! File sources: the disk, or files compiled into the program.
 
 use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
@@ -9,14 +9,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::error::SceneError;
 
-/// BLAKE3 of the content of a file.
+/// BLAKE3 hash of a file.
 pub(super) type Digest = [u8; 32];
 
 pub(super) fn digest(bytes: &[u8]) -> Digest {
     *blake3::hash(bytes).as_bytes()
 }
 
-/// A file that was read, and the hash of its content.
+/// A file that was read, with its hash.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct ReadFile {
     pub path: PathBuf,
@@ -24,7 +24,7 @@ pub(super) struct ReadFile {
 }
 
 impl ReadFile {
-    /// Whether its content is still the same.
+    /// Whether the file still has the same content.
     pub fn is_unchanged(&self) -> bool {
         std::fs::read(&self.path).is_ok_and(|bytes| digest(&bytes) == self.digest)
     }
@@ -36,17 +36,17 @@ pub(super) struct Files {
     source: Source,
     /// Files read since [`Files::start_record`].
     record: Option<RefCell<Vec<ReadFile>>>,
-    /// Bytes that may still be read: bounds the work for a scene that names its files many times.
+    /// Bytes that may still be read. Limits the work for a scene that names its files many times.
     left: Cell<u64>,
-    /// Folder tree in which the files of a model must lie; none for anywhere.
+    /// Folder that must contain the files of a model, at any depth; `None` for no restriction.
     confined_to: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Copy)]
 enum Source {
-    /// The file system; larger files are not read.
+    /// The file system, with a limit on file size.
     Disk { max_bytes: u64 },
-    /// Compiled-in files by name.
+    /// Embedded files by name.
     Embedded(&'static [(&'static str, &'static [u8])]),
 }
 
@@ -55,12 +55,12 @@ enum Source {
 pub(super) enum Lookup {
     Found(PathBuf),
     Missing(PathBuf),
-    /// It exists outside the folder tree of the model and may not be read.
+    /// The file exists outside the model's folder and may not be read.
     Outside(PathBuf),
 }
 
 impl Files {
-    /// The file system; reads at most `max_bytes` of one file and of all files together.
+    /// The file system. At most `max_bytes` are read, per file and in total.
     pub fn disk(max_bytes: u64) -> Self {
         Self {
             source: Source::Disk { max_bytes },
@@ -70,7 +70,7 @@ impl Files {
         }
     }
 
-    /// Compiled-in files by name.
+    /// Embedded files by name.
     pub fn embedded(files: &'static [(&'static str, &'static [u8])]) -> Self {
         Self {
             source: Source::Embedded(files),
@@ -80,7 +80,7 @@ impl Files {
         }
     }
 
-    /// Records the files that are read from now on.
+    /// Starts recording which files are read.
     pub fn start_record(&mut self) {
         self.record = Some(RefCell::default());
     }
@@ -93,7 +93,7 @@ impl Files {
             .unwrap_or_default()
     }
 
-    /// Confines [`Files::find`] to the folder tree of `model`.
+    /// Restricts [`Files::find`] to the folder of `model` and its subfolders.
     pub fn confine_to(&mut self, model: &Path) {
         let folder = model.parent().unwrap_or(Path::new(""));
         let folder = if folder.as_os_str().is_empty() {
@@ -104,8 +104,8 @@ impl Files {
         self.confined_to = folder.canonicalize().ok();
     }
 
-    /// The file that a name in a model refers to, in the folder of the model: by the name as written, with backslashes as
-    /// separators, or by its last component (for absolute paths of another machine).
+    /// Looks up a file named in a model, relative to the model's folder: first the name as written, then with backslashes as
+    /// separators, then its last component alone (for absolute paths from another machine).
     pub fn find(&self, folder: &Path, name: &str) -> Lookup {
         let forward: Cow<str> = if name.contains('\\') {
             name.replace('\\', "/").into()
@@ -125,9 +125,9 @@ impl Files {
         }
     }
 
-    /// One name for all spellings of a path, so that a hostile model cannot have the same file read once for each.
+    /// A canonical path, so that a malicious model cannot have the same file read once per spelling.
     fn canonical_name(&self, path: &Path) -> PathBuf {
-        // Drops doubled separators and single dots.
+        // Removes doubled separators and single dots.
         let plain: PathBuf = path.components().collect();
         let Source::Disk { .. } = self.source else {
             return plain;
@@ -138,7 +138,7 @@ impl Files {
         }
     }
 
-    /// Symbolic links are followed: a link out of the folder tree is outside.
+    /// Follows symbolic links: a link to a file outside the folder is outside.
     fn is_inside(&self, path: &Path) -> bool {
         let Some(root) = &self.confined_to else {
             return true;
@@ -149,10 +149,10 @@ impl Files {
         }
     }
 
-    /// The content of a file.
+    /// Reads a file.
     ///
     /// # Errors
-    /// A file that is missing, not regular, too large or unreadable.
+    /// When the file is missing, not regular, too large or unreadable.
     pub fn read(&self, path: &Path) -> Result<Vec<u8>, SceneError> {
         match self.source {
             Source::Disk { max_bytes } => {
@@ -178,7 +178,7 @@ impl Files {
         }
     }
 
-    /// BLAKE3 of a file's content, without keeping it in memory.
+    /// BLAKE3 hash of a file, without keeping the content in memory.
     ///
     /// # Errors
     /// As [`Files::read`].
@@ -189,18 +189,18 @@ impl Files {
         }
     }
 
-    /// The content of a file as text. Bytes that are not UTF-8 (names by old exporters) become replacement characters.
+    /// Reads a file as text. Bytes that are not valid UTF-8 (names from old exporters) become replacement characters.
     pub fn read_text(&self, path: &Path) -> Result<String, SceneError> {
         let bytes = self.read(path)?;
         if let Some(rest) = bytes.strip_prefix(b"\xEF\xBB\xBF") {
             return Ok(String::from_utf8_lossy(rest).into_owned());
         }
-        // Valid UTF-8 needs no copy: models are large.
+        // Valid UTF-8 is not copied, because models are large.
         Ok(String::from_utf8(bytes)
             .unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned()))
     }
 
-    /// Whether [`Files::read`] would find a file there, without reading it.
+    /// Whether [`Files::read`] would find a file, without reading it.
     pub fn probe(&self, path: &Path) -> Result<(), SceneError> {
         match std::fs::metadata(path) {
             Ok(meta) if meta.is_dir() => Err(SceneError::Directory(path.to_owned())),
@@ -220,14 +220,14 @@ impl Files {
     }
 }
 
-/// Opens a file of at most `limit` bytes; also gives its length, bytes.
+/// Opens a file of at most `limit` bytes; also returns its length, bytes.
 fn open_disk(path: &Path, limit: u64) -> Result<(std::fs::File, u64), SceneError> {
     let failed = |error: std::io::Error| unreadable(path, &error);
     let meta = std::fs::metadata(path).map_err(failed)?;
     if meta.is_dir() {
         return Err(SceneError::Directory(path.to_owned()));
     }
-    // A pipe or a device may never end.
+    // Reading a pipe or a device may never end.
     if !meta.is_file() {
         return Err(SceneError::NotAFile(path.to_owned()));
     }
@@ -261,7 +261,7 @@ fn read_disk(path: &Path, limit: u64) -> Result<Vec<u8>, SceneError> {
     bytes
         .try_reserve_exact(length as usize)
         .map_err(|error| failed(error.into()))?;
-    // The length above is wrong for files in /proc and for growing files.
+    // The length above is wrong for files in /proc and for files that are still growing.
     let read = file
         .take(limit.saturating_add(1))
         .read_to_end(&mut bytes)

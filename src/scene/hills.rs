@@ -1,13 +1,13 @@
-//! A generated test scene.
+//! A procedurally generated test scene.
 
 use glam::{Vec2, Vec3};
 
 use crate::scene::{Bounds, Material, Part, Scene};
 
-/// Edge of the ground, metres: large enough for several shadow cascades.
+/// Edge length of the terrain, metres: large enough for several shadow cascades.
 const EDGE: f32 = 400.0;
 
-/// A hilly square, 400 m wide, of about `triangles` triangles, with normals and texture coordinates: a test scene of any size.
+/// A hilly square terrain, 400 m wide, with about `triangles` triangles, normals and texture coordinates.
 pub fn hills(triangles: usize) -> Scene {
     let quads = ((triangles as f64 / 2.0).sqrt().round() as u32).max(1);
     let step = EDGE / quads as f32;
@@ -43,7 +43,7 @@ pub fn hills(triangles: usize) -> Scene {
     scene
 }
 
-/// Height of the ground, metres, and its slopes toward +x and +z.
+/// Height of the terrain, metres, and its slopes along +x and +z.
 fn height(at: Vec2) -> (f32, Vec2) {
     let (u, v) = (0.05 * at.x, 0.043 * at.y);
     let (p, q) = (0.31 * at.x, 0.27 * at.y);

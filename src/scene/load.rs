@@ -15,24 +15,24 @@ use crate::scene::scene_file::{
 };
 use crate::scene::{Scene, SceneError, cache, gltf, scene_file};
 
-/// Options and limits of [`load`].
+/// Options and limits for [`load`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadOptions {
-    /// Crease angle below which corners without a normal are smoothed, degrees 0..180. None: by smoothing groups, else flat.
-    /// The `smooth` of a mesh in a scene file overrides it.
+    /// Crease angle below which corners without a normal are smoothed, degrees, 0..180. `None`: by smoothing groups, or flat
+    /// without them. The `smooth` key of a mesh in a scene file overrides it.
     pub smooth_deg: Option<f32>,
-    /// Longest edge of a picture, texels; larger ones are not decoded. 16 384 by default.
+    /// Maximum edge length of an image, texels; larger images are not decoded. Default: 16 384.
     pub max_texture_edge: u32,
-    /// Limit on all decoded pictures together, bytes. 1 GiB by default.
+    /// Limit on the total size of decoded images, bytes. Default: 1 GiB.
     pub max_texture_bytes: u64,
-    /// Limit on each file and on all files of a scene together, bytes. 4 GiB by default.
+    /// Limit on the size of each file and on the total size of a scene's files, bytes. Default: 4 GiB.
     pub max_file_bytes: u64,
-    /// Limit on the triangles of a scene, instances included. 64 Mi by default.
+    /// Limit on the number of triangles in a scene, including instances. Default: 64 Mi.
     pub max_triangles: usize,
-    /// Whether a model may read libraries, pictures and buffers outside its folder tree. False by default, because a
-    /// downloaded model must not read other files.
+    /// Whether a model may read libraries, images and buffers outside its folder. Default: false, because a downloaded model
+    /// must not read other files.
     pub allow_outside: bool,
-    /// Folder of the cache of processed scenes, with which a large model loads quickly the second time. None by default.
+    /// Folder of the cache of processed scenes, which makes a large model load faster the second time. Default: none.
     pub cache: Option<PathBuf>,
 }
 
@@ -50,32 +50,32 @@ impl Default for LoadOptions {
     }
 }
 
-/// A scene and the options of its file.
+/// A loaded scene and the options of its file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loaded {
-    /// Its path, for messages.
+    /// Path, for messages.
     pub path: PathBuf,
     /// The scene.
     pub scene: Scene,
-    /// Option tables of the scene file: options by their command-line names without dashes, `("turbidity", "3")`. The last is
-    /// the unnamed `[camera]`. For a model: its first camera, if it has any.
+    /// Option tables of the scene file, with options as command-line names without dashes: `("turbidity", "3")`. The last is
+    /// the unnamed `[camera]`. For a model: its first camera, if any.
     pub options: Vec<NamedOptions>,
-    /// The named cameras, in the order of the file.
+    /// Named cameras, in file order.
     pub cameras: Vec<NamedCamera>,
-    /// The named moments, in the order of the file.
+    /// Named moments, in file order.
     pub moments: Vec<NamedMoment>,
 }
 
 /// Reads a scene file (`.toml`) or a model (`.obj`, `.gltf`, `.glb`).
 ///
 /// # Errors
-/// A scene that cannot be loaded. A missing material library or texture is a line in [`Scene::warnings`] instead.
+/// When the scene cannot be loaded. A missing material library or texture is only a warning in [`Scene::warnings`].
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     load_with_progress(Some(path), options, &|_, _| ())
 }
 
-/// As [`load`], with progress reports. Also loads a bundled scene by its name ([`BUNDLED`]); without a path, the first of
-/// them. It needs no device and may run on any thread.
+/// Same as [`load`], with progress reports. Also loads a bundled scene by name ([`BUNDLED`]); without a path, the first one. It
+/// needs no device and may run on any thread.
 ///
 /// # Errors
 /// As [`load`].
@@ -93,7 +93,7 @@ pub fn load_with_progress(
     load_bundled(name, options, progress)
 }
 
-/// Loads a large model from the cache if its entry is valid; else from its files, and writes the entry.
+/// Loads a large model from the cache if its entry is valid; otherwise from its files, and writes the entry.
 fn load_cached(
     mut files: Files,
     path: &Path,
@@ -123,7 +123,7 @@ fn load_cached(
     Ok(loaded)
 }
 
-/// Progress when the files are read and the layout is not computed yet.
+/// Progress after reading the files and before computing the layout.
 const READING: f32 = 0.9;
 
 /// Loads a scene file or a model from a source of files.
@@ -187,7 +187,7 @@ pub(super) fn append_model(
     match extension.as_deref() {
         Some("obj") => append_obj(builder, path, placement).map(|()| Vec::new()),
         Some("gltf" | "glb") => gltf::append_gltf(builder, path, placement),
-        // That a file is missing or a directory matters more than its extension.
+        // A missing file or a directory is reported before an unknown extension.
         _ => match builder.files.probe(path) {
             Err(error @ (SceneError::Missing(_) | SceneError::Directory(_))) => Err(error),
             _ => unsupported(

@@ -1,25 +1,25 @@
-//! Materials as the lecture's ρ_d, ρ_s and p, and the conversion from metallic-roughness.
+//! Materials with ρ_d, ρ_s and p of the lecture, and the conversion from metallic-roughness.
 
 use serde::{Deserialize, Serialize};
 
-/// Reflection of a surface: Lambertian plus a Phong lobe. All surfaces are two-sided.
+/// Reflectance of a surface: Lambertian plus a Phong lobe. All surfaces are two-sided.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Material {
-    /// Name in its file.
+    /// Name in the source file.
     pub name: String,
-    /// Diffuse reflectance ρ_d (MTL `Kd`), linear RGB, 0..1; multiplies `diffuse_texture` and the colours of vertices.
+    /// Diffuse reflectance ρ_d (MTL `Kd`), linear RGB, 0..1; multiplied by `diffuse_texture` and vertex colours.
     pub diffuse: [f32; 3],
-    /// Specular reflectance ρ_s (MTL `Ks`), linear RGB, 0..1; multiplies `specular_texture`.
+    /// Specular reflectance ρ_s (MTL `Ks`), linear RGB, 0..1; multiplied by `specular_texture`.
     pub specular: [f32; 3],
     /// Phong exponent p (MTL `Ns`), 1..100 000.
     pub shininess: f32,
-    /// Opacity (MTL `d`, or 1 − `Tr`), 0..1. Materials below 0.5 without `alpha_cutoff` are not drawn at all.
+    /// Opacity (MTL `d`, or 1 − `Tr`), 0..1. Materials below 0.5 without an `alpha_cutoff` are not drawn.
     pub dissolve: f32,
-    /// For cut-outs: there is a hole where `dissolve` x alpha of `diffuse_texture` x alpha of the vertices is less. 0..1.
+    /// For cut-outs, 0..1: fragments are discarded where `dissolve` x alpha of `diffuse_texture` x vertex alpha is lower.
     pub alpha_cutoff: Option<f32>,
-    /// Index of the texture of ρ_d in [`Scene::textures`](crate::scene::Scene::textures).
+    /// Index of the ρ_d texture in [`Scene::textures`](crate::scene::Scene::textures).
     pub diffuse_texture: Option<usize>,
-    /// Index of the texture of ρ_s in [`Scene::textures`](crate::scene::Scene::textures).
+    /// Index of the ρ_s texture in [`Scene::textures`](crate::scene::Scene::textures).
     pub specular_texture: Option<usize>,
     /// Index of the normal map in [`Scene::textures`](crate::scene::Scene::textures).
     pub normal_texture: Option<usize>,
@@ -27,7 +27,7 @@ pub struct Material {
     pub normal_scale: f32,
 }
 
-/// The material of a model without materials: Lambertian, reflectance 0.5.
+/// Default material of models without materials: Lambertian, reflectance 0.5.
 pub(super) const MTL_DEFAULT: Material = Material {
     name: String::new(),
     diffuse: [0.5; 3],
@@ -47,11 +47,11 @@ impl Default for Material {
     }
 }
 
-/// A material by its name and the bits of its values.
+/// A material as its name and the bit patterns of its values.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(super) struct MaterialKey {
     name: String,
-    /// ρ_d, ρ_s, p, opacity, cut-off (negative without one), factor of the normal map.
+    /// ρ_d, ρ_s, p, opacity, cut-off (negative if none), normal map factor.
     values: [u32; 10],
     textures: [Option<usize>; 3],
 }
@@ -59,7 +59,7 @@ pub(super) struct MaterialKey {
 impl Material {
     /// Equal for equal materials.
     pub(super) fn key(&self) -> MaterialKey {
-        // Without `..`: a new field does not compile until it is part of the key.
+        // Exhaustive, so that a new field does not compile until it is part of the key.
         let Self {
             name,
             diffuse: [r, g, b],
@@ -98,12 +98,12 @@ impl Material {
     }
 }
 
-/// A surface in the metallic-roughness model of glTF and of MTL's PBR keys.
+/// A surface in the metallic-roughness model of glTF and of the PBR extension of MTL.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct MetallicRoughness {
     /// Base colour, linear RGB, 0..1.
     pub base: [f32; 3],
-    /// 0 dielectric, 1 metal.
+    /// 0 for dielectrics, 1 for metals.
     pub metallic: f32,
     /// Perceptual roughness, 0..1.
     pub roughness: f32,
@@ -113,14 +113,14 @@ pub(super) struct MetallicRoughness {
     pub specular: [f32; 3],
 }
 
-/// ρ_d, ρ_s and p of a metallic-roughness surface.
+/// Converts a metallic-roughness surface to ρ_d, ρ_s and p.
 ///
-/// With F0 = ((ior − 1)/(ior + 1))² for a dielectric and the base colour for a metal, and gloss g = (1 − roughness)²:
+/// With F0 = ((ior − 1)/(ior + 1))² for dielectrics and the base colour for metals, and gloss g = (1 − roughness)²:
 ///
-/// - ρ_s = g F0: ρ_s reflects the sky sharply whatever p is, so a rough surface, which would blur the sky, keeps only the
-///   share g;
-/// - ρ_d = base (1 − metallic g): a rough metal scatters in its colour what it does not reflect specularly, and a dielectric
-///   keeps its base colour;
+/// - ρ_s = g F0: ρ_s reflects the sky sharply for any p, so a rough surface, which would blur the sky, keeps only the
+///   fraction g;
+/// - ρ_d = base (1 − metallic g): a rough metal scatters the light it does not reflect specularly, tinted by its base
+///   colour; a dielectric keeps its base colour;
 /// - p = 2/α² − 2 with α = roughness² (Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces": the
 ///   Phong lobe of the same width), 1..100 000.
 pub(super) fn phong_of(surface: &MetallicRoughness) -> ([f32; 3], [f32; 3], f32) {

@@ -1,7 +1,7 @@
-//! Models, materials, textures, cameras and scene files, without a device.
+//! Models, materials, textures, cameras and scene files; independent of the device.
 //!
 //! [`load`] reads a scene file or a model into a [`Scene`]: all meshes in world space, in one arena of vertices and indices,
-//! ready for upload. World space is right-handed, in metres, +Y up, +X east, −Z north.
+//! ready for upload. World space is right-handed, in metres, with +Y up, +X east and −Z north.
 
 mod bounds;
 mod builder;
@@ -40,48 +40,48 @@ pub use texture::{Encoding, Texture};
 
 use load::append_model;
 
-/// A scene: one arena of vertices, the parts that draw them, materials and textures.
+/// A scene: one arena of vertices, parts that draw ranges of it, materials and textures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// Vertex positions in world space, metres.
     pub positions: Vec<[f32; 3]>,
-    /// Unit normals in world space, one for each position.
+    /// Unit normals in world space, one per position.
     pub normals: Vec<[f32; 3]>,
-    /// Texture coordinates, one for each position; (0, 0) is the corner of the first texel of the first row.
+    /// Texture coordinates, one per position; (0, 0) is the corner of the first texel of the first row.
     pub texcoords: Vec<[f32; 2]>,
-    /// Linear RGBA factors on ρ_d and opacity, 0..65535 for 0..1: one for each position, or empty.
+    /// Linear RGBA factors on ρ_d and opacity, 0..65535 for 0..1. One per position, or empty.
     pub colours: Vec<[u16; 4]>,
-    /// For normal maps: unit tangent toward increasing u, then the sign of the bitangent (normal x tangent x sign points
-    /// toward the upper rows of the texture), −32767..32767 for −1..1: one for each position, or empty.
+    /// For normal maps: unit tangent toward increasing u, then the sign of the bitangent (normal x tangent x sign points toward
+    /// the upper rows of the texture), −32767..32767 for −1..1. One per position, or empty.
     pub tangents: Vec<[i16; 4]>,
-    /// Three for each triangle, counter-clockwise seen from the front; into `positions`.
+    /// Three per triangle, counter-clockwise seen from the front, indexing `positions`.
     pub indices: Vec<u32>,
-    /// Runs of triangles with one material; together they cover `indices` without gaps.
+    /// Runs of triangles with one material. Together they cover `indices` without gaps.
     pub parts: Vec<Part>,
-    /// Indexed by [`Part::material`].
+    /// Materials, indexed by [`Part::material`].
     pub materials: Vec<Material>,
-    /// Indexed by the textures of [`Material`].
+    /// Textures, indexed by the texture fields of [`Material`].
     pub textures: Vec<Texture>,
-    /// Around all parts, metres.
+    /// Bounds of all parts, metres.
     pub bounds: Bounds,
-    /// Warnings of the importers, one line each.
+    /// Import warnings, one line each.
     pub warnings: Vec<String>,
-    /// Draw layout, if it has been computed; it holds for the current order of `indices`.
+    /// Draw layout, if computed. It is valid for the current order of `indices`.
     pub layout: Option<Layout>,
 }
 
 /// A run of triangles of one mesh with one material.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Part {
-    /// Its start in [`Scene::indices`].
+    /// Offset in [`Scene::indices`].
     pub first_index: u32,
-    /// A multiple of three, not zero.
+    /// Number of indices: a multiple of three, not zero.
     pub index_count: u32,
-    /// Index of its material in [`Scene::materials`].
+    /// Index in [`Scene::materials`].
     pub material: u32,
     /// Whether its vertices have colours.
     pub has_colours: bool,
-    /// Around its triangles, metres.
+    /// Bounds of its triangles, metres.
     pub bounds: Bounds,
 }
 
@@ -105,7 +105,7 @@ impl Default for Scene {
 }
 
 impl Scene {
-    /// Pads colours and tangents to one for each vertex, unless they are empty.
+    /// Pads colours and tangents to one per vertex, unless they are empty.
     fn pad_attributes(&mut self) {
         let vertices = self.positions.len();
         if !self.colours.is_empty() {
@@ -123,8 +123,8 @@ impl Scene {
         self.layout = Some(layout);
     }
 
-    /// For each part whether it casts a shadow: all but a flat ground (or sea) that lies below the centre of all else and is
-    /// more than four times as wide. It would stretch the shadow map over kilometres without receivers.
+    /// For each part, whether it casts shadows. All parts do, except a flat ground (or sea) that lies below the centre of
+    /// everything else and is more than four times as wide: it would stretch the shadow map over kilometres without receivers.
     pub fn casting(&self) -> Vec<bool> {
         let flat = |part: &Part| {
             let extent = part.bounds.extent();
@@ -143,7 +143,7 @@ impl Scene {
         self.parts.iter().map(casts).collect()
     }
 
-    /// Bounds of all parts that cast a shadow, metres.
+    /// Bounds of all shadow casters, metres.
     pub fn casters(&self) -> Bounds {
         let parts = self.parts.iter().zip(self.casting());
         let casting = parts.filter(|(_, casts)| *casts);

@@ -1,10 +1,10 @@
-//! Progress of loading: a fraction and a stage.
+//! Progress of loading: a fraction and a stage name.
 
-/// Receives the fraction done, 0..=1 and never decreasing, and the name of the stage. It is called often, on the loading
-/// thread, so it should be quick: store a value that another thread reads.
+/// Receives the completed fraction, 0..=1 and never decreasing, and the name of the stage. It is called often, on the loading
+/// thread, so it should be fast: store the value for another thread to read.
 pub type Progress<'p> = &'p (dyn Fn(f32, &'static str) + Sync);
 
-/// Reports the progress of one part of the work as a range of the whole.
+/// Maps the progress of one part of the work to a range of the whole.
 #[derive(Clone, Copy)]
 pub(super) struct Reporter<'p> {
     report: Progress<'p>,
@@ -19,7 +19,7 @@ impl std::fmt::Debug for Reporter<'_> {
 }
 
 impl<'p> Reporter<'p> {
-    /// For the whole work.
+    /// Covers the whole work.
     pub fn new(report: Progress<'p>) -> Self {
         Self {
             report,
@@ -28,13 +28,13 @@ impl<'p> Reporter<'p> {
         }
     }
 
-    /// For the first `share` of the work, 0..=1.
+    /// Covers the first `share` of the work, 0..=1.
     pub fn up_to(self, share: f32) -> Self {
         let to = self.from + (self.to - self.from) * share;
         Self { to, ..self }
     }
 
-    /// For part `index` of `count` equal parts.
+    /// Covers part `index` of `count` equal parts.
     pub fn part(self, index: usize, count: usize) -> Self {
         let at = |i: usize| self.from + (self.to - self.from) * i as f32 / count.max(1) as f32;
         Self {
@@ -44,7 +44,7 @@ impl<'p> Reporter<'p> {
         }
     }
 
-    /// Reports that this share of the part, 0..=1, is done, and what comes next.
+    /// Reports that the fraction `share` of the part, 0..=1, is done, and which stage comes next.
     pub fn at(&self, share: f32, stage: &'static str) {
         (self.report)(self.from + (self.to - self.from) * share, stage);
     }

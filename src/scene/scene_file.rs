@@ -1,7 +1,7 @@
-//! Scene files (TOML): meshes with their placements, and tables of options by the names of the command line.
+//! Scene files (TOML): meshes with their placements, and tables of options named as on the command line.
 //!
-//! Options become pairs of text. What they mean, and in which table each may stand, is known to their one definition, which
-//! reads them later.
+//! Options are kept as pairs of text. The code that defines the options interprets them later and decides which of them each
+//! table may contain.
 
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,7 @@ const MESH_KEYS: &[&str] = &["file", "translate", "rotate", "scale", "up", "smoo
 /// Pairs of option name and value, as on the command line.
 type Pairs = Vec<(String, String)>;
 
-/// Options of a scene file under a name: that of a table, or one that the user chooses by.
+/// A named set of options of a scene file: the name is that of a table, or one the user selects by.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NamedOptions {
     /// The name.
@@ -28,12 +28,12 @@ pub struct NamedOptions {
     pub options: Vec<(String, String)>,
 }
 
-/// A camera that `--camera NAME` chooses.
+/// A camera selected by `--camera NAME`.
 pub type NamedCamera = NamedOptions;
-/// Sun, sky and exposure that `--moment NAME` chooses.
+/// Sun, sky and exposure selected by `--moment NAME`.
 pub type NamedMoment = NamedOptions;
 
-/// What a scene file sets besides its meshes: see [`Loaded`](crate::scene::Loaded).
+/// Settings of a scene file other than its meshes; see [`Loaded`](crate::scene::Loaded).
 #[derive(Debug, Default)]
 pub(super) struct SceneFileOptions {
     pub options: Vec<NamedOptions>,
@@ -43,7 +43,7 @@ pub(super) struct SceneFileOptions {
 
 /// Adds the meshes of a scene file to the scene; returns its options.
 ///
-/// Without a nameless `[camera]` the first named one stands in for it.
+/// Without an unnamed `[camera]`, the first named one is used in its place.
 pub(super) fn append_scene(
     builder: &mut Builder,
     path: &Path,
@@ -87,7 +87,7 @@ fn parse(text: &str) -> Result<Table, String> {
     Ok(table)
 }
 
-/// The table of the camera that is used when none is asked for.
+/// The option table of the default camera.
 pub(super) fn camera_table(options: Pairs) -> NamedOptions {
     NamedOptions {
         name: "camera".to_owned(),
@@ -155,7 +155,7 @@ fn mesh(entry: &Value, defaults: &LoadOptions) -> Result<Mesh, String> {
     })
 }
 
-/// First `up`, then `scale`, then `rotate` about x, then y, then z, then `translate`.
+/// Applies `up`, then `scale`, then `rotate` about x, y and z in this order, then `translate`.
 fn transform(table: &Table) -> Result<Affine3A, String> {
     let translate = vector(table, "translate")?.unwrap_or(Vec3::ZERO);
     let rotate = vector(table, "rotate")?.unwrap_or(Vec3::ZERO) * 1f32.to_radians();
@@ -176,7 +176,7 @@ fn scale(table: &Table) -> Result<Vec3, String> {
         Some(Value::Array(_)) => vector(table, "scale")?.unwrap_or(Vec3::ONE),
         Some(value) => Vec3::splat(number(value).ok_or("scale must be a number or three")?),
     };
-    // Beyond these a model is a point or leaves the number range.
+    // Outside this range a model is a point or overflows.
     let sound = scale.abs().min_element() >= 1e-6 && scale.abs().max_element() <= 1e6;
     sound
         .then_some(scale)
@@ -205,7 +205,7 @@ fn vector(table: &Table, key: &str) -> Result<Option<Vec3>, String> {
     }
 }
 
-/// The tables of options, in the order of their names.
+/// The option tables, in order of their names.
 fn options(table: &Table) -> Result<Vec<NamedOptions>, String> {
     let others = table
         .iter()
@@ -229,7 +229,7 @@ fn table_pairs(table: &Table) -> Result<Pairs, String> {
         .collect()
 }
 
-/// A value as one would type it after `--key=`.
+/// A value as it would be typed after `--key=`.
 fn text(key: &str, value: &Value) -> Result<String, String> {
     match value {
         Value::String(text) => Ok(text.clone()),
@@ -257,7 +257,7 @@ fn bad_value(key: &str) -> String {
     format!("{key} must be a number, a text or a list of numbers")
 }
 
-/// The moments: options with a name.
+/// The moments: named sets of options.
 fn moments(table: &Table) -> Result<Vec<NamedMoment>, String> {
     let list = match table.get("moment") {
         None => return Ok(Vec::new()),
@@ -284,7 +284,7 @@ fn split_name(pairs: Pairs) -> (Option<String>, Pairs) {
     (name.into_iter().next().map(|(_, name)| name), options)
 }
 
-/// The pairs of the nameless camera, if there is one, and the named cameras.
+/// The options of the unnamed camera, if there is one, and the named cameras.
 fn cameras(table: &Table) -> Result<(Option<Pairs>, Vec<NamedCamera>), String> {
     let entries: Vec<&Value> = match table.get("camera") {
         None => Vec::new(),

@@ -34,7 +34,7 @@ fn transforms_apply_in_the_documented_order() {
         (Vec3::from(turned) - Vec3::new(0.0, 0.0, 4.0)).length() < 1e-6,
         "{turned:?}"
     );
-    // About x first: z goes to −y, then about z: −y goes to x.
+    // First about x: z becomes −y. Then about z: −y becomes x.
     let twice = positions("rotate = [90, 0, 90]")[1];
     assert!(
         (Vec3::from(twice) - Vec3::new(2.0, 0.0, 0.0)).length() < 1e-6,

@@ -19,20 +19,20 @@ use crate::gpu::error::{During, GpuError, Result};
 use crate::gpu::memory::image::{Sampler, create_samplers};
 use crate::gpu::pipeline::cache::{CacheState, Key, PipelineCache};
 
-/// How to open a [`Context`].
+/// Options for opening a [`Context`].
 #[derive(Debug, Clone, Default)]
 pub struct ContextOptions {
-    /// Index or part of the name of the device; by default the best one.
+    /// Index of the device or part of its name. Default: the best device.
     pub device: Option<String>,
-    /// Enable the validation layer with synchronization validation.
+    /// Enables the validation layer, including synchronization validation.
     pub validate: bool,
-    /// Optional features not to use although the device has them.
+    /// Optional features to leave unused even if the device supports them.
     pub without: Vec<Optional>,
-    /// Folder that keeps the driver's pipeline cache between runs; none: it is not kept.
+    /// Folder where the driver's pipeline cache is kept between runs. Without it the cache is not stored.
     pub cache_folder: Option<PathBuf>,
-    /// For tests: a call that is to fail, for instance `submit@3=device-lost`.
+    /// For tests: a call that should fail, for instance `submit@3=device-lost`.
     pub fault: Option<String>,
-    /// For tests: upload through staging buffers although the device shares its memory with the CPU.
+    /// For tests: always upload through staging buffers, even if the CPU can map device memory.
     pub stage_uploads: bool,
 }
 
@@ -51,7 +51,7 @@ impl Drop for DeviceGuard {
     }
 }
 
-/// Functions of the extensions that are enabled.
+/// Function tables of the enabled extensions.
 pub(in crate::gpu) struct Extensions {
     pub(in crate::gpu) push_descriptor: Option<khr::push_descriptor::Device>,
     #[cfg(feature = "window")]
@@ -80,7 +80,7 @@ impl Extensions {
 
 /// A device with its queue, allocator, samplers and caches. Every resource keeps it alive.
 pub struct Context {
-    // `Drop` destroys what has no destructor of its own; then the fields are dropped in this order.
+    // `Drop` destroys the members without a destructor; the remaining fields are then dropped in this order.
     allocator: ManuallyDrop<Arc<Mutex<Allocator>>>,
     samplers: [vk::Sampler; Sampler::COUNT],
     cache: PipelineCache,
@@ -109,7 +109,7 @@ impl Context {
     /// Opens a device.
     ///
     /// # Errors
-    /// Without a loader, a device, or one that matches `device`; when the device lacks a feature (named) or the driver fails.
+    /// When there is no Vulkan loader or no (matching) device, the device lacks a required feature, or the driver fails.
     pub fn new(options: &ContextOptions) -> Result<Arc<Self>> {
         Ok(Self::open(options, None)?.0)
     }
@@ -199,13 +199,13 @@ impl Context {
         &self.instance.raw
     }
 
-    /// The allocator, for a renderer that manages its own buffers. It must be dropped before the context.
+    /// The allocator, shared with renderers that manage their own buffers. It must be dropped before the context.
     #[cfg(feature = "window")]
     pub(in crate::gpu) fn shared_allocator(&self) -> Arc<Mutex<Allocator>> {
         Arc::clone(&self.allocator)
     }
 
-    /// Name, kind and features of the device.
+    /// Name, type and features of the device.
     pub fn summary(&self) -> &DeviceSummary {
         &self.summary
     }
@@ -219,32 +219,32 @@ impl Context {
         self.cache.raw
     }
 
-    /// Outcome of reading the file of the pipeline cache.
+    /// Outcome of loading the pipeline cache from disk.
     pub fn cache_state(&self) -> CacheState {
         self.cache.state
     }
 
-    /// The steps of opening the device, with their times.
+    /// Steps of opening the device, with their times.
     pub fn opening(&self) -> &[Step] {
         &self.startup.steps
     }
 
-    /// Every pipeline created so far, with its time; several may have been created at once.
+    /// All pipelines created so far, with their creation times; several may have been created in parallel.
     pub fn pipelines(&self) -> Vec<Step> {
         self.startup.pipelines()
     }
 
-    /// Errors and warnings of the validation layer so far, each once with its identifier and the number of its reports; empty
-    /// when validation is off.
+    /// Errors and warnings from the validation layer so far, each once with its identifier and count; empty if validation is
+    /// off.
     pub fn validation_messages(&self) -> Vec<String> {
         let log = self.messenger.as_ref().map(Messenger::log);
         log.map(Log::read).unwrap_or_default()
     }
 
-    /// Fails when the validation layer has reported an error or a warning.
+    /// Fails if the validation layer has reported an error or a warning.
     ///
     /// # Errors
-    /// Lists the messages, each once.
+    /// Lists each message once.
     pub fn check_validation(&self) -> Result<()> {
         let messages = self.validation_messages();
         if messages.is_empty() {
@@ -254,10 +254,10 @@ impl Context {
         }
     }
 
-    /// The first of `formats` that can be sampled and rendered to; blending and filtering are not required.
+    /// The first of `formats` that can be sampled and rendered to. Blending and filtering are not required.
     ///
     /// # Errors
-    /// When none can; the formats are named.
+    /// When none is supported; the message lists the formats.
     pub fn supported_format(&self, formats: &[vk::Format]) -> Result<vk::Format> {
         let needed =
             vk::FormatFeatureFlags::COLOR_ATTACHMENT | vk::FormatFeatureFlags::SAMPLED_IMAGE;
@@ -280,10 +280,10 @@ impl Context {
             })
     }
 
-    /// For tests: plans another fault in place of [`ContextOptions::fault`], or none; calls are counted from here on.
+    /// For tests: replaces the planned fault ([`ContextOptions::fault`]), or removes it. Call counts restart at zero.
     ///
     /// # Errors
-    /// A text that names no fault.
+    /// When the text does not describe a fault.
     pub fn plan_fault(&self, fault: Option<&str>) -> Result<()> {
         self.faults.plan(fault)
     }
@@ -293,13 +293,13 @@ impl Context {
     }
 
     pub(in crate::gpu) fn allocator(&self) -> MutexGuard<'_, Allocator> {
-        // After a panic inside the allocator its use may leak, no more.
+        // After a panic inside the allocator, further use can at worst leak memory.
         self.allocator
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Memory for a buffer or an image, which takes ownership.
+    /// Allocates memory for a buffer or an image, which takes ownership.
     pub(in crate::gpu) fn allocate(&self, desc: &AllocationCreateDesc<'_>) -> Result<Allocation> {
         let refused = |reason: String| GpuError::Memory {
             what: desc.name.into(),
@@ -321,7 +321,7 @@ impl Context {
         self.samplers[sampler as usize]
     }
 
-    /// Gives a handle a name that validation messages and captures show.
+    /// Sets the debug name of a handle, shown in validation messages and captures.
     pub(in crate::gpu) fn name<H: vk::Handle>(&self, handle: H, name: &str) {
         let Some(debug) = &self.extensions.debug else {
             return;
@@ -332,7 +332,7 @@ impl Context {
         let info = vk::DebugUtilsObjectNameInfoEXT::default()
             .object_handle(handle)
             .object_name(&name);
-        // SAFETY: the handle belongs to this device. A name that cannot be set does not matter.
+        // SAFETY: the handle belongs to this device. Failing to set a name is harmless.
         let _ = unsafe { debug.set_debug_utils_object_name(&info) };
     }
 
@@ -367,7 +367,7 @@ impl Drop for Context {
     }
 }
 
-/// The instance, the messenger when it is validated, and the surface of the window if there is one.
+/// The instance, the debug messenger if validation is on, and the surface if there is a window.
 fn open_instance(
     entry: &ash::Entry,
     validate: bool,

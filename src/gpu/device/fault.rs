@@ -1,6 +1,6 @@
-//! Fault injection: a test names a Vulkan call, and that call returns an error as a broken driver would.
+//! Fault injection: a test names a Vulkan call, and that call returns an error as if the driver had failed.
 //!
-//! Without a planned fault a call costs one load of a flag. Tests and users run the same build.
+//! Without a planned fault, a call costs one atomic load. Tests and users run the same build.
 
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -10,7 +10,7 @@ use ash::vk;
 
 use crate::gpu::error::GpuError;
 
-/// The calls that can be made to fail.
+/// Calls that can be made to fail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::gpu) enum Call {
     /// Allocating device memory, of buffers and images.
@@ -31,7 +31,7 @@ pub(in crate::gpu) enum Call {
     Wait,
     /// Querying the capabilities of the window's surface.
     Surface,
-    /// Acquiring an image of the window.
+    /// Acquiring a swapchain image.
     Acquire,
     /// Presenting to the window.
     Present,
@@ -63,7 +63,7 @@ const ERRORS: [(&str, vk::Result); 6] = [
     ("out-of-date", vk::Result::ERROR_OUT_OF_DATE_KHR),
 ];
 
-/// One fault: a call, its occurrence, from 1, and the error that it returns. As text: `submit@3=device-lost`.
+/// One fault: a call, its occurrence (from 1) and the error it returns. Written as `submit@3=device-lost`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Fault {
     call: Call,
@@ -88,7 +88,7 @@ impl FromStr for Fault {
     }
 }
 
-/// The planned fault of a device, if there is one.
+/// The planned fault of a device, if any.
 #[derive(Debug, Default)]
 pub(in crate::gpu) struct Faults {
     is_planned: AtomicBool,
@@ -97,14 +97,14 @@ pub(in crate::gpu) struct Faults {
 }
 
 impl Faults {
-    /// From a text such as `memory@12=out-of-device-memory`.
+    /// Parses a description such as `memory@12=out-of-device-memory`.
     pub fn new(text: Option<&str>) -> Result<Self, GpuError> {
         let faults = Self::default();
         faults.plan(text)?;
         Ok(faults)
     }
 
-    /// Replaces the planned fault; calls are counted from here on.
+    /// Replaces the planned fault and restarts the call count.
     pub fn plan(&self, text: Option<&str>) -> Result<(), GpuError> {
         let fault: Option<Fault> = text.map(str::parse).transpose()?;
         *self.planned.lock().unwrap_or_else(PoisonError::into_inner) = fault;
@@ -113,7 +113,7 @@ impl Faults {
         Ok(())
     }
 
-    /// The error that a call is to return instead of being made.
+    /// The error to return instead of making the call, if one is due.
     #[inline]
     pub fn at(&self, call: Call) -> Result<(), vk::Result> {
         if !self.is_planned.load(Ordering::Relaxed) {
@@ -124,7 +124,7 @@ impl Faults {
     }
 
     fn strike(&self, fault: &Fault, call: Call) -> Result<(), vk::Result> {
-        // A lost device stays lost for every call; memory or a surface may be available again the next time.
+        // A lost device fails every later call; memory and surface errors may be transient.
         let is_lost = fault.error == vk::Result::ERROR_DEVICE_LOST;
         let strikes = if call == fault.call {
             let occurrence = self.seen.fetch_add(1, Ordering::Relaxed) + 1;

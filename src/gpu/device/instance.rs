@@ -13,7 +13,7 @@ pub(in crate::gpu) struct InstanceGuard {
 }
 
 impl InstanceGuard {
-    /// `windows` lists the extensions that the window system needs.
+    /// Creates an instance. `windows` lists the extensions required by the window system.
     pub(in crate::gpu) fn new(
         entry: &ash::Entry,
         validate: bool,

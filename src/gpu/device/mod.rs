@@ -1,4 +1,4 @@
-//! The device: instance, choice, surface of a window, validation, injected faults.
+//! The device: instance, device selection, window surface, validation, fault injection.
 
 pub(in crate::gpu) mod context;
 pub(in crate::gpu) mod fault;

@@ -1,4 +1,4 @@
-//! Stands in for `surface` in a build without the feature `window`: no value of these types exists.
+//! Replaces `surface` in builds without the `window` feature. Its types are uninhabited.
 
 use std::convert::Infallible;
 use std::ffi::c_char;

@@ -1,4 +1,4 @@
-//! Enumeration and choice of devices.
+//! Device enumeration and selection.
 
 use std::ffi::{CStr, c_char};
 
@@ -7,40 +7,40 @@ use ash::vk;
 use crate::gpu::device::surface::RawSurface;
 use crate::gpu::error::{During, GpuError, Result};
 
-/// Description of a device and whether the renderer can use it.
+/// Description of a device, including whether the renderer can use it.
 #[derive(Debug, Clone)]
 pub struct DeviceSummary {
     /// Index in the driver's order, for `--device`.
     pub index: usize,
-    /// Name.
+    /// Device name.
     pub name: String,
     /// `discrete`, `integrated`, `virtual`, `software` or `other`.
     pub kind: &'static str,
-    /// Vulkan version, `1.3.230`.
+    /// Vulkan version, for instance `1.3.230`.
     pub api: String,
-    /// Name and version text of the driver.
+    /// Name and version of the driver.
     pub driver: String,
-    /// Required features, extensions and formats that are missing; empty for a usable device.
+    /// Missing required features, extensions and formats; empty for a usable device.
     pub missing: Vec<String>,
-    /// Optional features, with whether they are used.
+    /// Optional features, and whether each is used.
     pub optional: Vec<(Optional, bool)>,
-    /// Largest edge of a 2D image, pixels.
+    /// Maximum size of a 2D image, pixels.
     pub max_image_edge: u32,
 }
 
-/// Features that are used where present and not required.
+/// Features that are used if available but not required.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Optional {
-    /// The extension VK_KHR_push_descriptor; descriptor pools otherwise.
+    /// Extension VK_KHR_push_descriptor. Fallback: descriptor pools.
     PushDescriptor,
-    /// The feature geometryShader; compute shaders write the cubes of sky and irradiance otherwise.
+    /// Feature geometryShader. Fallback: compute shaders write the sky and irradiance cubes.
     GeometryShader,
-    /// The feature pipelineStatisticsQuery; the benchmark has no such columns otherwise.
+    /// Feature pipelineStatisticsQuery. Without it the benchmark omits those columns.
     PipelineStatistics,
 }
 
 impl Optional {
-    /// All of them.
+    /// All optional features.
     pub const ALL: [Self; 3] = [
         Self::PushDescriptor,
         Self::GeometryShader,
@@ -58,12 +58,12 @@ impl Optional {
 }
 
 impl DeviceSummary {
-    /// Whether an optional feature is used.
+    /// Whether this optional feature is used.
     pub fn has(&self, optional: Optional) -> bool {
         self.optional.contains(&(optional, true))
     }
 
-    /// Whether it runs on the CPU.
+    /// Whether the device is a software rasterizer on the CPU.
     pub fn is_software(&self) -> bool {
         self.kind == SOFTWARE
     }
@@ -104,7 +104,7 @@ fn kind_and_rank(kind: vk::PhysicalDeviceType) -> (&'static str, u32) {
     }
 }
 
-/// The candidates in the driver's order. For a window, presentation to it is required. Features in `without` count as absent.
+/// The candidates in driver order. With a window, presentation support is required. Features in `without` count as absent.
 pub(in crate::gpu) fn candidates(
     instance: &ash::Instance,
     surface: Option<&RawSurface>,
@@ -230,7 +230,7 @@ fn missing_features(instance: &ash::Instance, handle: vk::PhysicalDevice) -> Vec
     // SAFETY: `handle` comes from this instance; the chain lives on this stack.
     unsafe { instance.get_physical_device_features2(handle, &mut features) };
     let core = features.features;
-    // Cubes are written by geometry shaders, or else by compute shaders.
+    // Cube maps are written by geometry shaders, or by compute shaders as a fallback.
     let cubes = core.geometry_shader | core.shader_storage_image_write_without_format;
     [
         (
@@ -249,8 +249,8 @@ fn missing_features(instance: &ash::Instance, handle: vk::PhysicalDevice) -> Vec
     .collect()
 }
 
-/// The device that the user named (index or part of the name); by default the best usable one: discrete before integrated
-/// before software.
+/// The device the user asked for (index or part of the name), otherwise the best usable one: discrete, then integrated, then
+/// software.
 pub(in crate::gpu) fn choose(
     candidates: Vec<Candidate>,
     wanted: Option<&str>,
@@ -293,7 +293,7 @@ fn best(candidates: &[Candidate]) -> Result<usize> {
         .filter(|(_, c)| c.summary.missing.is_empty());
     match able.min_by_key(|(_, c)| c.rank) {
         Some((index, _)) => Ok(index),
-        // None is usable: the error names what the first one lacks.
+        // None is usable: the error lists what the first one lacks.
         None => usable(&candidates[0].summary).map(|()| 0),
     }
 }
@@ -321,7 +321,7 @@ fn named(summaries: &[&DeviceSummary], wanted: &str) -> Result<usize> {
         })
 }
 
-/// Every device of this machine, including unusable ones. Features in `without` count as absent.
+/// All devices of this machine, including unusable ones. Features in `without` count as absent.
 ///
 /// # Errors
 /// When there is no Vulkan loader or the driver fails.

@@ -1,18 +1,18 @@
-//! Times of the steps from the start to the first frame.
+//! Times of the startup steps up to the first frame.
 
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// Time of one step, milliseconds of the wall clock.
+/// Wall time of one step, milliseconds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
-    /// What the step does.
+    /// Name of the step.
     pub name: String,
-    /// Its time.
+    /// Wall time, milliseconds.
     pub ms: f64,
 }
 
-/// Steps of opening a device, and the pipelines created since.
+/// Steps of opening a device, and pipelines created since then.
 #[derive(Debug)]
 pub(in crate::gpu) struct Startup {
     last: Instant,
@@ -29,7 +29,7 @@ impl Startup {
         }
     }
 
-    /// Adds the step that ends now.
+    /// Records the step that ends now.
     pub(in crate::gpu) fn done(&mut self, name: &str) {
         let now = Instant::now();
         self.steps.push(Step {
@@ -39,13 +39,13 @@ impl Startup {
         self.last = now;
     }
 
-    /// Adds a pipeline whose creation began at `start`.
+    /// Records a pipeline whose creation began at `start`.
     pub(in crate::gpu) fn pipeline(&self, name: &str, start: Instant) {
         let step = Step {
             name: name.to_owned(),
             ms: start.elapsed().as_secs_f64() * 1e3,
         };
-        // A panic while pushing leaves a usable list.
+        // The list stays valid if a push panics.
         let mut pipelines = self
             .pipelines
             .lock()

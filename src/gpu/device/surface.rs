@@ -10,7 +10,7 @@ use crate::gpu::device::context::Context;
 use crate::gpu::device::fault::Call;
 use crate::gpu::error::{During, GpuError, Result};
 
-/// A window of any library.
+/// A window from any windowing library.
 pub trait WindowHandles: HasDisplayHandle + HasWindowHandle {}
 
 impl<W: HasDisplayHandle + HasWindowHandle> WindowHandles for W {}
@@ -22,7 +22,7 @@ fn refused(error: &raw_window_handle::HandleError) -> GpuError {
     GpuError::Window(error.to_string())
 }
 
-/// Instance extensions for presentation to this window.
+/// Instance extensions required to present to this window.
 pub(in crate::gpu) fn instance_extensions(window: &Window) -> Result<&'static [*const c_char]> {
     let display = window.display_handle().map_err(|e| refused(&e))?;
     ash_window::enumerate_required_extensions(display.as_raw())
@@ -62,7 +62,7 @@ impl RawSurface {
         })
     }
 
-    /// Whether a queue family can present to it.
+    /// Whether a queue family can present to this surface.
     pub(in crate::gpu) fn is_supported(
         &self,
         device: vk::PhysicalDevice,
@@ -103,7 +103,7 @@ impl Surface {
         self.surface.handle
     }
 
-    /// Creates it again after it was lost; its swapchain must have been destroyed.
+    /// Recreates a lost surface. Its swapchain must have been destroyed.
     pub(in crate::gpu) fn recreate(&mut self) -> Result<()> {
         let window = self.surface.window.clone();
         self.surface = RawSurface::new(self.context.entry(), self.context.instance(), window)?;
@@ -122,7 +122,7 @@ impl Surface {
         }
     }
 
-    /// The first sRGB format with 8 bits a channel.
+    /// The first sRGB format with 8 bits per channel.
     pub(in crate::gpu) fn format(&self) -> Result<vk::SurfaceFormatKHR> {
         // SAFETY: device and surface belong to one instance.
         let formats = unsafe {

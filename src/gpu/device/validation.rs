@@ -1,4 +1,4 @@
-//! The validation layer: which extension switches synchronization validation on, and the messages that it reports.
+//! The validation layer: enabling synchronization validation, and collecting the reported messages.
 
 use std::ffi::{CStr, c_void};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,20 +9,20 @@ use ash::{ext, vk};
 use crate::gpu::device::instance::has_instance_extension;
 use crate::gpu::error::{During, GpuError, Result};
 
-/// Name of the layer.
+/// Name of the validation layer.
 pub(in crate::gpu) const LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
-/// The extension by which a layer takes the request for synchronization validation.
+/// The extension through which a layer enables synchronization validation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::gpu) enum SyncRequest {
-    /// `VK_EXT_layer_settings`, of layers since 2024.
+    /// `VK_EXT_layer_settings`, supported by layers since 2024.
     LayerSettings,
-    /// `VK_EXT_validation_features`, which the former replaces.
+    /// `VK_EXT_validation_features`, its predecessor.
     ValidationFeatures,
 }
 
 impl SyncRequest {
-    /// What the installed layer understands; neither is possible.
+    /// The extension supported by the installed layer, if any.
     ///
     /// # Errors
     /// When the layer is not installed.
@@ -50,35 +50,35 @@ impl SyncRequest {
     }
 }
 
-/// The layer setting `validate_sync`, which points to `on`.
+/// The layer setting `validate_sync` with the value `on`.
 pub(in crate::gpu) fn sync_setting(on: &vk::Bool32) -> vk::LayerSettingEXT<'_> {
     let mut setting = vk::LayerSettingEXT::default()
         .layer_name(LAYER)
         .setting_name(c"validate_sync")
         .ty(vk::LayerSettingTypeEXT::BOOL32);
-    // The setter counts bytes, the specification values.
+    // The setter counts bytes; the specification counts values.
     setting.value_count = 1;
     setting.p_values = std::ptr::from_ref(on).cast();
     setting
 }
 
-/// A message of the layer.
+/// A message from the layer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Message {
     text: String,
     count: usize,
 }
 
-/// Messages so far. Those of one identifier that differ in handles alone are one message, counted.
+/// Messages so far. Messages that differ only in handles are merged and counted.
 #[derive(Default)]
 pub(in crate::gpu) struct Log {
     messages: Mutex<Vec<Message>>,
-    /// Whether all of them were handed to the program.
+    /// Whether the program has read all of them.
     is_read: AtomicBool,
 }
 
 impl Log {
-    /// Each message once, its identifier first, with the number of its reports if there were several.
+    /// Each message once, starting with its identifier, with its count if it was reported more than once.
     pub(in crate::gpu) fn read(&self) -> Vec<String> {
         self.is_read.store(true, Ordering::Relaxed);
         let line = |m: &Message| match m.count {
@@ -89,7 +89,7 @@ impl Log {
     }
 
     fn lock(&self) -> MutexGuard<'_, Vec<Message>> {
-        // A panic between the changes of a vector of whole messages leaves a usable vector.
+        // Messages are pushed whole, so the list stays valid after a panic.
         self.messages.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -108,7 +108,7 @@ impl Log {
     }
 }
 
-/// A message in one line, the identifier first: older layers state it in the text, newer ones beside it.
+/// A message on one line, starting with its identifier: older layers include it in the text, newer ones report it separately.
 fn one_line(identifier: &str, text: &str) -> String {
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
     if text.contains(identifier) {
@@ -127,11 +127,11 @@ fn without_handles(text: &str) -> String {
     })
 }
 
-/// The callback of the layer, registered as long as this lives.
+/// The debug callback, registered for as long as this value lives.
 ///
-/// Errors and warnings of the type *validation* count: both name a use that the specification does not define or that has no
-/// effect. Performance advice and information are not asked for: they depend on layer and driver, and say nothing about
-/// correctness. Messages of the loader and of drivers (type *general*) are no verdict on this program either.
+/// Only errors and warnings of type *validation* count: they report undefined or ineffective use of the API. Performance and
+/// information messages are not requested, because they depend on layer and driver and say nothing about correctness. Messages
+/// of type *general* come from the loader and the drivers, not from this program.
 pub(in crate::gpu) struct Messenger {
     loader: ext::debug_utils::Instance,
     handle: vk::DebugUtilsMessengerEXT,
@@ -169,7 +169,7 @@ impl Drop for Messenger {
     fn drop(&mut self) {
         // SAFETY: created by this loader, destroyed once.
         unsafe { self.loader.destroy_debug_utils_messenger(self.handle, None) };
-        // Another error ended the program first, or the destruction of the device was at fault.
+        // Messages are still unread if another error ended the program first, or if destroying the device caused them.
         if !self.log.is_read.load(Ordering::Relaxed) {
             for message in self.log.read() {
                 eprintln!("validation: {message}");
@@ -178,15 +178,15 @@ impl Drop for Messenger {
     }
 }
 
-/// A string of the layer; empty for none.
+/// A string passed by the layer; empty if null.
 ///
 /// # Safety
-/// The pointer is null or leads to a terminated string that outlives `'a`.
+/// The pointer must be null or point to a NUL-terminated string that outlives `'a`.
 unsafe fn text<'a>(pointer: *const std::ffi::c_char) -> std::borrow::Cow<'a, str> {
     if pointer.is_null() {
         return "".into();
     }
-    // SAFETY: as asked of the caller.
+    // SAFETY: guaranteed by the caller.
     unsafe { CStr::from_ptr(pointer) }.to_string_lossy()
 }
 
@@ -226,8 +226,8 @@ mod tests {
         recorder.begin().expect("begun");
         let region = [vk::BufferCopy::default().size(64)];
         for _ in 0..2 {
-            // SAFETY: both buffers hold the region and live until `finish`. The order of the copies is undefined on purpose;
-            // they write the same bytes.
+            // SAFETY: both buffers hold the region and live until `finish`. The copies are deliberately unordered (a hazard
+            // that the layer must report); they write the same bytes.
             unsafe {
                 let raw = context.raw();
                 raw.cmd_copy_buffer(recorder.command, source.raw(), target.raw(), &region);

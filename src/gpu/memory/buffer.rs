@@ -11,16 +11,16 @@ use crate::gpu::device::fault::Call;
 use crate::gpu::error::{During, Result};
 use crate::gpu::record::access::BufferAccess;
 
-/// Purpose of a buffer.
+/// Usage of a buffer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BufferKind {
-    /// Vertex data on the device.
+    /// Vertex data in device memory.
     Vertex,
-    /// Indices on the device.
+    /// Index data in device memory.
     Index,
-    /// A storage buffer on the device.
+    /// Storage buffer in device memory.
     Storage,
-    /// Written by the CPU, copied to the device.
+    /// Written by the CPU, source of copies to the device.
     Staging,
     /// Written by the device, read by the CPU.
     ReadBack,
@@ -47,7 +47,7 @@ impl BufferKind {
         }
     }
 
-    /// How a buffer of this kind is read after a copy to it.
+    /// How a buffer of this kind is accessed after a copy into it.
     pub(in crate::gpu) const fn read_access(self) -> Option<BufferAccess> {
         match self {
             Self::Vertex => Some(BufferAccess::Vertex),
@@ -120,7 +120,7 @@ impl Buffer {
         self.size
     }
 
-    /// The bytes of a buffer that the CPU reads; empty for other kinds.
+    /// Contents of a buffer that the CPU reads; empty for other kinds.
     pub fn bytes(&self) -> &[u8] {
         let slice = self
             .allocation
@@ -130,7 +130,7 @@ impl Buffer {
         &slice[..slice.len().min(self.size as usize)]
     }
 
-    /// The bytes of a buffer that the CPU writes; empty for other kinds.
+    /// Contents of a buffer that the CPU writes; empty for other kinds.
     pub fn bytes_mut(&mut self) -> &mut [u8] {
         let size = self.size as usize;
         let slice = self
@@ -142,7 +142,7 @@ impl Buffer {
         &mut slice[..size]
     }
 
-    /// The bytes, where the memory is mapped and coherent.
+    /// Contents, if the memory is mapped and coherent.
     pub(in crate::gpu) fn coherent_bytes_mut(&mut self) -> Option<&mut [u8]> {
         let wanted = vk::MemoryPropertyFlags::HOST_COHERENT;
         let properties = self.allocation.as_ref()?.memory_properties();
@@ -160,7 +160,7 @@ impl Drop for Buffer {
         // SAFETY: recorders wait for their work before they release resources.
         unsafe { self.context.raw().destroy_buffer(self.raw, None) };
         if let Some(allocation) = self.allocation.take() {
-            // Freeing fails only for a foreign allocation.
+            // Freeing fails only for memory from another allocator.
             let _ = self.context.allocator().free(allocation);
         }
     }

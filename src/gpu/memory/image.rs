@@ -24,7 +24,7 @@ pub enum ImageKind {
 /// Description of an [`Image`].
 #[derive(Debug, Clone, Copy)]
 pub struct ImageDesc<'a> {
-    /// Name in messages and captures: the quantity held.
+    /// Name shown in messages and captures: the quantity stored.
     pub name: &'a str,
     /// Texel format.
     pub format: vk::Format,
@@ -34,12 +34,12 @@ pub struct ImageDesc<'a> {
     pub kind: ImageKind,
     /// Mip levels, at least one.
     pub levels: u32,
-    /// Whether compute shaders may write it.
+    /// Whether compute shaders may write to it.
     pub is_stored: bool,
 }
 
 impl<'a> ImageDesc<'a> {
-    /// A flat image with one level.
+    /// A 2D image with one mip level.
     pub fn flat(name: &'a str, format: vk::Format, size: [u32; 2]) -> Self {
         Self {
             name,
@@ -51,7 +51,7 @@ impl<'a> ImageDesc<'a> {
         }
     }
 
-    /// A cube with one level and faces of `edge` texels.
+    /// A cube map with one mip level and `edge` x `edge` faces.
     pub fn cube(name: &'a str, format: vk::Format, edge: u32) -> Self {
         Self {
             name,
@@ -59,12 +59,12 @@ impl<'a> ImageDesc<'a> {
             size: [edge, edge],
             kind: ImageKind::Cube,
             levels: 1,
-            // On devices without geometry shaders.
+            // Devices without geometry shaders write cubes from compute shaders.
             is_stored: true,
         }
     }
 
-    /// The same for compute shaders to write.
+    /// Same, writable by compute shaders.
     pub fn stored(self) -> Self {
         Self {
             is_stored: true,
@@ -72,7 +72,7 @@ impl<'a> ImageDesc<'a> {
         }
     }
 
-    /// The same with all mip levels, down to one texel.
+    /// Same, with a full mip chain down to one texel.
     pub fn mipmapped(self) -> Self {
         let edge = self.size[0].max(self.size[1]).max(1);
         Self {
@@ -91,11 +91,12 @@ impl<'a> ImageDesc<'a> {
 
 /// An image, its memory and views, freed on drop.
 ///
-/// It tracks its last [`ImageAccess`], from which the next barrier is derived, so one thread at a time may record it.
+/// The image tracks its last [`ImageAccess`], from which the next barrier is derived, so only one thread at a time may record
+/// commands that use it.
 pub struct Image {
     context: Arc<Context>,
     raw: vk::Image,
-    /// An image of a swapchain, which destroys it.
+    /// Whether the image belongs to a swapchain, which destroys it.
     is_borrowed: bool,
     allocation: Option<Allocation>,
     sampled_view: vk::ImageView,
@@ -105,7 +106,7 @@ pub struct Image {
     layers: u32,
     levels: u32,
     last_access: Cell<ImageAccess>,
-    /// Whether the barrier of `last_access` was recorded ahead of the access.
+    /// Whether the barrier to `last_access` was recorded ahead of that access.
     is_prepared: Cell<bool>,
     name: String,
 }
@@ -135,7 +136,7 @@ fn usage(desc: &ImageDesc<'_>) -> vk::ImageUsageFlags {
 }
 
 impl Image {
-    /// Creates an image with undefined content.
+    /// Creates an image with undefined contents.
     ///
     /// # Errors
     /// When it is larger than the device supports or device memory is exhausted.
@@ -197,7 +198,7 @@ impl Image {
         Ok(image)
     }
 
-    /// Wraps an image of a swapchain, which outlives it.
+    /// Wraps a swapchain image. The swapchain must outlive it.
     #[cfg(feature = "window")]
     pub(in crate::gpu) fn of_swapchain(
         context: &Arc<Context>,
@@ -277,7 +278,7 @@ impl Image {
         self.levels
     }
 
-    /// The quantity held, as named at creation.
+    /// Name given at creation: the quantity stored.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -312,7 +313,7 @@ impl Image {
         }
     }
 
-    /// Tracks the next access and returns its barrier, unless [`Image::prepare`] returned it already.
+    /// Tracks the next access and returns its barrier, unless [`Image::prepare`] already returned it.
     pub(in crate::gpu) fn next(
         &self,
         next: ImageAccess,
@@ -324,7 +325,7 @@ impl Image {
         self.barrier(last, next, self.whole())
     }
 
-    /// Returns the barrier of the next access ahead of that access.
+    /// Returns the barrier for the next access ahead of that access.
     pub(in crate::gpu) fn prepare(
         &self,
         next: ImageAccess,
@@ -334,7 +335,7 @@ impl Image {
         barrier
     }
 
-    /// The barrier of one mip level. The caller ends with the same access for all levels and reports it by
+    /// The barrier of one mip level. The caller must leave all levels in the same access and report it with
     /// [`Image::set_last_access`].
     pub(in crate::gpu) fn level_barrier(
         &self,
@@ -350,7 +351,7 @@ impl Image {
         self.barrier(from, to, range)
     }
 
-    /// Tracks the access that a sequence of level barriers ended with.
+    /// Sets the access that a sequence of level barriers ended with.
     pub(in crate::gpu) fn set_last_access(&self, last: ImageAccess) {
         self.last_access.set(last);
     }
@@ -398,20 +399,20 @@ impl Drop for Image {
             }
         }
         if let Some(allocation) = self.allocation.take() {
-            // Freeing fails only for a foreign allocation.
+            // Freeing fails only for memory from another allocator.
             let _ = self.context.allocator().free(allocation);
         }
     }
 }
 
-/// How an image is sampled.
+/// Filtering and addressing mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Sampler {
-    /// Nearest texel, clamped.
+    /// Nearest texel, clamped to the edge.
     Nearest,
-    /// Bilinear (seamless between cube faces), trilinear between mip levels, clamped.
+    /// Bilinear (seamless across cube faces), trilinear between mip levels, clamped to the edge.
     Linear,
-    /// Trilinear, repeating, for surface textures.
+    /// Trilinear, repeating; for surface textures.
     Repeat,
 }
 

@@ -1,4 +1,4 @@
-//! Mip levels by repeated halving.
+//! Mip generation by repeated halving.
 
 use ash::vk;
 
@@ -8,7 +8,7 @@ use crate::gpu::record::recorder::Recorder;
 use crate::gpu::record::work::{Traffic, texel_bytes, texels};
 
 impl Recorder {
-    /// Fills the mip levels of an image from the first: each texel is the mean of four.
+    /// Generates the mip chain of an image from its first level: each texel is the mean of four.
     pub fn mipmap(&mut self, name: &'static str, image: &Image) {
         self.label(name);
         let mark = self.begin_timing(name);
@@ -35,7 +35,7 @@ impl Recorder {
         self.isolate(&mark);
     }
 
-    /// Halves level `level - 1` (a copy source) into `level` (a copy target).
+    /// Downsamples level `level - 1` (copy source) into `level` (copy target).
     fn blit(&self, image: &Image, level: u32) {
         let layers = |mip_level| vk::ImageSubresourceLayers {
             aspect_mask: image.aspect(),
@@ -68,7 +68,7 @@ impl Recorder {
     }
 }
 
-/// Every level but the last is read, every level but the first is written.
+/// All levels but the last are read, all but the first are written.
 fn mip_traffic(image: &Image) -> Traffic {
     let bytes = |level: u32| {
         let [width, height] = image.size().map(|edge| u64::from((edge >> level).max(1)));

@@ -1,4 +1,4 @@
-//! Images, buffers and copies.
+//! Images, buffers, uploads and read-back.
 
 pub(in crate::gpu) mod buffer;
 pub(in crate::gpu) mod image;

@@ -1,4 +1,4 @@
-//! Copies of images to the CPU.
+//! Read-back of images to the CPU.
 
 use ash::vk;
 
@@ -8,7 +8,7 @@ use crate::gpu::memory::image::Image;
 use crate::gpu::record::access::{BufferAccess, ImageAccess};
 use crate::gpu::record::recorder::Recorder;
 
-/// Texels of one image (mip level 0): layer after layer, row after row.
+/// Texels of an image (mip level 0), layer by layer and row by row.
 #[derive(Debug, Clone)]
 pub struct Pixels {
     /// Width and height, texels.
@@ -17,18 +17,18 @@ pub struct Pixels {
     pub layers: u32,
     /// Channels of the format.
     pub channels: usize,
-    /// The bytes as the format packs them.
+    /// The texels as packed by the format.
     pub bytes: Vec<u8>,
     format: vk::Format,
 }
 
-/// Channels and bytes per channel.
+/// Number of channels and bytes per channel.
 fn shape(format: vk::Format) -> (usize, usize) {
     match format {
         vk::Format::R8_UNORM => (1, 1),
         vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB => (4, 1),
         vk::Format::R16_SFLOAT | vk::Format::R16_UINT => (1, 2),
-        // Packed words: the lower half, then the upper.
+        // Packed words: lower half first, then upper half.
         vk::Format::R32_UINT => (2, 2),
         vk::Format::R32G32_UINT => (4, 2),
         vk::Format::R32G32B32A32_UINT => (8, 2),
@@ -40,7 +40,7 @@ fn shape(format: vk::Format) -> (usize, usize) {
     }
 }
 
-/// One texel that is copied to a slot of a read-back buffer.
+/// One texel copied into a slot of a read-back buffer.
 #[derive(Debug, Clone, Copy)]
 pub struct Texel {
     slot: usize,
@@ -48,10 +48,10 @@ pub struct Texel {
 }
 
 impl Texel {
-    /// Bytes of a slot: those of the widest format.
+    /// Bytes per slot: the size of the widest format.
     pub const SLOT_BYTES: usize = 16;
 
-    /// Its channels once the copy is done; missing ones as in [`Pixels::rgba`].
+    /// The channels, valid after the copy; missing ones as in [`Pixels::rgba`].
     pub fn read(&self, buffer: &Buffer) -> [f32; 4] {
         let (channels, width) = shape(self.format);
         let start = self.slot * Self::SLOT_BYTES;
@@ -60,7 +60,7 @@ impl Texel {
     }
 }
 
-/// Records the copy of one texel of a flat image to a slot of a read-back buffer.
+/// Records a copy of one texel of a 2D image into a slot of a read-back buffer.
 ///
 /// # Panics
 /// When the pixel is outside the image.
@@ -94,7 +94,7 @@ pub fn copy_texel(
     Texel { slot, format }
 }
 
-/// Records the copy of a region of all layers; the CPU sees it when the work is done.
+/// Records a copy of a region of all layers. The CPU can read it once the work is done.
 fn copy(recorder: &Recorder, image: &Image, target: &Buffer, region: vk::BufferImageCopy) {
     recorder.transition([(image, ImageAccess::CopySource)].into_iter());
     let region = [region.image_subresource(vk::ImageSubresourceLayers {
@@ -116,7 +116,7 @@ fn copy(recorder: &Recorder, image: &Image, target: &Buffer, region: vk::BufferI
     recorder.buffer_barrier(BufferAccess::CopyTarget, BufferAccess::HostRead);
 }
 
-/// Copies an image to the CPU: begins, submits and waits, so the recorder must not be recording.
+/// Copies an image to the CPU. Begins, submits and waits, so the recorder must not be recording.
 ///
 /// # Errors
 /// When device memory is exhausted or the device is lost.
@@ -145,13 +145,13 @@ pub fn read_back(recorder: &mut Recorder, image: &Image) -> Result<Pixels> {
 }
 
 impl Pixels {
-    /// All channels as floats, in the order of `bytes`: integers as their value, normalised formats in 0..1 or −1..1 (sRGB
-    /// stays encoded).
+    /// All channels as floats, in the order of `bytes`: integer formats as their value, normalised formats in 0..1 or −1..1
+    /// (sRGB values stay encoded).
     pub fn floats(&self) -> Vec<f32> {
         floats(self.format, &self.bytes)
     }
 
-    /// The first four channels of each texel; missing ones are 0, a missing fourth is 1.
+    /// The first four channels of each texel. Missing channels are 0, a missing alpha is 1.
     pub fn rgba(&self) -> Vec<[f32; 4]> {
         self.floats()
             .chunks_exact(self.channels)
@@ -160,7 +160,7 @@ impl Pixels {
     }
 }
 
-/// The first four channels; missing ones are 0, a missing fourth is 1.
+/// The first four channels. Missing channels are 0, a missing alpha is 1.
 fn four(channels: &[f32]) -> [f32; 4] {
     let mut texel = [0.0, 0.0, 0.0, 1.0];
     for (to, from) in texel.iter_mut().zip(channels) {

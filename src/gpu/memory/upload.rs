@@ -8,11 +8,12 @@ use crate::gpu::memory::image::{Image, ImageDesc};
 use crate::gpu::record::access::{BufferAccess, ImageAccess};
 use crate::gpu::record::recorder::Recorder;
 
-/// Offsets of copies into images are multiples of this: of any texel, and of 4 (VUID-vkCmdCopyBufferToImage-dstImage-07978).
+/// Alignment of copy offsets into staging buffers, bytes: a multiple of every texel size and of 4
+/// (VUID-vkCmdCopyBufferToImage-dstImage-07978).
 const COPY_ALIGNMENT: usize = 16;
 
-/// Makes a device buffer with content. Where it has to be copied, the copy runs when the recorder is finished; commands that
-/// are recorded after this read the content.
+/// Creates a device buffer with the given contents. If a staging copy is needed, it runs when the recorder is finished;
+/// commands recorded later see the contents.
 ///
 /// # Errors
 /// When device memory is exhausted.
@@ -26,7 +27,7 @@ pub fn upload_buffer(
     if !recorder.context.stage_uploads
         && let Some(mapped) = target.coherent_bytes_mut()
     {
-        // No work uses the new buffer yet, and a submission makes earlier writes of the CPU visible to the device.
+        // The buffer is not in use yet, and a submission makes earlier host writes visible to the device.
         mapped[..bytes.len()].copy_from_slice(bytes);
         return Ok(target);
     }
@@ -46,7 +47,7 @@ pub fn upload_buffer(
     Ok(target)
 }
 
-/// Makes a texture from its mip levels (largest first, tightly packed). The copy runs when the recorder is finished.
+/// Creates a texture from its mip levels (largest first, tightly packed). The copy runs when the recorder is finished.
 ///
 /// # Errors
 /// When device memory is exhausted or the texture is too large for the device.

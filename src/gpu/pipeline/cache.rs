@@ -1,7 +1,7 @@
-//! The driver's pipeline cache, kept in a file between runs.
+//! The driver's pipeline cache, stored in a file between runs.
 //!
-//! The file is a hint, never trusted: data of another device or driver, or with a wrong hash, are discarded. Drivers are
-//! known to crash on damaged data.
+//! The file is untrusted: data from another device or driver, or with a wrong hash, is discarded. Drivers are known to crash on
+//! corrupt data.
 
 use std::fs;
 use std::io::Write as _;
@@ -11,16 +11,16 @@ use ash::vk;
 
 use crate::gpu::error::{During, Result};
 
-/// First bytes of a file; the number is the version of its layout.
+/// Magic number of the file; the digits are the format version.
 const MAGIC: &[u8; 8] = b"SKYLPC02";
 /// Magic, vendor, device, driver, UUID, length, hash.
 const HEADER: usize = 8 + 4 + 4 + 4 + vk::UUID_SIZE + 8 + blake3::OUT_LEN;
-/// Bytes of the header that Vulkan puts before the data of `VK_PIPELINE_CACHE_HEADER_VERSION_ONE`.
+/// Size of the header that Vulkan puts before the data (`VK_PIPELINE_CACHE_HEADER_VERSION_ONE`), bytes.
 const VULKAN_HEADER: usize = 16 + vk::UUID_SIZE;
-/// Larger files are not read.
+/// Larger files are ignored.
 const MAX_BYTES: u64 = 256 << 20;
 
-/// The device and driver to which the data of a cache belong.
+/// The device and driver that a cache belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::gpu) struct Key {
     vendor: u32,
@@ -49,7 +49,7 @@ impl Key {
         format!("pipelines-{:08x}-{:08x}.bin", self.vendor, self.device)
     }
 
-    /// Whether the header that Vulkan puts before the data names them too.
+    /// Whether the Vulkan header of the data names the same device and driver.
     fn fits(&self, data: &[u8]) -> bool {
         let Some(header) = data.get(..VULKAN_HEADER) else {
             return false;
@@ -61,7 +61,7 @@ impl Key {
     }
 }
 
-/// The file that holds the data of a cache.
+/// Encodes the cache data as a file.
 fn encode(key: &Key, data: &[u8]) -> Vec<u8> {
     let mut file = MAGIC.to_vec();
     file.extend(key.bytes());
@@ -72,7 +72,7 @@ fn encode(key: &Key, data: &[u8]) -> Vec<u8> {
     file
 }
 
-/// The data of a file that was written for this device and driver and is undamaged.
+/// The cache data in a file, if it is intact and was written for this device and driver.
 fn decode<'f>(key: &Key, file: &'f [u8]) -> Option<&'f [u8]> {
     let (header, data) = file.split_at_checked(HEADER)?;
     let (described, stored) = header.split_at(HEADER - blake3::OUT_LEN);
@@ -94,7 +94,7 @@ fn read(path: &Path) -> Option<Vec<u8>> {
     (about.is_file() && about.len() <= MAX_BYTES).then(|| fs::read(path).ok())?
 }
 
-/// Writes a temporary file beside the target and renames it: a crash leaves the old file whole.
+/// Writes a temporary file next to the target and renames it, so a crash leaves the old file intact.
 fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(folder)?;
@@ -106,20 +106,20 @@ fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Outcome of reading the file.
+/// Outcome of loading the cache file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CacheState {
     /// No folder was given.
     Off,
-    /// There was no file.
+    /// The file did not exist.
     New,
-    /// It was read: bytes of the driver's data.
+    /// The file was loaded; holds the size of the driver's data, bytes.
     Read(usize),
-    /// It was damaged, or of another device or driver, and will be replaced.
+    /// The file was corrupt or from another device or driver, and will be replaced.
     Refused,
 }
 
-/// The cache of a device.
+/// The pipeline cache of a device.
 pub(in crate::gpu) struct PipelineCache {
     pub(in crate::gpu) raw: vk::PipelineCache,
     pub(in crate::gpu) state: CacheState,
@@ -129,7 +129,7 @@ pub(in crate::gpu) struct PipelineCache {
 }
 
 impl PipelineCache {
-    /// Creates the cache from the file in a folder, if there is one.
+    /// Creates the cache from the file in `folder`, if it exists.
     pub(in crate::gpu) fn new(
         device: &ash::Device,
         key: Key,
@@ -158,22 +158,22 @@ impl PipelineCache {
         })
     }
 
-    /// Writes the file if the cache has something new, and destroys the cache.
+    /// Writes the file if the cache has new data, and destroys the cache.
     ///
     /// # Safety
-    /// The device must be alive, and no thread may make pipelines.
+    /// The device must be alive, and no thread may be creating pipelines.
     pub(in crate::gpu) unsafe fn save_and_destroy(&self, device: &ash::Device) {
         if let Some(path) = &self.path {
-            // SAFETY: as asked of the caller.
+            // SAFETY: guaranteed by the caller.
             let data = unsafe { device.get_pipeline_cache_data(self.raw) };
-            // Without the file the next start is slower, which is no reason to fail.
+            // A missing file only makes the next start slower, so errors are ignored.
             if let Ok(data) = data
                 && data != self.loaded
             {
                 let _ = write(path, &encode(&self.key, &data));
             }
         }
-        // SAFETY: as asked of the caller.
+        // SAFETY: guaranteed by the caller.
         unsafe { device.destroy_pipeline_cache(self.raw, None) };
     }
 }
@@ -191,7 +191,7 @@ mod tests {
         }
     }
 
-    /// Data as a driver gives them.
+    /// Cache data in the layout a driver returns.
     fn data(key: &Key) -> Vec<u8> {
         let numbers = [VULKAN_HEADER as u32, 1, key.vendor, key.device];
         let header = numbers.iter().flat_map(|n| n.to_ne_bytes());
@@ -233,7 +233,7 @@ mod tests {
         ];
         for other in others {
             assert_eq!(decode(&other, &file), None, "{other:?}");
-            // A file that claims to be of this device but holds the data of another.
+            // A file whose header names this device but whose data is from another.
             assert!(other.driver != 3 || decode(&key(), &encode(&key(), &data(&other))).is_none());
         }
     }

@@ -1,4 +1,4 @@
-//! Shaders compiled again while the program runs, for those who write them.
+//! Hot reload of shaders during development.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -11,30 +11,31 @@ use crate::gpu::error::{GpuError, Result};
 use crate::gpu::pipeline::shader::{Shader, compiled};
 use crate::gpu::shader_build::{compile, declarations};
 
-/// Environment variable with the folder of the sources; by default that of the checkout that was built.
+/// Environment variable for the shader source folder. Default: the checkout of the build.
 const FOLDER: &str = "SKYLIGHT_SHADERS";
 
-/// Stages that were reloaded, by name.
+/// Reloaded stages by name.
 #[derive(Default)]
 pub(in crate::gpu) struct Reloaded(Mutex<HashMap<&'static str, Arc<[u32]>>>);
 
 impl Reloaded {
-    /// The words of a stage, if it was reloaded.
+    /// The reloaded SPIR-V words of a stage, if any.
     pub(in crate::gpu) fn words(&self, shader: &Shader) -> Option<Arc<[u32]>> {
         self.stages().get(shader.name).cloned()
     }
 
     fn stages(&self) -> std::sync::MutexGuard<'_, HashMap<&'static str, Arc<[u32]>>> {
-        // A panic while the map is replaced leaves a usable map.
+        // The map is replaced as a whole, so it stays valid after a panic.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Context {
-    /// Compiles every stage from its source, for pipelines created from now on. Returns the number of changed stages.
+    /// Recompiles every stage from source, for pipelines created from now on. Returns the number of changed stages.
     ///
     /// # Errors
-    /// The messages of the compiler, or the stages that declare other inputs than at build time. Nothing is changed then.
+    /// The compiler's messages, or the stages whose interface differs from the one at build time. Nothing is changed in that
+    /// case.
     pub fn reload_shaders(&self) -> Result<usize> {
         let checkout = || Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders_glsl");
         let folder = std::env::var_os(FOLDER).map_or_else(checkout, PathBuf::from);

@@ -4,17 +4,17 @@ use bytemuck::Pod;
 
 use crate::gpu::pipeline::shader::{Field, Shader, text_equals};
 
-/// A host struct whose bytes a shader block (`layout(scalar)`) reads.
+/// A host struct whose bytes are read by a shader block (`layout(scalar)`).
 ///
-/// Implemented by the macro [`gpu_struct!`](crate::gpu_struct), which lists the members with their offsets.
+/// Implemented by [`gpu_struct!`](crate::gpu_struct), which lists the members with their offsets.
 pub trait GpuStruct: Pod {
-    /// Members in order.
+    /// Members in declaration order.
     const FIELDS: &'static [Field];
 }
 
-/// Defines a `#[repr(C)]` struct of plain numbers and vectors that a block of shaders reads, and compares the two at compile
-/// time: `struct NAME: BLOCK of STAGE, ...`. `BLOCK` is the name of a uniform block, or `push`; the stages are those of
-/// [`shaders`](crate::gpu::shaders) that declare it.
+/// Defines a `#[repr(C)]` struct of plain numbers and vectors that mirrors a shader block, and compares the two at compile
+/// time. Syntax: `struct NAME: BLOCK of STAGE, ...`, where `BLOCK` is the name of a uniform block or `push`, and the stages are
+/// those of [`shaders`](crate::gpu::shaders) that declare it.
 ///
 /// Reordered members do not compile:
 /// ```compile_fail
@@ -36,7 +36,7 @@ macro_rules! gpu_struct {
         $(#[$meta])*
         #[repr(C)]
         #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-        // The members are documented in the shader's block of the same names.
+        // The members are documented in the shader block, under the same names.
         #[allow(missing_docs)]
         $vis struct $name { $($(#[$field_meta])* $vis $field: $ty),* }
 
@@ -59,7 +59,7 @@ macro_rules! gpu_struct {
 /// Compares a host struct with a block of a stage, at compile time.
 ///
 /// # Panics
-/// With the name of the first member that differs in name, offset or size.
+/// With the name of the first member whose name, offset or size differs.
 pub const fn assert_layout(host: &[Field], block: &str, stage: &Shader) {
     let Some(members) = stage.block(block) else {
         panic!("the stage declares no block of this name");
@@ -69,7 +69,7 @@ pub const fn assert_layout(host: &[Field], block: &str, stage: &Shader) {
     }
 }
 
-/// Name of the first member in which a host struct and a shader block differ.
+/// Name of the first member that differs between a host struct and a shader block.
 const fn first_difference(host: &[Field], block: &[Field]) -> Option<&'static str> {
     let mut i = 0;
     while i < host.len() && i < block.len() {
@@ -88,10 +88,10 @@ const fn first_difference(host: &[Field], block: &[Field]) -> Option<&'static st
     }
 }
 
-/// Compares a host struct with the members a shader block declares.
+/// Compares a host struct with the members of a shader block.
 ///
 /// # Errors
-/// The first difference: name, offset or size of a member, or their number.
+/// Describes the first difference: name, offset or size of a member, or the number of members.
 pub(in crate::gpu) fn check_layout(host: &[Field], block: &[Field]) -> Result<(), String> {
     for (h, s) in host.iter().zip(block) {
         if h != s {

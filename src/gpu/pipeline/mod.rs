@@ -1,4 +1,4 @@
-//! Graphics and compute pipelines; their layouts are derived from the declarations of the stages.
+//! Graphics and compute pipelines. Their layouts are derived from the interfaces of the shader stages.
 
 pub(in crate::gpu) mod cache;
 #[cfg(feature = "hot-reload")]
@@ -22,15 +22,15 @@ use crate::gpu::pipeline::shader::{Binding, Constants, Field, Modules, Shader, S
 pub enum Depth {
     /// No depth attachment.
     Off,
-    /// Passes where a surface was drawn (depth is not 0), writes nothing. For full-screen triangles, whose depth is 0.
+    /// Passes where a surface was drawn (depth is not 0); no depth writes. For full-screen triangles, whose depth is 0.
     Surface(vk::Format),
-    /// Passes where no surface was drawn (depth is 0), writes nothing. For full-screen triangles.
+    /// Passes where no surface was drawn (depth is 0); no depth writes. For full-screen triangles.
     Background(vk::Format),
-    /// Passes nearer (greater) fragments and writes them.
+    /// Passes nearer (greater) fragments and writes their depth.
     Write {
         /// Format of the attachment.
         format: vk::Format,
-        /// Slope-scaled bias away from the viewer, in units of the largest depth slope.
+        /// Slope-scaled depth bias away from the viewer, as a factor on the maximum depth slope.
         slope_bias: f32,
     },
 }
@@ -54,28 +54,28 @@ impl Depth {
 /// Description of a [`Pipeline`].
 #[derive(Debug, Clone, Copy)]
 pub struct PipelineDesc<'a> {
-    /// Name in messages and captures.
+    /// Name shown in messages and captures.
     pub name: &'a str,
-    /// Vertex stage, with or without geometry and fragment stages; or a compute stage alone.
+    /// A vertex stage with optional geometry and fragment stages, or a single compute stage.
     pub stages: &'a [&'static Shader],
-    /// One tightly packed vertex stream for each location.
+    /// Vertex streams, one tightly packed stream per location.
     pub vertex: &'a [vk::Format],
     /// Formats of the colour attachments.
     pub colors: &'a [vk::Format],
     /// Depth test.
     pub depth: Depth,
-    /// Values of specialization constants by name, as their 32 bits.
+    /// Values of specialization constants by name, as raw 32-bit words.
     pub constants: &'a [(&'a str, u32)],
 }
 
-/// A binding and the stages that see it.
+/// A binding and the stages that use it.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::gpu) struct Slot {
     pub(in crate::gpu) binding: Binding,
     stages: vk::ShaderStageFlags,
 }
 
-/// A pipeline, its layout and its declarations.
+/// A pipeline with its layout and interface.
 pub struct Pipeline {
     context: Arc<Context>,
     raw: vk::Pipeline,
@@ -87,12 +87,12 @@ pub struct Pipeline {
     pub(in crate::gpu) depth: Option<vk::Format>,
     pub(in crate::gpu) streams: usize,
     pub(in crate::gpu) writes_depth: bool,
-    /// Invocations of a work group, of a compute pipeline.
+    /// Work group size of a compute pipeline.
     pub(in crate::gpu) local_size: Option<[u32; 3]>,
     name: String,
 }
 
-/// Bytes of a push block.
+/// Size of a push constant block, bytes.
 fn block_size(fields: &[Field]) -> u32 {
     fields.iter().map(|f| f.offset + f.size).max().unwrap_or(0)
 }
@@ -143,14 +143,14 @@ fn merge_push(stages: &[&'static Shader]) -> Option<(&'static [Field], vk::Shade
 }
 
 impl Pipeline {
-    /// Compiles a pipeline.
+    /// Creates a pipeline.
     ///
     /// # Errors
     /// When the driver cannot create it.
     ///
     /// # Panics
-    /// When the stages contradict each other, no stage declares a constant, or a fragment shader does not write exactly the colour
-    /// attachments: defects of this program.
+    /// When the interfaces of the stages conflict, a constant is not declared by any stage, or the outputs of the fragment
+    /// shader do not match the colour attachments. These are bugs in the program.
     pub fn new(context: &Arc<Context>, desc: &PipelineDesc<'_>) -> Result<Self> {
         let start = Instant::now();
         let slots = merge_slots(desc.stages);
@@ -270,7 +270,7 @@ impl Pipeline {
         created.during(what)
     }
 
-    /// Whether another pipeline can be used in the same pass with the same bindings.
+    /// Whether the other pipeline can be used in the same pass with the same bindings.
     pub(in crate::gpu) fn is_variant_of(&self, other: &Self) -> bool {
         let slots = self.slots.iter().map(|s| s.binding);
         slots.eq(other.slots.iter().map(|s| s.binding))
@@ -280,7 +280,7 @@ impl Pipeline {
             && self.streams == other.streams
     }
 
-    /// Name.
+    /// The name of the pipeline.
     pub fn name(&self) -> &str {
         &self.name
     }

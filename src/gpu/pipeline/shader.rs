@@ -1,4 +1,4 @@
-//! Compiled stages: what they declare, their modules and specialization constants.
+//! Compiled shader stages: interfaces, modules and specialization constants.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use ash::vk;
 use crate::gpu::device::context::Context;
 use crate::gpu::error::{During, Result};
 
-/// A stage of the pipeline.
+/// A shader stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
     /// Vertex shader.
@@ -31,10 +31,10 @@ impl Stage {
     }
 }
 
-/// Kind of a descriptor.
+/// Descriptor type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BindingKind {
-    /// `sampler2D`, `samplerCube` and the like.
+    /// `sampler2D`, `samplerCube` etc.
     SampledImage,
     /// `image2D`.
     StorageImage,
@@ -55,7 +55,7 @@ impl BindingKind {
     }
 }
 
-/// A member of a block, bytes.
+/// A member of a shader block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Field {
     /// Name in the source.
@@ -66,45 +66,45 @@ pub struct Field {
     pub size: u32,
 }
 
-/// A declared descriptor.
+/// A descriptor declared by a shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Binding {
-    /// Name of the variable.
+    /// Name of the variable in the source.
     pub name: &'static str,
-    /// Its number.
+    /// Binding number.
     pub binding: u32,
-    /// Its kind.
+    /// Descriptor type.
     pub kind: BindingKind,
-    /// Members, of a uniform block.
+    /// Members of a uniform block; empty for other types.
     pub fields: &'static [Field],
 }
 
-/// A compiled stage and its declarations, which build.rs reads from the SPIR-V.
+/// A compiled stage and its interface, which build.rs reads from the SPIR-V.
 #[derive(Debug)]
 pub struct Shader {
-    /// Path below `shaders_glsl/`, and the macros of a variant: `gbuffer.frag+ALBEDO`.
+    /// Path relative to `shaders_glsl/`, plus the macros of a variant: `gbuffer.frag+ALBEDO`.
     pub name: &'static str,
-    /// Stage.
+    /// The shader stage.
     pub stage: Stage,
-    /// Descriptors.
+    /// Declared descriptors.
     pub bindings: &'static [Binding],
-    /// Members of the push constant block.
+    /// Members of the push constant block, if any.
     pub push: Option<&'static [Field]>,
-    /// Specialization constants: name and id.
+    /// Specialization constants: name and ID.
     pub constants: &'static [(&'static str, u32)],
-    /// Outputs that have a location: of a fragment shader the colour attachments that it writes.
+    /// Number of outputs with a location. For a fragment shader, the colour attachments it writes.
     pub outputs: usize,
-    /// Invocations of a work group in x, y and z, of a compute shader.
+    /// Work group size in x, y and z of a compute shader.
     pub local_size: Option<[u32; 3]>,
-    /// SPIR-V.
+    /// SPIR-V words.
     pub words: &'static [u32],
-    /// The declarations as build.rs wrote them, for comparison with those of a reloaded stage.
+    /// The interface as written by build.rs, to compare with a reloaded stage.
     #[cfg(feature = "hot-reload")]
     pub declared: &'static str,
 }
 
 impl Shader {
-    /// Members of the uniform block of this name, or of the push constants (`push`).
+    /// Members of the uniform block with this name, or of the push constants (`push`).
     pub const fn block(&self, name: &str) -> Option<&'static [Field]> {
         if text_equals(name, "push") {
             return self.push;
@@ -120,7 +120,7 @@ impl Shader {
     }
 }
 
-/// `a == b`, at compile time.
+/// `a == b`, usable at compile time.
 pub(in crate::gpu) const fn text_equals(a: &str, b: &str) -> bool {
     let (a, b) = (a.as_bytes(), b.as_bytes());
     let mut i = 0;
@@ -130,7 +130,7 @@ pub(in crate::gpu) const fn text_equals(a: &str, b: &str) -> bool {
     i == a.len() && i == b.len()
 }
 
-/// Shader modules, alive while pipelines are created from them.
+/// Shader modules, kept alive while pipelines are created from them.
 pub(in crate::gpu) struct Modules {
     context: Arc<Context>,
     pub(in crate::gpu) raw: Vec<vk::ShaderModule>,
@@ -202,7 +202,7 @@ impl Constants {
     }
 }
 
-/// The stages compiled from `shaders_glsl/` by build.rs.
+/// The stages that build.rs compiles from `shaders_glsl/`.
 #[allow(missing_docs)]
 pub mod compiled {
     use super::{Binding, BindingKind, Field, Shader, Stage};

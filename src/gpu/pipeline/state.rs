@@ -1,4 +1,4 @@
-//! Creation of graphics and compute pipelines, and the fixed state of the former.
+//! Creation of graphics and compute pipelines, including the fixed-function state.
 
 use ash::vk;
 
@@ -22,8 +22,8 @@ pub(super) fn compute(
     created.map(|p| p[0]).map_err(|(_, result)| result)
 }
 
-/// Creates a graphics pipeline with dynamic viewport and scissor. Those that write depth draw surfaces: their culled faces and
-/// front face are dynamic too. Full-screen triangles are never culled.
+/// Creates a graphics pipeline with dynamic viewport and scissor. Pipelines that write depth draw surfaces and also have
+/// dynamic cull mode and front face; full-screen triangles are never culled.
 pub(super) fn graphics(
     context: &Context,
     layout: vk::PipelineLayout,
@@ -122,7 +122,7 @@ fn rasterization(depth: Depth) -> vk::PipelineRasterizationStateCreateInfo<'stat
         .line_width(1.0);
     match depth {
         Depth::Write { slope_bias, .. } if slope_bias != 0.0 => {
-            // Depth is reversed: a negative bias moves away from the viewer.
+            // Depth is reversed: a negative bias moves fragments away from the viewer.
             base.depth_bias_enable(true)
                 .depth_bias_slope_factor(-slope_bias)
         }

@@ -1,4 +1,4 @@
-//! Presentation of frames to a window, two in flight: the CPU records one while the device draws the other.
+//! Presentation of frames to a window with two frames in flight: the CPU records one while the device renders the other.
 
 use ash::vk;
 
@@ -13,7 +13,7 @@ use crate::gpu::record::timings::{Timing, Timings};
 /// Frames in flight.
 pub(in crate::gpu) const FRAMES: usize = 2;
 
-/// Resources of a frame in flight.
+/// Resources of one frame in flight.
 struct Slot {
     recorder: Recorder,
     acquired: Semaphore,
@@ -27,7 +27,7 @@ pub struct Presenter {
 }
 
 impl Presenter {
-    /// For a window of `size` pixels.
+    /// Creates a presenter for a window of `size` pixels.
     ///
     /// # Errors
     /// When the surface offers no sRGB format or memory is exhausted.
@@ -46,18 +46,18 @@ impl Presenter {
         })
     }
 
-    /// Format of the window's images.
+    /// Format of the swapchain images.
     pub fn format(&self) -> vk::Format {
         self.swapchain.format()
     }
 
-    /// Sets the size of the window, pixels; 0 when it is minimised.
+    /// Sets the window size, pixels; 0 when minimised.
     pub fn resize(&mut self, size: [u32; 2]) {
         self.swapchain.resize(size);
     }
 
-    /// Records a frame that draws to the window's image, and presents it. Returns false, without recording, when the window has
-    /// no area or its size is changing.
+    /// Records a frame that renders to a swapchain image, and presents it. Returns false without recording if the window has
+    /// zero area or is being resized.
     ///
     /// # Errors
     /// The error of `record`, or a lost device.
@@ -73,7 +73,7 @@ impl Presenter {
         let image = self.swapchain.image(index);
         slot.recorder.begin()?;
         slot.recorder.wait_for(slot.acquired.raw);
-        // The acquired image is presented even if `record` fails: otherwise the window would freeze.
+        // The acquired image is presented even if `record` fails; otherwise the window would freeze.
         let recorded = record(&mut slot.recorder, image);
         slot.recorder
             .transition([(image, ImageAccess::Present)].into_iter());
@@ -94,14 +94,14 @@ impl Presenter {
         Ok(&mut self.slots[self.current].recorder)
     }
 
-    /// Changes the timing of passes.
+    /// Sets how passes are timed.
     pub fn set_timing(&mut self, timing: Timing) {
         for slot in &mut self.slots {
             slot.recorder.set_timing(timing);
         }
     }
 
-    /// Times of the last finished frame.
+    /// Pass times of the last finished frame.
     pub fn timings(&self) -> &Timings {
         self.slots[self.current].recorder.timings()
     }

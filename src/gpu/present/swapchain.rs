@@ -1,4 +1,4 @@
-//! The swapchain of a window, created again when the window changes.
+//! The swapchain of a window, recreated when the window changes.
 
 use std::sync::Arc;
 
@@ -40,7 +40,7 @@ impl Drop for Semaphore {
     }
 }
 
-/// An image of the window and the semaphore that is signalled when it is drawn.
+/// A swapchain image and the semaphore signalled when rendering to it is done.
 struct Target {
     image: Image,
     drawn: Semaphore,
@@ -48,7 +48,7 @@ struct Target {
 
 /// The swapchain of a surface.
 pub(in crate::gpu) struct Swapchain {
-    // `drop` destroys the swapchain after the views and semaphores; the surface is dropped last.
+    // `drop` destroys the swapchain after its views and semaphores; the surface is dropped last.
     targets: Vec<Target>,
     raw: vk::SwapchainKHR,
     loader: khr::swapchain::Device,
@@ -66,7 +66,7 @@ enum Acquired {
 }
 
 impl Swapchain {
-    /// Its images, of `size` pixels, are created by the first `acquire`.
+    /// Creates a swapchain of `size` pixels. The images are created by the first `acquire`.
     pub(in crate::gpu) fn new(surface: Surface, size: [u32; 2]) -> Result<Self> {
         let context = surface.context().clone();
         let loader = context
@@ -101,15 +101,15 @@ impl Swapchain {
         self.targets[index as usize].drawn.raw
     }
 
-    /// Sets the size of the window, pixels.
+    /// Sets the window size, pixels.
     pub(in crate::gpu) fn resize(&mut self, size: [u32; 2]) {
         self.is_stale |= size != self.wanted;
         self.wanted = size;
     }
 
-    /// Index of the next image, or none while the window has no area or its size keeps changing.
+    /// Index of the next image, or `None` while the window has zero area or keeps changing size.
     ///
-    /// `acquired` is signalled when the image may be drawn to.
+    /// `acquired` is signalled when the image is ready for rendering.
     pub(in crate::gpu) fn acquire(&mut self, acquired: vk::Semaphore) -> Result<Option<u32>> {
         for _ in 0..3 {
             if self.is_stale && !self.recreate()? {
@@ -125,7 +125,7 @@ impl Swapchain {
     }
 
     fn try_acquire(&mut self, acquired: vk::Semaphore) -> Result<Acquired> {
-        // One second: the window may be hidden or the screen locked.
+        // Timeout of one second: the window may be hidden or the screen locked.
         let patience = 1_000_000_000;
         let planned = self.context().faults.at(Call::Acquire);
         // SAFETY: the semaphore is unsignalled and nothing waits for it.
@@ -135,7 +135,7 @@ impl Swapchain {
         });
         match got {
             Ok((index, is_suboptimal)) => {
-                // The image is usable for this frame; the next one gets a new swapchain.
+                // The image can still be used for this frame; the next frame recreates the swapchain.
                 self.is_stale |= is_suboptimal;
                 self.image(index).set_last_access(ImageAccess::Acquired);
                 Ok(Acquired::Image(index))
@@ -150,7 +150,7 @@ impl Swapchain {
         }
     }
 
-    /// Presents an image once it is drawn.
+    /// Presents an image once rendering to it is done.
     pub(in crate::gpu) fn present(&mut self, index: u32) -> Result<()> {
         let (chains, indices, waits) = ([self.raw], [index], [self.drawn(index)]);
         let info = vk::PresentInfoKHR::default()
@@ -160,7 +160,7 @@ impl Swapchain {
         let queue = self.context().queue;
         // SAFETY: the image was acquired, and the submission that signals transitions it for presentation.
         let shown = unsafe { self.loader.queue_present(queue, &info) };
-        // A failing present waits for its semaphore too: an injected fault comes after the call.
+        // A failed present still waits on its semaphore, so an injected fault takes effect after the call.
         match self.context().faults.at(Call::Present).and(shown) {
             Ok(is_suboptimal) => self.is_stale |= is_suboptimal,
             Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => self.is_stale = true,
@@ -170,7 +170,7 @@ impl Swapchain {
         Ok(())
     }
 
-    /// Creates the swapchain again; false while the window has no area.
+    /// Recreates the swapchain; false while the window has zero area.
     fn recreate(&mut self) -> Result<bool> {
         let can = match self.surface.capabilities() {
             Err(vk::Result::ERROR_SURFACE_LOST_KHR) => {
@@ -223,7 +223,7 @@ impl Swapchain {
             .image_usage(vk::ImageUsageFlags::COLOR_ATTACHMENT)
             .pre_transform(can.current_transform)
             .composite_alpha(alpha)
-            // Every device supports this mode; it does not tear.
+            // FIFO is always supported and does not tear.
             .present_mode(vk::PresentModeKHR::FIFO)
             .clipped(true)
             .old_swapchain(old);
@@ -266,12 +266,12 @@ impl Swapchain {
 
 impl Drop for Swapchain {
     fn drop(&mut self) {
-        // On a lost device there is nothing to wait for.
+        // On a lost device there is nothing to wait for, so the error is ignored.
         let _ = self.retire();
     }
 }
 
-/// The extent that the surface requires, or that of the window within the limits of the surface.
+/// The extent required by the surface, or the window size clamped to the surface limits.
 fn extent(can: &vk::SurfaceCapabilitiesKHR, wanted: [u32; 2]) -> vk::Extent2D {
     if can.current_extent.width != u32::MAX {
         return can.current_extent;

@@ -1,4 +1,4 @@
-//! The user interface, tessellated by `egui`, drawn over a picture.
+//! The user interface, tessellated by `egui`, drawn on top of the image.
 
 use std::sync::Arc;
 
@@ -11,9 +11,9 @@ use crate::gpu::error::{During, GpuError, Result};
 use crate::gpu::present::presenter::FRAMES;
 use crate::gpu::record::draws::Draws;
 
-/// What to draw.
+/// A tessellated user interface.
 pub struct UiFrame {
-    /// Triangles.
+    /// Clipped triangle meshes.
     pub primitives: Vec<egui::ClippedPrimitive>,
     /// Pixels per point.
     pub pixels_per_point: f32,
@@ -43,7 +43,7 @@ fn fault(error: RendererError) -> GpuError {
 }
 
 impl Overlay {
-    /// For targets of an sRGB `format`.
+    /// Creates a renderer for targets with an sRGB `format`.
     ///
     /// # Errors
     /// When the driver cannot create its resources.
@@ -77,14 +77,14 @@ impl Overlay {
         })
     }
 
-    /// Uploads changed textures, before the frame that uses them is recorded.
+    /// Uploads changed textures. Must be called before recording the frame that uses them.
     ///
     /// # Errors
     /// When memory is exhausted.
     pub fn update(&mut self, mut textures: egui::TexturesDelta) -> Result<()> {
         self.free_retired()?;
         if !textures.set.is_empty() {
-            // The copies are submitted at once, and frames in flight may still use a texture that changes.
+            // Copies are submitted immediately, and frames in flight may still use the texture being changed.
             self.context.wait_idle()?;
         }
         for (id, deltas) in textures.set.drain() {
@@ -110,7 +110,7 @@ impl Overlay {
         Ok(())
     }
 
-    /// Draws the interface; the last draw of the pass.
+    /// Draws the interface. This must be the last draw of the pass.
     ///
     /// # Errors
     /// When memory is exhausted.

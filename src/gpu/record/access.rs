@@ -1,33 +1,33 @@
-//! Barriers as a table: pure functions turn (previous access, next access) of an image or a buffer into a barrier.
+//! Barriers as a table: pure functions map (previous access, next access) of an image or a buffer to a barrier.
 
 use ash::vk::{AccessFlags2 as Access, ImageLayout as Layout, PipelineStageFlags2 as Stage};
 
-/// How an image was accessed last, or will be next.
+/// The last or next access of an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ImageAccess {
-    /// New, without content.
+    /// Newly created; contents undefined.
     Undefined,
-    /// Written (and read, when loaded or blended) as a colour attachment.
+    /// Written (and read, if loaded or blended) as a colour attachment.
     ColorAttachment,
     /// Written and tested as a depth attachment.
     DepthAttachment,
     /// Read through a sampler by a fragment or compute shader.
     Sampled,
-    /// A depth image read through a sampler, and possibly tested against, but not written.
+    /// A depth image that is sampled, and possibly depth-tested, but not written.
     SampledDepth,
-    /// Written by a compute shader, every texel.
+    /// Every texel is written by a compute shader.
     StorageWrite,
     /// Source of a copy or blit.
     CopySource,
     /// Target of a copy or blit.
     CopyTarget,
-    /// Acquired from the presentation engine: no content, and not accessible before its semaphore is waited for.
+    /// Acquired from the presentation engine: contents undefined, not accessible until its semaphore is signalled.
     Acquired,
-    /// Handed to the presentation engine.
+    /// Released to the presentation engine.
     Present,
 }
 
-/// How a buffer was accessed last, or will be next.
+/// The last or next access of a buffer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum BufferAccess {
     /// Target of a copy.
@@ -42,7 +42,7 @@ pub enum BufferAccess {
     HostRead,
 }
 
-/// A barrier between two accesses of an image, without the image.
+/// A barrier between two accesses of an image, independent of the image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ImageBarrier {
     /// Execution and memory dependency.
@@ -62,7 +62,7 @@ pub struct MemoryBarrier {
     pub src_access: Access,
     /// Stages that wait.
     pub dst_stage: Stage,
-    /// Accesses to which the writes become visible.
+    /// Accesses to which those writes become visible.
     pub dst_access: Access,
 }
 
@@ -75,7 +75,7 @@ const SAMPLING: Stage =
 /// Stages that read storage buffers.
 const STORAGE_READING: Stage = Stage::from_raw(Stage::VERTEX_SHADER.as_raw() | SAMPLING.as_raw());
 
-/// One row of the table of images: stages, reads, writes, layout.
+/// One row of the image table: stages, reads, writes, layout.
 const fn row(of: ImageAccess) -> (Stage, Access, Access, Layout) {
     const NONE: Access = Access::NONE;
     match of {
@@ -119,7 +119,7 @@ const fn row(of: ImageAccess) -> (Stage, Access, Access, Layout) {
             let layout = Layout::TRANSFER_DST_OPTIMAL;
             (Stage::TRANSFER, NONE, Access::TRANSFER_WRITE, layout)
         }
-        // The submission waits for the semaphore at this stage, to which the barrier chains.
+        // The submission waits on the semaphore at this stage, and the barrier chains with that wait.
         ImageAccess::Acquired => {
             let stage = Stage::COLOR_ATTACHMENT_OUTPUT;
             (stage, NONE, NONE, Layout::UNDEFINED)
@@ -128,7 +128,7 @@ const fn row(of: ImageAccess) -> (Stage, Access, Access, Layout) {
     }
 }
 
-/// One row of the table of buffers: stages, reads, writes.
+/// One row of the buffer table: stages, reads, writes.
 const fn buffer_row(of: BufferAccess) -> (Stage, Access, Access) {
     match of {
         BufferAccess::CopyTarget => (Stage::TRANSFER, Access::NONE, Access::TRANSFER_WRITE),
@@ -148,10 +148,10 @@ pub const fn layout(of: ImageAccess) -> Layout {
     row(of).3
 }
 
-/// The barrier between two accesses of an image, or `None` between reads in the same layout.
+/// The barrier between two accesses of an image; `None` between reads in the same layout.
 ///
-/// A read after a write waits for the write and sees it; a write after a read only waits; a write after a write
-/// does both.
+/// Read after write: waits for the write and makes it visible. Write after read: execution dependency only. Write after write:
+/// both.
 pub const fn barrier(previous: ImageAccess, next: ImageAccess) -> Option<ImageBarrier> {
     let (src_stage, _, src_writes, old_layout) = row(previous);
     let (dst_stage, dst_reads, dst_writes, new_layout) = row(next);
@@ -171,7 +171,7 @@ pub const fn barrier(previous: ImageAccess, next: ImageAccess) -> Option<ImageBa
     })
 }
 
-/// The barrier between two accesses of a buffer, or `None` between reads. It does what [`barrier`] does for images.
+/// The barrier between two accesses of a buffer; `None` between reads. Same rules as [`barrier`].
 pub const fn buffer_barrier(previous: BufferAccess, next: BufferAccess) -> Option<MemoryBarrier> {
     let (src_stage, _, src_access) = buffer_row(previous);
     let (dst_stage, dst_reads, dst_writes) = buffer_row(next);

@@ -1,4 +1,4 @@
-//! Recording of the barriers between accesses of images and buffers.
+//! Records barriers between accesses of images and buffers.
 
 use arrayvec::ArrayVec;
 use ash::vk;
@@ -10,7 +10,7 @@ use crate::gpu::record::recorder::Recorder;
 type Barriers = ArrayVec<vk::ImageMemoryBarrier2<'static>, 32>;
 
 impl Recorder {
-    /// Fills a colour image with a constant.
+    /// Clears a colour image to a constant.
     pub fn clear(&mut self, image: &Image, color: [f32; 4]) {
         self.transition([(image, ImageAccess::CopyTarget)].into_iter());
         let value = vk::ClearColorValue { float32: color };
@@ -26,8 +26,8 @@ impl Recorder {
         }
     }
 
-    /// Transitions the attachments of the following passes now, so that no barrier stands between these passes: those that do
-    /// not read each other's images may then overlap.
+    /// Transitions the attachments of the following passes now, so that no barriers separate these passes. Passes that do not
+    /// read each other's images may then overlap on the device.
     pub fn prepare<'i>(&self, targets: impl Iterator<Item = &'i Image>) {
         let barriers = targets.filter_map(|image| {
             image.prepare(if is_depth(image.format()) {
@@ -39,7 +39,7 @@ impl Recorder {
         self.image_barriers(&barriers.collect());
     }
 
-    /// Transitions images to their next access with one barrier command.
+    /// Transitions images to their next access with a single barrier command.
     pub(in crate::gpu) fn transition<'i>(
         &self,
         accesses: impl Iterator<Item = (&'i Image, ImageAccess)>,
@@ -60,7 +60,7 @@ impl Recorder {
         self.image_barriers(&barriers.collect());
     }
 
-    /// Makes what was written to buffers visible to their next access.
+    /// Makes buffer writes visible to their next access.
     pub(in crate::gpu) fn buffer_barrier(&self, previous: BufferAccess, next: BufferAccess) {
         let Some(barrier) = buffer_barrier(previous, next) else {
             return;

@@ -1,4 +1,4 @@
-//! Compute passes: one invocation for each texel of the images they write.
+//! Compute passes: one invocation per texel of the written images.
 
 use ash::vk;
 
@@ -9,7 +9,7 @@ use crate::gpu::record::pass::{Pass, sampled_accesses};
 use crate::gpu::record::work::{Traffic, texels};
 
 impl<'r> Pass<'r> {
-    /// Writes every texel of the first level of an image; previous contents are undefined.
+    /// Binds a storage image of which the pass writes every texel of the first level; previous contents are undefined.
     pub fn store(mut self, name: &str, image: &'r Image) -> Self {
         self.bind_view(
             name,
@@ -24,11 +24,11 @@ impl<'r> Pass<'r> {
         self
     }
 
-    /// Runs the compute shader once for each texel of the images that it writes: x, y and z of an invocation are column, row
-    /// and layer. Work groups may reach beyond the edges; the shader checks.
+    /// Dispatches one invocation per texel of the written images; x, y and z of the invocation are column, row and layer. Work
+    /// groups may extend beyond the edges, which the shader has to check.
     ///
     /// # Panics
-    /// Without an image to write, or when the pipeline is not a compute pipeline: defects of this program.
+    /// When no image is written or the pipeline is not a compute pipeline. These are bugs in the program.
     pub fn dispatch(mut self) {
         let Some(target) = self.stores.first().copied() else {
             panic!("pass {}: writes no image", self.name)
@@ -52,7 +52,7 @@ impl<'r> Pass<'r> {
             raw.cmd_bind_pipeline(command, point, self.pipeline.raw());
         }
         self.flush();
-        // SAFETY: the pipeline, its images and buffers were bound and brought to their layouts.
+        // SAFETY: pipeline, images and buffers are bound, and the images are in their layouts.
         unsafe {
             let raw = self.recorder.context.raw();
             raw.cmd_dispatch(command, groups[0], groups[1], groups[2]);

@@ -1,4 +1,4 @@
-//! Descriptor sets of one frame, on devices without push descriptors.
+//! Descriptor sets of one frame, for devices without push descriptors.
 
 use std::sync::Arc;
 
@@ -8,21 +8,21 @@ use crate::gpu::device::context::Context;
 use crate::gpu::device::fault::Call;
 use crate::gpu::error::{During, Result};
 
-/// Sets of a pool.
+/// Sets per pool.
 const POOL_SETS: u32 = 1024;
 
-/// Descriptor pools that are added as sets are allocated, and used again after a reset.
+/// Descriptor pools, added on demand and reused after a reset.
 pub(in crate::gpu) struct DescriptorPools {
     context: Arc<Context>,
     pools: Vec<vk::DescriptorPool>,
-    /// Index of the pool in use.
+    /// Index of the current pool.
     current: usize,
-    /// Sets taken from it.
+    /// Sets allocated from the current pool.
     taken: u32,
 }
 
 impl DescriptorPools {
-    /// No pools: they are created when sets are allocated.
+    /// Starts empty: pools are created when sets are allocated.
     pub(in crate::gpu) fn new(context: &Arc<Context>) -> Self {
         Self {
             context: context.clone(),
@@ -32,11 +32,11 @@ impl DescriptorPools {
         }
     }
 
-    /// Frees all sets. No submission that uses them may be pending.
+    /// Frees all sets. No pending submission may use them.
     pub(in crate::gpu) fn reset(&mut self) -> Result<()> {
         for pool in &self.pools {
             let flags = vk::DescriptorPoolResetFlags::empty();
-            // SAFETY: as asked of the caller.
+            // SAFETY: guaranteed by the caller.
             unsafe { self.context.raw().reset_descriptor_pool(*pool, flags) }
                 .during("reset a descriptor pool")?;
         }
@@ -44,7 +44,7 @@ impl DescriptorPools {
         Ok(())
     }
 
-    /// A set that lives until the next reset.
+    /// Allocates a set that is valid until the next reset.
     pub(in crate::gpu) fn allocate(
         &mut self,
         layout: vk::DescriptorSetLayout,
@@ -55,7 +55,7 @@ impl DescriptorPools {
             }
             if self.taken < POOL_SETS {
                 match self.allocate_from(self.pools[self.current], layout) {
-                    // A pool may run out of one kind of descriptors before it runs out of sets.
+                    // A pool may run out of one descriptor type before it runs out of sets.
                     Err(
                         vk::Result::ERROR_OUT_OF_POOL_MEMORY | vk::Result::ERROR_FRAGMENTED_POOL,
                     ) if self.taken > 0 => {}

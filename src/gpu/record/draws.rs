@@ -11,7 +11,7 @@ use crate::gpu::record::access::ImageAccess;
 use crate::gpu::record::pass::Pass;
 use crate::gpu::record::work::{texel_bytes, texels};
 
-/// Winding of triangles in framebuffer coordinates, in which y points down.
+/// Winding of triangles in framebuffer coordinates (y down).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Winding {
     /// Counter-clockwise.
@@ -21,7 +21,7 @@ pub enum Winding {
     Clockwise,
 }
 
-/// Front face and face culling.
+/// Front face and back-face culling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Faces {
     /// Winding of front faces.
@@ -51,10 +51,10 @@ pub struct Draws<'p, 'r> {
 }
 
 impl<'r> Draws<'_, 'r> {
-    /// Binds a texture for the following draws. Its upload ended with the barrier that it needs.
+    /// Binds a texture for the following draws. The barrier it needs was recorded with its upload.
     ///
     /// # Panics
-    /// When the image's last access is not [`ImageAccess::Sampled`].
+    /// When the last access of the image is not [`ImageAccess::Sampled`].
     pub fn texture(&mut self, name: &str, image: &Image, sampler: Sampler) {
         assert_eq!(
             image.last_access(),
@@ -66,10 +66,10 @@ impl<'r> Draws<'_, 'r> {
         self.pass.bind_image(name, image, sampler);
     }
 
-    /// Binds another pipeline with the same bindings, attachments and vertex streams.
+    /// Switches to a pipeline with the same bindings, attachments and vertex streams.
     ///
     /// # Panics
-    /// When they differ.
+    /// When these differ.
     pub fn pipeline(&mut self, pipeline: &'r Pipeline) {
         assert!(
             pipeline.is_variant_of(self.pass.pipeline),
@@ -90,7 +90,7 @@ impl<'r> Draws<'_, 'r> {
         self.pass.set_push(value);
     }
 
-    /// Sets the vertex streams, one for each location, and the 32-bit indices.
+    /// Binds the vertex streams, one per location, and the 32-bit index buffer.
     pub fn geometry(&mut self, streams: &[&Buffer], indices: &Buffer) {
         assert_eq!(
             streams.len(),
@@ -109,7 +109,7 @@ impl<'r> Draws<'_, 'r> {
         }
     }
 
-    /// Sets the viewport of the following draws (first texel and size) and their scissor rectangle `part` (the same).
+    /// Sets the viewport (first texel, size) and the scissor rectangle `part` (first texel, size) of the following draws.
     pub fn window(&mut self, origin: [u32; 2], size: [u32; 2], part: ([u32; 2], [u32; 2])) {
         let viewport = vk::Viewport {
             x: origin[0] as f32,
@@ -137,10 +137,10 @@ impl<'r> Draws<'_, 'r> {
         }
     }
 
-    /// Sets front face and culling of the following draws.
+    /// Sets front face and culling for the following draws.
     ///
     /// # Panics
-    /// When the pipeline writes no depth: these states are dynamic only in pipelines that do.
+    /// When the pipeline does not write depth; only pipelines that do have these dynamic states.
     pub fn faces(&mut self, faces: Faces) {
         assert!(self.pass.pipeline.writes_depth, "pass {}", self.pass.name);
         if faces == self.pass.faces {
@@ -150,7 +150,7 @@ impl<'r> Draws<'_, 'r> {
         self.pass.set_faces();
     }
 
-    /// Draws a range of the indices.
+    /// Draws a range of the index buffer.
     pub fn indexed(&mut self, first: u32, count: u32) {
         self.pass.flush();
         self.pass.buffer_bytes += 4 * u64::from(count);
@@ -160,13 +160,13 @@ impl<'r> Draws<'_, 'r> {
         unsafe { raw.cmd_draw_indexed(command, count, 1, first, 0, 0) };
     }
 
-    /// The command buffer and the size of the target, pixels, for another renderer, which draws last.
+    /// The command buffer and the target size in pixels, for an external renderer that draws last.
     #[cfg(feature = "window")]
     pub(in crate::gpu) fn foreign(&self) -> (vk::CommandBuffer, [u32; 2]) {
         (self.pass.recorder.command, self.pass.target().size())
     }
 
-    /// Draws three vertices without vertex data.
+    /// Draws three vertices without vertex buffers.
     pub fn triangle(&mut self) {
         self.pass.flush();
         self.pass.drawn += 1;

@@ -1,5 +1,5 @@
-//! A pass as a chain of methods on the recorder: each binds a resource, registers the access and checks it against the
-//! declarations of the pipeline.
+//! A pass, built as a chain of methods on the recorder. Each method binds a resource, registers its access and checks it
+//! against the pipeline's interface.
 
 use arrayvec::ArrayVec;
 use ash::vk;
@@ -16,15 +16,15 @@ use crate::gpu::record::work::{Traffic, texels};
 
 const MAX_BINDINGS: usize = 16;
 const MAX_COLORS: usize = 8;
-/// Bytes of push constants that every device supports.
+/// Size of push constants supported by every device, bytes.
 const MAX_PUSH: usize = 128;
 
 /// Previous contents of an attachment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Load {
-    /// Kept.
+    /// Loaded.
     Keep,
-    /// Replaced by a constant.
+    /// Cleared to a constant.
     Clear([f32; 4]),
     /// Undefined: every pixel is written (`LOAD_OP_DONT_CARE`).
     Discard,
@@ -37,7 +37,7 @@ enum Resource {
 }
 
 impl Resource {
-    /// Whether both describe the same resource.
+    /// Whether both refer to the same resource.
     fn is(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Image(a), Self::Image(b)) => {
@@ -58,7 +58,7 @@ struct Bound {
     resource: Resource,
 }
 
-/// The access of a shader that samples an image.
+/// The access of a sampled image.
 fn sampled_access(image: &Image) -> ImageAccess {
     if is_depth(image.format()) {
         ImageAccess::SampledDepth
@@ -74,11 +74,11 @@ pub(in crate::gpu) fn sampled_accesses<'r>(
     reads.iter().map(|image| (*image, sampled_access(image)))
 }
 
-/// A pass under construction. Nothing is recorded before `draw`, `draws` or `dispatch`.
+/// A pass under construction. Nothing is recorded until `draw`, `draws` or `dispatch`.
 ///
 /// # Panics
-/// Every method panics when it contradicts the pipeline's declarations: a defect of this program, which the first test that
-/// runs the pass reveals.
+/// Every method panics if it contradicts the pipeline's interface. This is a bug in the program, found by the first test that
+/// runs the pass.
 pub struct Pass<'r> {
     pub(in crate::gpu) recorder: &'r mut Recorder,
     pub(in crate::gpu) pipeline: &'r Pipeline,
@@ -89,11 +89,11 @@ pub struct Pass<'r> {
     pub(in crate::gpu) stores: ArrayVec<&'r Image, MAX_COLORS>,
     colors: ArrayVec<(&'r Image, Load), MAX_COLORS>,
     depth: Option<(&'r Image, Load)>,
-    /// Push constants, and whether they were set after the last draw.
+    /// Push constants, and whether they changed since the last draw.
     push: (ArrayVec<u8, MAX_PUSH>, bool),
-    /// Members of the host struct that was last compared with the pipeline's block.
+    /// Members of the host struct last compared with the pipeline's block.
     checked_push: Option<&'static [Field]>,
-    /// Part of the target that is drawn to; none: all of it.
+    /// Render area; `None` for the whole target.
     area: Option<vk::Rect2D>,
     pub(in crate::gpu) faces: Faces,
     /// Bytes of the buffers and textures read.
@@ -127,14 +127,14 @@ impl<'r> Pass<'r> {
         }
     }
 
-    /// Samples an image.
+    /// Binds a sampled image.
     pub fn sample(mut self, name: &str, image: &'r Image, sampler: Sampler) -> Self {
         self.bind_image(name, image, sampler);
         self.reads.push(image);
         self
     }
 
-    /// Sets the value of a uniform block.
+    /// Sets the contents of a uniform block.
     pub fn uniform<T: GpuStruct>(mut self, name: &str, value: &T) -> Self {
         let binding = self.declared(name, BindingKind::UniformBuffer);
         self.check_block(name, T::FIELDS, binding.fields);
@@ -143,7 +143,7 @@ impl<'r> Pass<'r> {
         self
     }
 
-    /// Reads a storage buffer. Its upload ended with the barrier that it needs.
+    /// Binds a storage buffer for reading. The barrier it needs was recorded with its upload.
     pub fn storage(mut self, name: &str, buffer: &'r Buffer) -> Self {
         let binding = self.declared(name, BindingKind::StorageBuffer);
         let info = vk::DescriptorBufferInfo {
@@ -168,23 +168,23 @@ impl<'r> Pass<'r> {
         self
     }
 
-    /// Sets the depth attachment, which is tested and written.
+    /// Sets the depth attachment, tested and written.
     pub fn depth(mut self, image: &'r Image, load: Load) -> Self {
         self.depth = Some((image, load));
         self
     }
 
-    /// Sets a depth attachment that is tested but not written; the pass may sample it too.
+    /// Sets a depth attachment that is tested but not written. The pass may also sample it.
     pub fn depth_test(self, image: &'r Image) -> Self {
         self.depth(image, Load::Keep)
     }
 
-    /// Restricts the pass to one pixel of the target; the others are kept.
+    /// Restricts the pass to one pixel of the target; all others are kept.
     pub fn only(self, pixel: [u32; 2]) -> Self {
         self.within(pixel, [1, 1])
     }
 
-    /// Restricts draws and clears to a rectangle of the target (first pixel and size); the other pixels are kept.
+    /// Restricts draws and clears to a rectangle of the target (first pixel, size); all other pixels are kept.
     pub fn within(mut self, [x, y]: [u32; 2], [width, height]: [u32; 2]) -> Self {
         self.area = Some(vk::Rect2D {
             offset: vk::Offset2D {
@@ -196,12 +196,12 @@ impl<'r> Pass<'r> {
         self
     }
 
-    /// Draws one triangle over the whole target, which the vertex shader computes from the vertex index.
+    /// Draws a full-screen triangle, generated by the vertex shader from the vertex index.
     pub fn draw(self) {
         self.draws(|draws| draws.triangle());
     }
 
-    /// Records any number of draws.
+    /// Records draws through a closure.
     pub fn draws(mut self, record: impl FnOnce(&mut Draws<'_, 'r>)) {
         self.check_attachments();
         let depth_access = self.depth_access();
@@ -279,7 +279,7 @@ impl<'r> Pass<'r> {
             .iter_mut()
             .find(|b| b.binding.binding == binding.binding)
         {
-            // Materials without textures share their placeholders.
+            // Materials without textures share placeholder textures.
             Some(old) if old.resource.is(&resource) => return,
             Some(old) => *old = new,
             None => self.bound.push(new),
@@ -313,7 +313,7 @@ impl<'r> Pass<'r> {
     }
 
     pub(in crate::gpu) fn set_push<T: GpuStruct>(&mut self, value: &T) {
-        // A pass may push for thousands of draws: the same struct is compared once.
+        // A pass may push constants for thousands of draws, so the same struct is compared only once.
         let checked = self
             .checked_push
             .is_some_and(|c| std::ptr::eq(c, T::FIELDS));
@@ -369,7 +369,7 @@ impl<'r> Pass<'r> {
         }
     }
 
-    /// The first attachment; all have its size.
+    /// The first attachment; all attachments have the same size.
     pub(in crate::gpu) fn target(&self) -> &'r Image {
         let color = self.colors.first().map(|c| c.0);
         let Some(target) = color.or(self.depth.map(|d| d.0)) else {
@@ -387,7 +387,7 @@ impl<'r> Pass<'r> {
         let depth = self.depth.map(|(image, load)| {
             let info = Self::attachment(image, load, access::layout(self.depth_access()));
             let written = self.pipeline.writes_depth;
-            // Storing counts as a write, which a read-only layout forbids.
+            // A store operation counts as a write, which a read-only layout forbids.
             if written {
                 info
             } else {
@@ -432,7 +432,7 @@ impl<'r> Pass<'r> {
         }
     }
 
-    /// Sets front face and culling, which are dynamic states of every pipeline that writes depth.
+    /// Sets front face and culling, which are dynamic in every pipeline that writes depth.
     pub(in crate::gpu) fn set_faces(&self) {
         let (cull, front) = self.faces.state();
         let (raw, command) = (self.recorder.context.raw(), self.recorder.command);
@@ -443,7 +443,7 @@ impl<'r> Pass<'r> {
         }
     }
 
-    /// Records bindings and push constants for the next draw.
+    /// Records pending bindings and push constants before a draw.
     pub(in crate::gpu) fn flush(&mut self) {
         assert_eq!(
             self.bound.len(),
@@ -476,7 +476,7 @@ impl<'r> Pass<'r> {
         let set = if pushed {
             vk::DescriptorSet::null()
         } else {
-            // Without a set the frame cannot be drawn; `finish` reports why.
+            // Without a descriptor set the draw is skipped; `finish` reports the error.
             let Some(set) = self.recorder.descriptor_set(self.pipeline) else {
                 return;
             };

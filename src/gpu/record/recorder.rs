@@ -1,4 +1,4 @@
-//! The recorder: records commands, submits them, waits for them.
+//! The recorder: records commands, submits them and waits for completion.
 
 use std::sync::Arc;
 
@@ -15,10 +15,10 @@ use crate::gpu::record::pass::Pass;
 use crate::gpu::record::timings::{PassTime, Queries, Stopwatch, Timing, Timings};
 use crate::gpu::record::work::{PassWork, Traffic, WorkLog};
 
-/// Bytes for the uniform blocks of one frame.
+/// Size of the buffer for the uniform blocks of one frame, bytes.
 const UNIFORM_BYTES: u64 = 1 << 16;
 
-/// A command buffer with the resources that it needs between `begin` and `finish`.
+/// A command buffer and the resources it needs between `begin` and `finish`.
 pub struct Recorder {
     pub(in crate::gpu) context: Arc<Context>,
     pub(in crate::gpu) command: vk::CommandBuffer,
@@ -83,7 +83,7 @@ impl Recorder {
         Ok(recorder)
     }
 
-    /// Starts a frame, after waiting for the previous submission.
+    /// Begins a frame, after waiting for the previous submission.
     ///
     /// # Errors
     /// When memory is exhausted or the device is lost.
@@ -108,7 +108,7 @@ impl Recorder {
         unsafe { self.context.raw().begin_command_buffer(self.command, &info) }.during(begin)
     }
 
-    /// Submits the recorded work and waits until it is done.
+    /// Submits the recorded work and waits for completion.
     ///
     /// # Errors
     /// When the device is lost or a pass could not be recorded.
@@ -118,20 +118,20 @@ impl Recorder {
         submitted.and(done)
     }
 
-    /// Forgets what was recorded since [`Self::begin`], because something that it uses could not be made. Images that outlive
-    /// it must not have been recorded.
+    /// Discards everything recorded since [`Self::begin`], for when a resource it needs could not be created. It must not
+    /// involve images that outlive the recording, because their tracked access would be wrong.
     ///
     /// # Errors
-    /// When the driver has no memory left.
+    /// When the driver is out of memory.
     pub fn abandon(&mut self) -> Result<()> {
         let flags = vk::CommandBufferResetFlags::empty();
-        // SAFETY: the command buffer was not submitted, and its pool lets it be reset.
+        // SAFETY: the command buffer was not submitted, and its pool allows resetting it.
         unsafe { self.context.raw().reset_command_buffer(self.command, flags) }
             .during("reset a command buffer")?;
         self.wait()
     }
 
-    /// Submits the recorded work without waiting; `signal` is signalled at its end.
+    /// Submits the recorded work without waiting; `signal` is signalled on completion.
     pub(in crate::gpu) fn submit(&mut self, signal: Option<vk::Semaphore>) -> Result<()> {
         let raw = self.context.raw();
         let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(self.command)];
@@ -161,14 +161,14 @@ impl Recorder {
         Ok(())
     }
 
-    /// Waits until the submitted work is done and releases its resources.
+    /// Waits for the submitted work and releases its resources.
     ///
     /// # Errors
     /// When the device is lost or a pass could not be recorded.
     pub fn wait(&mut self) -> Result<()> {
         let waited = self.wait_for_fence();
         if waited.is_err() {
-            // The wait itself may have failed for lack of memory; the resources must still outlive the work.
+            // The wait itself may have run out of memory, but the resources must still outlive the work.
             // SAFETY: the queue is used by one thread at a time. On a lost device there is nothing to wait for.
             let _ = unsafe { self.context.raw().device_wait_idle() };
         }
@@ -188,7 +188,7 @@ impl Recorder {
         }
     }
 
-    /// Whether work was pending.
+    /// Waits for the fence; returns whether work was pending.
     fn wait_for_fence(&mut self) -> Result<bool> {
         if !std::mem::take(&mut self.is_pending) {
             return Ok(false);
@@ -211,27 +211,27 @@ impl Recorder {
         self.acquired = Some(acquired);
     }
 
-    /// Changes the timing from the next frame on. [`Timing::Work`] needs a recorder that was created with it.
+    /// Sets the timing mode from the next frame on. [`Timing::Work`] requires a recorder created with it.
     pub fn set_timing(&mut self, timing: Timing) {
         self.timing = timing;
     }
 
-    /// Times of the last finished frame; empty with [`Timing::Off`].
+    /// Pass times of the last finished frame; empty with [`Timing::Off`].
     pub fn timings(&self) -> &Timings {
         &self.timings
     }
 
-    /// Work of the passes of the last finished frame; empty without [`Timing::Work`].
+    /// Work counters of the last finished frame; empty without [`Timing::Work`].
     pub fn work(&self) -> &[PassWork] {
         self.work.as_ref().map_or(&[], WorkLog::passes)
     }
 
-    /// The context it records for.
+    /// The context of the recorder.
     pub fn context(&self) -> &Arc<Context> {
         &self.context
     }
 
-    /// Starts a pass. Resources are bound by the names that the shaders declare.
+    /// Starts a pass. Resources are bound by their names in the shaders.
     pub fn pass<'r>(&'r mut self, name: &'static str, pipeline: &'r Pipeline) -> Pass<'r> {
         Pass::new(self, name, pipeline)
     }
@@ -264,7 +264,7 @@ impl Recorder {
         }
     }
 
-    /// A descriptor set for this frame, on devices without push descriptors; `finish` reports why there is none.
+    /// A descriptor set for this frame, on devices without push descriptors. On failure, `finish` reports the error.
     pub(in crate::gpu) fn descriptor_set(
         &mut self,
         pipeline: &Pipeline,
@@ -273,7 +273,7 @@ impl Recorder {
         set.map_err(|fault| self.fault.get_or_insert(fault)).ok()
     }
 
-    /// Names the following commands in captures and validation messages.
+    /// Begins a debug label, shown in captures and validation messages.
     pub(in crate::gpu) fn label(&self, name: &str) {
         let Some(debug) = &self.context.extensions.debug else {
             return;
@@ -289,7 +289,7 @@ impl Recorder {
         unsafe { debug.cmd_begin_debug_utils_label(self.command, &info) };
     }
 
-    /// Ends what `label` began.
+    /// Ends the last debug label.
     pub(in crate::gpu) fn unlabel(&self) {
         if let Some(debug) = &self.context.extensions.debug {
             // SAFETY: pairs with `label`.
@@ -312,14 +312,15 @@ impl Recorder {
         }
     }
 
-    /// Ends a timestamp. It is written inside the rendering: software drivers attribute it to the next pass otherwise.
+    /// Writes the end timestamp. It is inside the render pass, because software drivers would otherwise attribute the time to
+    /// the next pass.
     pub(in crate::gpu) fn end_timing(&self, mark: &Mark) {
         if let Mark::Query(index) = mark {
             self.queries.end(self.command, *index);
         }
     }
 
-    /// With [`Timing::Work`], stores draws and traffic of the pass that was just recorded.
+    /// With [`Timing::Work`], stores the draw count and traffic of the pass just recorded.
     pub(in crate::gpu) fn end_work(
         &mut self,
         mark: &Mark,
@@ -332,7 +333,7 @@ impl Recorder {
         }
     }
 
-    /// With [`Timing::Isolated`], submits the pass that was just recorded, waits, and begins the command buffer again.
+    /// With [`Timing::Isolated`], submits the pass just recorded, waits, and begins the command buffer again.
     pub(in crate::gpu) fn isolate(&mut self, mark: &Mark) {
         let Mark::Wall(name) = mark else { return };
         let start = Stopwatch::start();

@@ -1,4 +1,4 @@
-//! Times of passes.
+//! Pass times.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -15,11 +15,11 @@ pub enum Timing {
     /// Not timed.
     #[default]
     Off,
-    /// By timestamps within one submission.
+    /// Timestamp queries within one submission.
     Timestamps,
-    /// By the wall clock, each pass submitted alone and waited for: reliable on software drivers too.
+    /// Wall clock, with each pass submitted and waited for separately. Also reliable on software drivers.
     Isolated,
-    /// Not timed: bytes and pipeline statistics are counted, which would distort times.
+    /// Not timed: bytes and pipeline statistics are counted instead, because counting would distort times.
     Work,
 }
 
@@ -31,17 +31,17 @@ pub struct PassTime {
     /// Device time, or wall time with [`Timing::Isolated`], milliseconds.
     pub ms: f64,
     /// CPU time of all threads of this process with [`Timing::Isolated`], milliseconds. On a software driver it hardly depends
-    /// on the load of the machine.
+    /// on the machine load.
     pub cpu_ms: f64,
 }
 
-/// Times of the passes of one frame, in the order of recording.
+/// Pass times of one frame, in recording order.
 #[derive(Debug, Clone, Default)]
 pub struct Timings {
     passes: Vec<PassTime>,
 }
 
-/// Wall clock and CPU clock of this process.
+/// Wall clock and process CPU clock.
 #[derive(Debug, Clone, Copy)]
 pub struct Stopwatch {
     wall: Instant,
@@ -57,7 +57,7 @@ impl Stopwatch {
         }
     }
 
-    /// Wall time and CPU time of all threads since the start, milliseconds.
+    /// Wall time and CPU time of all threads since `start`, milliseconds.
     pub fn elapsed_ms(&self) -> (f64, f64) {
         let ms = |d: Duration| d.as_secs_f64() * 1e3;
         (ms(self.wall.elapsed()), ms(self.cpu.elapsed()))
@@ -73,7 +73,7 @@ impl Timings {
         self.passes.push(time);
     }
 
-    /// The passes.
+    /// Times of all passes.
     pub fn passes(&self) -> &[PassTime] {
         &self.passes
     }
@@ -105,7 +105,7 @@ impl Queries {
 
     pub(in crate::gpu) fn reset(&mut self) {
         self.names.clear();
-        // SAFETY: hostQueryReset is on and no submission that uses the pool is pending.
+        // SAFETY: hostQueryReset is enabled and no pending submission uses the pool.
         unsafe {
             self.context
                 .raw()
@@ -113,7 +113,7 @@ impl Queries {
         };
     }
 
-    /// Index of the pass, while there is room.
+    /// Index of the pass, or `None` if the pool is full.
     pub(in crate::gpu) fn begin(
         &mut self,
         command: vk::CommandBuffer,

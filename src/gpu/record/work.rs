@@ -1,4 +1,4 @@
-//! Work of passes: draws, the least memory traffic, pipeline statistics.
+//! Work counters of passes: draws, minimum memory traffic, pipeline statistics.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use crate::gpu::device::context::Context;
 use crate::gpu::error::{During, Result};
 use crate::gpu::memory::image::Image;
 
-/// The work of one pass.
+/// Work counters of one pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PassWork {
     /// Name of the pass.
@@ -17,17 +17,17 @@ pub struct PassWork {
     pub draws: u64,
     /// Memory traffic.
     pub traffic: Traffic,
-    /// Counters of the device, if it has them.
+    /// Pipeline statistics, if the device supports them.
     pub statistics: Option<PipelineStatistics>,
 }
 
-/// Lower bound of the memory traffic of a pass, as if every byte were fetched once.
+/// Lower bound on the memory traffic of a pass, assuming every byte is fetched once.
 ///
-/// Attachments count whole, and twice when they are loaded; a sampled image counts at most one texel for each pixel of the
-/// target; vertex, index and storage buffers count once.
+/// Attachments count in full, and twice if they are loaded. A sampled image counts at most one texel per target pixel. Vertex,
+/// index and storage buffers count once.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Traffic {
-    /// Pixels of the target, all layers.
+    /// Pixels of the target, over all layers.
     pub pixels: u64,
     /// Bytes read.
     pub bytes_read: u64,
@@ -35,7 +35,7 @@ pub struct Traffic {
     pub bytes_written: u64,
 }
 
-/// Counters of the device.
+/// Pipeline statistics counted by the device.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct PipelineStatistics {
     /// Vertices read.
@@ -50,7 +50,7 @@ pub struct PipelineStatistics {
     pub compute_invocations: u64,
 }
 
-/// The counters in the order of their bits, which is the order of the results.
+/// The counters in bit order, which is the order of the query results.
 const COUNTERS: [vk::QueryPipelineStatisticFlags; 5] = [
     vk::QueryPipelineStatisticFlags::INPUT_ASSEMBLY_VERTICES,
     vk::QueryPipelineStatisticFlags::VERTEX_SHADER_INVOCATIONS,
@@ -62,7 +62,7 @@ const COUNTERS: [vk::QueryPipelineStatisticFlags; 5] = [
 const MAX_PASSES: u32 = 128;
 
 impl Traffic {
-    /// No traffic yet, for a target of this many pixels.
+    /// Zero traffic for a target with this many pixels.
     pub(in crate::gpu) fn new(pixels: u64) -> Self {
         Self {
             pixels,
@@ -75,7 +75,7 @@ impl Traffic {
         self.bytes_read += texels(image).min(self.pixels) * texel_bytes(image.format());
     }
 
-    /// Adds an attachment or storage image; `keeps`: it is loaded too.
+    /// Adds an attachment or storage image; `keeps` if it is also loaded.
     pub(in crate::gpu) fn write(&mut self, image: &Image, keeps: bool) {
         let bytes = texels(image) * texel_bytes(image.format());
         self.bytes_written += bytes;
@@ -109,7 +109,7 @@ pub(in crate::gpu) fn texel_bytes(format: vk::Format) -> u64 {
     }
 }
 
-/// Work of the passes of the frame that is recorded, and its queries.
+/// Work counters of the frame being recorded, and their queries.
 pub(in crate::gpu) struct WorkLog {
     context: Arc<Context>,
     pool: vk::QueryPool,
@@ -131,7 +131,7 @@ impl WorkLog {
                 .query_type(vk::QueryType::PIPELINE_STATISTICS)
                 .query_count(MAX_PASSES)
                 .pipeline_statistics(flags);
-            // SAFETY: the info has no pointers; the feature is on.
+            // SAFETY: the info has no pointers; the feature is enabled.
             log.pool = unsafe { context.raw().create_query_pool(&info, None) }
                 .during("create pipeline statistics")?;
         }
@@ -145,7 +145,7 @@ impl WorkLog {
     pub(in crate::gpu) fn reset(&mut self) {
         self.passes.clear();
         if self.pool != vk::QueryPool::null() {
-            // SAFETY: hostQueryReset is on and no submission that uses the pool is pending.
+            // SAFETY: hostQueryReset is enabled and no pending submission uses the pool.
             unsafe {
                 self.context
                     .raw()
@@ -154,7 +154,7 @@ impl WorkLog {
         }
     }
 
-    /// Starts counting, outside of a rendering; returns the index of the pass.
+    /// Begins counting, outside a render pass; returns the index of the pass.
     pub(in crate::gpu) fn begin(
         &mut self,
         command: vk::CommandBuffer,
@@ -179,7 +179,7 @@ impl WorkLog {
         index
     }
 
-    /// Ends counting, outside of a rendering.
+    /// Ends counting, outside a render pass.
     pub(in crate::gpu) fn end(&self, command: vk::CommandBuffer, index: usize) {
         if let Some(query) = self.query(index) {
             // SAFETY: pairs with `begin`.
@@ -194,7 +194,7 @@ impl WorkLog {
         }
     }
 
-    /// The query of a pass, while there is room.
+    /// The query of a pass, or `None` if the pool is full.
     fn query(&self, index: usize) -> Option<u32> {
         let query = u32::try_from(index).ok()?;
         (self.pool != vk::QueryPool::null() && query < MAX_PASSES).then_some(query)

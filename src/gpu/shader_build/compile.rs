@@ -1,4 +1,4 @@
-//! GLSL to SPIR-V for Vulkan 1.3, by shaderc.
+//! Compilation of GLSL to SPIR-V for Vulkan 1.3, with shaderc.
 
 use std::fs;
 use std::path::Path;
@@ -18,11 +18,11 @@ fn stage_kind(path: &Path) -> Option<ShaderKind> {
     }
 }
 
-/// Compiles the stage `name`, a path below the folder of all shaders, of a variant followed by its macros as `+A+B`; includes lie
-/// in that folder's `include`. With `debug` it keeps names and lines, unoptimised.
+/// Compiles the stage `name`, a path relative to the shader folder, followed by the macros of a variant as `+A+B`. Includes are
+/// looked up in the `include` subfolder. With `debug`, names and line numbers are kept and nothing is optimised.
 ///
 /// # Errors
-/// The compiler's lines, `file:line: message`.
+/// The compiler's messages, as `file:line: message`.
 pub fn compile(
     compiler: &Compiler,
     shaders: &Path,
@@ -36,8 +36,8 @@ pub fn compile(
     let folder = shaders.join("include");
     let mut options = CompileOptions::new().map_err(|e| format!("shaderc: {e}"))?;
     options.set_target_env(TargetEnv::Vulkan, EnvVersion::Vulkan1_3 as u32);
-    // In SPIR-V 1.6 the size of a work group may be a constant of its own (LocalSizeId), which takes the feature
-    // maintenance4 and which rspirv does not read.
+    // In SPIR-V 1.6 the work group size may be given by constants (LocalSizeId), which requires the feature maintenance4 and
+    // which rspirv does not parse.
     options.set_target_spirv(match kind {
         ShaderKind::Compute => SpirvVersion::V1_5,
         _ => SpirvVersion::V1_6,
@@ -75,7 +75,7 @@ fn include(folder: &Path, name: &str, from: &str) -> Result<ResolvedInclude, Str
     })
 }
 
-/// shaderc prefixes its `file:line: message` lines with a summary of its own, which would hide them.
+/// Removes the summary that shaderc puts before its `file:line: message` lines.
 fn compiler_message(error: &shaderc::Error) -> String {
     match error {
         shaderc::Error::CompilationError(_, text) => text.clone(),

@@ -1,5 +1,5 @@
-//! GLSL to SPIR-V, and what a stage declares, in the words of this crate's source. Used by build.rs, and at run time by
-//! builds that reload their shaders.
+//! Compilation of GLSL to SPIR-V and reflection of the stage interface as Rust source. Used by build.rs, and at run time by
+//! builds with hot reload.
 
 mod compile;
 mod reflect;

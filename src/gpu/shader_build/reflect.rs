@@ -1,4 +1,4 @@
-//! What a stage declares, read from its SPIR-V.
+//! Reflection of a stage's interface from its SPIR-V.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -6,10 +6,11 @@ use std::fmt::Write as _;
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{Decoration, ExecutionMode, Op, StorageClass, Word};
 
-/// The fields `bindings`, `push`, `constants`, `outputs` and `local_size` of a `Shader`, as Rust source; `words` must have been compiled with names.
+/// The fields `bindings`, `push`, `constants`, `outputs` and `local_size` of a `Shader`, as Rust source. `words` must have been
+/// compiled with debug names.
 ///
 /// # Errors
-/// Words that are no SPIR-V, or a descriptor without a binding.
+/// When `words` is not valid SPIR-V, or a descriptor has no binding.
 pub fn declarations(name: &str, words: &[u32]) -> Result<String, String> {
     let module = rspirv::dr::load_words(words).map_err(|e| format!("{name}: {e}"))?;
     let reflection = &Reflection::new(&module);
@@ -55,7 +56,7 @@ pub fn declarations(name: &str, words: &[u32]) -> Result<String, String> {
     ))
 }
 
-/// Size of a work group, of the instruction that states it.
+/// Work group size, from the instruction that declares it.
 fn local_size(mode: &Instruction) -> Option<[u32; 3]> {
     match mode.operands.as_slice() {
         [
@@ -69,7 +70,7 @@ fn local_size(mode: &Instruction) -> Option<[u32; 3]> {
     }
 }
 
-/// What one stage declares, looked up by result id.
+/// The instructions of one stage, indexed by result ID.
 struct Reflection<'m> {
     types: HashMap<Word, &'m Instruction>,
     names: HashMap<Word, &'m str>,
@@ -149,7 +150,7 @@ impl<'m> Reflection<'m> {
         }
     }
 
-    /// Number of outputs that have a location.
+    /// Number of outputs with a location.
     fn outputs(&self) -> usize {
         let is_located = |v: &&&Instruction| {
             let key = (v.result_id.unwrap_or_default(), Decoration::Location);
@@ -163,7 +164,7 @@ impl<'m> Reflection<'m> {
             .count()
     }
 
-    /// Size in bytes of a type in `layout(scalar)`: no padding between components.
+    /// Size of a type in `layout(scalar)`, bytes: no padding between components.
     fn size(&self, id: Word) -> Option<u32> {
         let instruction = self.types.get(&id)?;
         let literal = |i: usize| match instruction.operands.get(i) {
@@ -208,7 +209,7 @@ impl<'m> Reflection<'m> {
                     return None;
                 };
                 let key = (id, i as u32);
-                // A run-time array has no size of its own.
+                // A run-time array has no static size.
                 let size = self.size(*member).unwrap_or(0);
                 Some((*self.members.get(&key)?, *self.offsets.get(&key)?, size))
             })

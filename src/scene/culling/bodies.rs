@@ -1,4 +1,4 @@
-//! Connected surfaces of a scene: their thickness, and whether they are closed.
+//! Connected surfaces (bodies) of a scene: their thickness, and whether they are closed.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -7,22 +7,22 @@ use glam::{DVec3, Vec3};
 
 use crate::scene::{Bounds, Scene};
 
-/// A connected surface: triangles that share vertex positions.
+/// A connected surface: triangles connected through shared vertex positions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
-    /// Around its triangles, metres.
+    /// Bounds of its triangles, metres.
     pub bounds: Bounds,
-    /// Mean chord, metres: 4 volume / area (Cauchy). For an open surface the volume is that of the cone over it from the
-    /// centre of its bounds. The mean chord of a thin wall is twice its thickness.
+    /// Mean chord length, metres: 4 volume / area (Cauchy). The volume of an open surface is that of the cone from the centre
+    /// of its bounds. The mean chord of a thin wall is twice its thickness.
     pub mean_chord: f32,
-    /// Whether it is the closed surface of a solid, its triangles counter-clockwise seen from outside: then none of its back
-    /// faces is visible from outside.
+    /// Whether the surface is closed and its triangles wind counter-clockwise seen from outside. No back face is then visible
+    /// from outside.
     pub is_solid: bool,
 }
 
 impl Body {
-    /// Thickness behind the surface for ambient occlusion, metres: the mean chord, for a solid a share of it. The thickness
-    /// of a sheet is unknown: the middle extent of its bounds.
+    /// Thickness behind the surface for ambient occlusion, metres: the mean chord, scaled by a constant for solids. A sheet has
+    /// no measurable thickness; the middle extent of its bounds is used.
     pub fn thickness(&self) -> f32 {
         let mut extents = self.bounds.extent().to_array();
         extents.sort_by(f32::total_cmp);
@@ -35,23 +35,23 @@ impl Body {
     }
 }
 
-/// Share of the mean chord that is a solid's thickness, for ambient occlusion.
+/// Thickness of a solid for ambient occlusion, as a fraction of its mean chord.
 const SOLID: f32 = 0.8;
 
-/// Mean chord over largest extent, below which a body is a sheet.
+/// Bodies with a smaller ratio of mean chord to largest extent are sheets.
 const FLAT: f32 = 1e-3;
 
 /// The bodies of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bodies {
-    /// Each body.
+    /// All bodies.
     pub list: Vec<Body>,
-    /// Index in `list` of the body of each vertex.
+    /// For each vertex, the index of its body in `list`.
     pub of_vertex: Vec<u32>,
 }
 
 impl Bodies {
-    /// Finds the bodies. Vertices with equal positions, to the bit, are joined.
+    /// Finds the bodies. Vertices with bitwise equal positions are merged.
     pub fn of(scene: &Scene) -> Self {
         let points = weld(&scene.positions);
         let mut sets = Sets::new(points.len());
@@ -84,13 +84,13 @@ impl Bodies {
     }
 }
 
-/// For each vertex the first one at the same position.
+/// For each vertex, the first vertex at the same position.
 fn weld(positions: &[[f32; 3]]) -> Vec<u32> {
     let mut first: HashMap<[u32; 3], u32, BuildHasherDefault<Mix>> = HashMap::default();
     first.reserve(positions.len());
     let numbered = positions.iter().enumerate();
     numbered
-        // Adding zero turns −0 into 0.
+        // Adding zero normalises −0 to 0.
         .map(|(i, p)| {
             *first
                 .entry(p.map(|x| (x + 0.0).to_bits()))
@@ -99,7 +99,7 @@ fn weld(positions: &[[f32; 3]]) -> Vec<u32> {
         .collect()
 }
 
-/// A fast hash: there are many positions, and a slow search is all that a hostile file could cause.
+/// A fast hash for the many positions. A malicious file could only slow the lookup down.
 #[derive(Default)]
 struct Mix(u64);
 
@@ -148,17 +148,17 @@ impl Sets {
     }
 }
 
-/// Sums over the triangles of a body.
+/// Accumulated sums over the triangles of a body.
 #[derive(Clone, Copy)]
 struct Sums {
     bounds: Bounds,
-    /// Apex of the volumes, metres: a corner of the body, so that they keep their precision.
+    /// Apex of the tetrahedra whose volumes are summed, metres. A corner of the body, for precision.
     origin: Option<DVec3>,
     six_volumes: f64,
-    /// Sum of the triangles' area vectors, doubled, m²: zero for a closed surface.
+    /// Sum of the doubled area vectors of the triangles, m²; zero for a closed surface.
     two_areas: DVec3,
     two_area: f64,
-    /// Sum of the hashes of directed edges; opposite edges cancel: zero if all edges are paired.
+    /// Sum of the hashes of the directed edges. Opposite edges cancel, so it is zero if all edges are paired.
     unpaired: u64,
 }
 
@@ -208,7 +208,7 @@ impl Sums {
 mod tests {
     use super::*;
 
-    /// A box of twelve triangles, each face with vertices of its own.
+    /// A box of twelve triangles. Each face has its own vertices.
     fn cuboid(scene: &mut Scene, corner: Vec3, size: Vec3, faces: usize, inward: bool) {
         let order = if inward {
             [0, 2, 1, 0, 3, 2]

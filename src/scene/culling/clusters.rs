@@ -1,4 +1,4 @@
-//! Clusters: small groups of neighbouring triangles, the unit of culling (also called meshlets).
+//! Clusters (meshlets): small groups of neighbouring triangles, the unit of culling.
 
 use std::ops::Range;
 use std::thread;
@@ -7,51 +7,51 @@ use glam::Vec3;
 
 use crate::scene::{Bodies, Bounds, Scene};
 
-/// Most triangles of a cluster.
+/// Maximum number of triangles per cluster.
 const MAX_TRIANGLES: usize = 128;
-/// Fewest triangles that are split on two threads.
+/// Minimum number of triangles to split on two threads.
 const MIN_PARALLEL: usize = 1 << 15;
 
-/// Neighbouring triangles.
+/// A group of neighbouring triangles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cluster {
-    /// First of its indices.
+    /// Offset of its first index.
     pub first: u32,
     /// Number of indices.
     pub count: u32,
-    /// Around the triangles, metres.
+    /// Bounds of its triangles, metres.
     pub bounds: Bounds,
-    /// Set if all triangles belong to solids.
+    /// Set if all triangles belong to closed bodies.
     pub solid: Option<Solid>,
-    /// Whether the stored normals of every triangle are on the side from which it winds counter-clockwise.
+    /// Whether the vertex normals of every triangle agree with its winding.
     pub normals_match_winding: bool,
 }
 
-/// Bounds and normal cone of triangles of solids, whose back faces are not visible from outside.
+/// Bounds and normal cone of triangles of closed bodies, whose back faces are not visible from outside.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solid {
-    /// Around the solids that the triangles belong to, metres.
+    /// Bounds of the bodies that the triangles belong to, metres.
     pub bodies: Bounds,
-    /// Axis of the normal cone, which contains the normals of all triangles, unit.
+    /// Axis of the normal cone, which contains the normals of all triangles; unit length.
     pub axis: Vec3,
-    /// Sine of the cone's half angle; 1 for a right angle and more.
+    /// Sine of the cone's half angle; 1 for a right angle or more.
     pub sine: f32,
 }
 
-/// Reordered indices and the clusters that they form.
+/// Reordered indices and the clusters they form.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Clusters {
-    /// The indices of the scene, those of each run in the order of its clusters.
+    /// The indices of the scene; within each run they are ordered by cluster.
     pub indices: Vec<u32>,
-    /// All clusters, in the order of their indices.
+    /// All clusters, in index order.
     pub list: Vec<Cluster>,
-    /// Range of each run in `list`.
+    /// For each run, its range in `list`.
     pub of_run: Vec<Range<usize>>,
 }
 
 impl Clusters {
-    /// Splits runs of a scene's indices (first and count) recursively at the median along the longest axis. Within a cluster
-    /// triangles keep their order, which mostly reuses vertices.
+    /// Splits runs of a scene's indices (first, count) recursively at the median of the longest axis. Triangles keep their
+    /// order within a cluster, which preserves most vertex reuse.
     pub fn of(scene: &Scene, bodies: &Bodies, runs: &[(u32, u32)]) -> Self {
         let mut made = Self {
             indices: scene.indices.clone(),
@@ -81,17 +81,17 @@ impl Clusters {
     }
 }
 
-/// Properties that all triangles of a cluster share.
+/// Properties shared by all triangles of a cluster.
 #[derive(Clone, Copy)]
 struct Kind {
-    /// Whether they belong to solids.
+    /// Whether they belong to closed bodies.
     is_solid: bool,
     /// [`Cluster::normals_match_winding`].
     normals_match_winding: bool,
 }
 
 impl Kind {
-    /// All kinds, in the order of their clusters.
+    /// All kinds, in the order in which their clusters are stored.
     const ALL: [Self; 4] = [
         Self::new(true, true),
         Self::new(true, false),
@@ -106,13 +106,13 @@ impl Kind {
         }
     }
 
-    /// Position in [`Kind::ALL`].
+    /// Index in [`Kind::ALL`].
     fn rank(self) -> usize {
         2 * usize::from(!self.is_solid) + usize::from(!self.normals_match_winding)
     }
 }
 
-/// A triangle that is being sorted.
+/// A triangle being sorted.
 #[derive(Clone, Copy)]
 struct Item {
     /// Three times its centroid, metres.
@@ -120,16 +120,16 @@ struct Item {
     triangle: u32,
 }
 
-/// The destination of the indices of some triangles.
+/// Destination of the indices of a range of triangles.
 struct Run<'i> {
-    /// Position of the first one.
+    /// Offset of the first index.
     first: u32,
     kind: Kind,
     indices: &'i mut [u32],
 }
 
 impl Run<'_> {
-    /// Splits it after this many triangles.
+    /// Splits the run after this many triangles.
     fn halves(&mut self, triangles: usize) -> (Run<'_>, Run<'_>) {
         let (low, high) = self.indices.split_at_mut(3 * triangles);
         let of = |first, indices| Run {
@@ -183,7 +183,7 @@ impl Splitter<'_> {
         }
     }
 
-    /// Clusters of at most [`MAX_TRIANGLES`] triangles.
+    /// Splits into clusters of at most [`MAX_TRIANGLES`] triangles.
     fn split(&self, items: &mut [Item], mut run: Run<'_>) -> Vec<Cluster> {
         if items.is_empty() {
             return Vec::new();
@@ -201,7 +201,7 @@ impl Splitter<'_> {
                 let rest = scope.spawn(|| self.split(high, high_run));
                 let clusters = self.split(low, low_run);
                 let rest = rest.join();
-                // A panic on that thread is a panic on this one.
+                // Propagates a panic of the other thread.
                 (
                     clusters,
                     rest.unwrap_or_else(|fault| std::panic::resume_unwind(fault)),
@@ -242,7 +242,7 @@ impl Splitter<'_> {
             })
         };
         let axis = normals().sum::<Vec3>().normalize_or_zero();
-        // A triangle without area has no normal and is never visible.
+        // A degenerate triangle has no normal and is never visible.
         let cosine = normals()
             .filter(|n| *n != Vec3::ZERO)
             .map(|n| n.dot(axis))
@@ -259,7 +259,7 @@ impl Splitter<'_> {
     }
 }
 
-/// Moves the triangles that are lower along the longest axis before position `middle`.
+/// Partitions the triangles around position `middle` along the longest axis.
 fn halve(items: &mut [Item], middle: usize) {
     let extent = Bounds::of(items.iter().map(|item| item.centroid)).extent();
     let axis = extent.max_position();
@@ -274,7 +274,7 @@ fn halve(items: &mut [Item], middle: usize) {
 mod tests {
     use super::*;
 
-    /// A sheet of `n` x `n` quads in the plane y = 0, facing up, in the order of its rows.
+    /// A sheet of `n` x `n` quads in the plane y = 0, facing up, in row order.
     fn sheet(n: u32) -> Scene {
         let mut scene = Scene::default();
         for row in 0..=n {

@@ -1,5 +1,5 @@
-//! The draw layout of a scene: its triangles in the order of clusters, and the thickness of its bodies. It depends on the
-//! mesh only and takes as long to compute as a mesh to read, so the cache stores it too.
+//! The draw layout of a scene: triangles in cluster order, and the thickness of the bodies. It depends only on the mesh and
+//! takes about as long to compute as the mesh takes to read, so the cache stores it too.
 
 use std::ops::Range;
 
@@ -8,19 +8,19 @@ use glam::Vec3;
 
 use crate::scene::{Bodies, Body, Bounds, Cluster, Clusters, Scene, Solid};
 
-/// Data that is derived from the mesh of a scene for drawing.
+/// Data derived from the mesh of a scene for drawing.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Layout {
-    /// All clusters, in the order of their indices.
+    /// All clusters, in index order.
     pub clusters: Vec<Cluster>,
-    /// Range of each part in `clusters`.
+    /// For each part, its range in `clusters`.
     pub of_part: Vec<Range<usize>>,
-    /// Thickness of the body behind each vertex, metres.
+    /// For each vertex, the thickness of its body, metres.
     pub thickness: Vec<f32>,
 }
 
 impl Layout {
-    /// Computes the layout of a scene, and its indices with the triangles of each part in the order of clusters.
+    /// Computes the layout of a scene, and the indices with the triangles of each part in cluster order.
     pub fn of(scene: &Scene) -> (Vec<u32>, Self) {
         let bodies = Bodies::of(scene);
         let runs: Vec<(u32, u32)> = scene
@@ -51,7 +51,7 @@ impl Layout {
     }
 }
 
-/// A layout as the cache stores it: arrays of plain numbers.
+/// A layout as stored in the cache: arrays of plain numbers.
 pub struct FlatLayout<'l> {
     pub clusters: Vec<FlatCluster>,
     pub of_part: Vec<[u32; 2]>,
@@ -69,7 +69,7 @@ impl<'l> FlatLayout<'l> {
     }
 }
 
-/// A [`Cluster`] of plain numbers.
+/// A [`Cluster`] as plain numbers.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub struct FlatCluster {
@@ -77,7 +77,7 @@ pub struct FlatCluster {
     count: u32,
     bounds: [Vec3; 2],
     normals_match_winding: u32,
-    /// 0: the fields that follow are unused.
+    /// If 0, the following fields are unused.
     is_solid: u32,
     bodies: [Vec3; 2],
     axis: Vec3,

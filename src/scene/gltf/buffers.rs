@@ -1,4 +1,4 @@
-//! The buffers of a glTF file and the accessors into them. Every range is checked before anything is allocated.
+//! glTF buffers and accessors. Every range is checked before anything is allocated.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -18,13 +18,13 @@ pub struct Buffers(Vec<Rc<Vec<u8>>>);
 
 /// What a URI refers to.
 pub enum Uri {
-    /// The bytes that the URI itself holds.
+    /// Bytes embedded in the URI.
     Data(Vec<u8>),
     /// A file.
     File(Lookup),
 }
 
-/// Resolves a URI in the model at `path`.
+/// Resolves a URI of the model at `path`.
 pub fn resolve(builder: &Builder, path: &Path, uri: &str) -> Result<Uri, String> {
     if let Some(data) = uri.strip_prefix("data:") {
         let (kind, text) = data.split_once(',').ok_or("a data URI has no comma")?;
@@ -42,9 +42,9 @@ pub fn resolve(builder: &Builder, path: &Path, uri: &str) -> Result<Uri, String>
 }
 
 impl Buffers {
-    /// Reads all buffers; those with the same source share their bytes.
+    /// Reads all buffers. Buffers with the same source share their bytes.
     pub fn read<'a>(builder: &Builder, path: &Path, gltf: &'a gltf::Gltf) -> Result<Self, String> {
-        // A hostile file could name the same source a thousand times.
+        // A malicious file could name the same source a thousand times.
         let mut known: HashMap<Option<&str>, Rc<Vec<u8>>> = HashMap::new();
         let blob = gltf.blob.clone().map(|blob| (None, Rc::new(blob)));
         known.extend(blob);
@@ -70,7 +70,7 @@ impl Buffers {
             .map(Self)
     }
 
-    /// A picture in a view.
+    /// An image stored in a buffer view.
     pub fn picture(&self, view: &gltf::buffer::View<'_>) -> Result<EmbeddedImage, String> {
         let length = self.view(view)?.len();
         Ok(EmbeddedImage {
@@ -79,7 +79,7 @@ impl Buffers {
         })
     }
 
-    /// The bytes of a view.
+    /// The bytes of a buffer view.
     pub fn view(&self, view: &gltf::buffer::View<'_>) -> Result<&[u8], String> {
         let end = view.offset().checked_add(view.length());
         let bytes = self.0.get(view.buffer().index());
@@ -87,7 +87,7 @@ impl Buffers {
             .ok_or_else(|| format!("buffer view {} exceeds its buffer", view.index()))
     }
 
-    /// The elements of an accessor, at most `limit`, as `N` numbers. Missing components are 0, normalised integers become
+    /// Reads at most `limit` elements of an accessor as `N` numbers each. Missing components are 0; normalised integers map to
     /// 0..1 or −1..1.
     pub fn floats<const N: usize>(
         &self,
@@ -117,7 +117,7 @@ impl Buffers {
         Ok(values)
     }
 
-    /// The indices of an accessor, at most `limit`.
+    /// Reads at most `limit` indices from an accessor.
     pub fn indices(&self, accessor: &Accessor<'_>, limit: usize) -> Result<Vec<u32>, String> {
         let layout = Layout::of(accessor, limit)?;
         let kind = layout.kind;
@@ -199,7 +199,7 @@ impl Buffers {
     }
 }
 
-/// Reads all bytes that a URI refers to.
+/// Reads all bytes a URI refers to.
 fn read_uri(builder: &Builder, path: &Path, uri: &str) -> Result<Vec<u8>, String> {
     match resolve(builder, path, uri)? {
         Uri::Data(bytes) => Ok(bytes),
@@ -217,9 +217,9 @@ fn read_uri(builder: &Builder, path: &Path, uri: &str) -> Result<Vec<u8>, String
 struct Layout {
     count: usize,
     kind: DataType,
-    /// Bytes of a component.
+    /// Bytes per component.
     size: usize,
-    /// Components of an element.
+    /// Components per element.
     width: usize,
 }
 
@@ -253,12 +253,12 @@ fn index(bytes: &[u8], kind: DataType) -> u32 {
         (DataType::U8, [a]) => u32::from(*a),
         (DataType::U16, [a, b]) => u32::from(u16::from_le_bytes([*a, *b])),
         (DataType::U32, [a, b, c, d]) => u32::from_le_bytes([*a, *b, *c, *d]),
-        // No vertex has this index: the mesh is refused.
+        // An invalid index, so that the mesh is rejected.
         _ => u32::MAX,
     }
 }
 
-/// glTF 2.0, section 3.11: normalised integers.
+/// Conversion of normalised integers: glTF 2.0, section 3.11.
 fn number(bytes: &[u8], kind: DataType, normalised: bool) -> f32 {
     let (value, largest) = match (kind, bytes) {
         (DataType::F32, [a, b, c, d]) => return f32::from_le_bytes([*a, *b, *c, *d]),

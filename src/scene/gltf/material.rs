@@ -1,4 +1,4 @@
-//! Materials of glTF files, converted to ρ_d, ρ_s and p by [`phong_of`].
+//! glTF materials, converted to ρ_d, ρ_s and p by [`phong_of`].
 
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -13,20 +13,20 @@ use crate::scene::material::{MTL_DEFAULT, Material, MetallicRoughness, phong_of}
 use crate::scene::mesh::soup::{MaterialUse, NONE};
 use crate::scene::texture::picture::{EmbeddedImage, TextureKey};
 
-/// A material as meshes use it.
+/// A material as used by meshes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surface {
-    /// The material; its transform has v downward.
+    /// The material; its texture transform has v pointing down.
     pub material: MaterialUse,
-    /// Which set of texture coordinates it uses.
+    /// Index of the texture coordinate set.
     pub texcoord_set: u32,
 }
 
-/// The materials of one file.
+/// All materials of a file.
 #[derive(Debug)]
 pub struct Materials {
     surfaces: Vec<Surface>,
-    /// For primitives without a material.
+    /// Used for primitives without a material.
     default: Surface,
 }
 
@@ -135,7 +135,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Textures of roughness and metalness are replaced by their means: p is constant over a material.
+    /// Roughness and metalness textures are replaced by their means, because p is constant over a material.
     fn metallic_roughness(
         &mut self,
         source: &gltf::Material<'_>,
@@ -168,7 +168,7 @@ impl Reader<'_, '_> {
         self.builder.texture(self.path, wanted)
     }
 
-    /// The path of an image; embedded images get a made-up one.
+    /// The path of an image; embedded images get a synthetic one.
     fn picture(&mut self, image: &gltf::Image<'_>) -> Option<PathBuf> {
         let mut name = self.path.as_os_str().to_owned();
         name.push(format!(" image {}", image.index()));
@@ -202,13 +202,13 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The texture coordinate set and KHR_texture_transform: scale, then rotation, then offset.
+/// The texture coordinate set and the transform of KHR_texture_transform (scale, then rotation, then offset).
 fn transform(info: &gltf::texture::Info<'_>) -> (u32, Affine2) {
     let Some(transform) = info.texture_transform() else {
         return (info.tex_coord(), Affine2::IDENTITY);
     };
     let set = transform.tex_coord().unwrap_or(info.tex_coord());
-    // Counter-clockwise on the picture, which is clockwise in these coordinates because v runs downward.
+    // Counter-clockwise in the image, which is clockwise in these coordinates because v points down.
     let texture_from_mesh = Affine2::from_scale_angle_translation(
         Vec2::from(transform.scale()),
         -transform.rotation(),

@@ -1,4 +1,4 @@
-//! Primitives of glTF meshes: triangles, strips and fans, and their vertex attributes.
+//! Primitives of glTF meshes: triangle lists, strips and fans, with vertex attributes.
 
 use glam::{Vec2, Vec3};
 use gltf::Semantic;
@@ -13,19 +13,19 @@ use crate::scene::mesh::soup;
 use crate::scene::mesh::soup::{Corner, Dropped, MaterialUse, NONE, Soup, Triangle, usable_face};
 use crate::scene::texture::normal_map::usable_tangent;
 
-/// The triangles of a primitive; attributes have the same length and indices are in range.
+/// The triangles of a primitive. All attributes have the same length, and indices are in range.
 #[derive(Debug, Default)]
 pub struct Faces {
     positions: Vec<[f32; 3]>,
     normals: Option<Vec<[f32; 3]>>,
-    /// In texture space, v downward; empty for (0, 0) everywhere.
+    /// In texture space, v pointing down; empty for (0, 0) everywhere.
     texcoords: Vec<[f32; 2]>,
     colours: Option<Vec<[f32; 4]>>,
     tangents: Option<Vec<[f32; 4]>>,
     pub indices: Vec<u32>,
 }
 
-/// Reads a primitive of at most `limit` corners; none for points and lines.
+/// Reads a primitive with at most `limit` corners; `None` for points and lines.
 pub fn read_faces(
     buffers: &Buffers,
     primitive: &gltf::Primitive<'_>,
@@ -120,7 +120,7 @@ fn as_triangles(indices: Vec<u32>, mode: Mode) -> Vec<u32> {
         Mode::TriangleStrip => indices
             .windows(3)
             .enumerate()
-            // Every second triangle has the opposite winding.
+            // Every second triangle of a strip has the opposite winding.
             .flat_map(|(i, w)| {
                 if i % 2 == 0 {
                     [w[0], w[1], w[2]]
@@ -142,7 +142,7 @@ fn as_triangles(indices: Vec<u32>, mode: Mode) -> Vec<u32> {
 }
 
 impl Faces {
-    /// Adds what the renderer needs and the file lacks: normals (flat, or smooth below the crease angle) and tangents.
+    /// Adds attributes the renderer needs and the file lacks: normals (flat, or smooth below the crease angle) and tangents.
     pub fn into_mesh(mut self, surface: Surface, smooth_deg: Option<f32>) -> (Mesh, Dropped) {
         let needs_tangents = surface.material.has_normal_map && self.tangents.is_none();
         if needs_tangents || !self.has_usable_normals() {
@@ -193,7 +193,7 @@ impl Faces {
         }
     }
 
-    /// Builds the mesh from a triangle soup, which computes missing normals and tangents.
+    /// Rebuilds the mesh from a triangle soup, which computes missing normals and tangents.
     fn rebuild(self, surface: Surface, smooth_deg: Option<f32>) -> (Mesh, Dropped) {
         let has_texcoords = !self.texcoords.is_empty();
         let has_normals = self.normals.is_some();
@@ -208,7 +208,7 @@ impl Faces {
             material: 0,
             smoothing: 0,
         };
-        // In a soup v runs upward.
+        // In a soup, v points up.
         let flipped = |uv: [f32; 2]| Vec2::new(uv[0], 1.0 - uv[1]);
         let mut soup = Soup {
             positions: self.positions.into_iter().map(Vec3::from).collect(),

@@ -1,7 +1,7 @@
 //! glTF 2.0 models (`.gltf`, `.glb`).
 //!
-//! Skins and morph targets are drawn in their rest pose; textures repeat; blended materials are cut out at half their
-//! opacity.
+//! Skins and morph targets are drawn in their rest pose, textures always repeat, and blended materials become cut-outs with an
+//! alpha threshold of 0.5.
 
 mod buffers;
 mod material;
@@ -23,10 +23,10 @@ use crate::scene::mesh::soup::NONE;
 use crate::scene::obj::{ImportReport, Placement};
 use crate::scene::scene_file::NamedCamera;
 
-/// Adds the model of `path` to the scene; returns its cameras.
+/// Adds the model at `path` to the scene; returns its cameras.
 ///
 /// # Errors
-/// A file that cannot be read, that is not valid glTF or needs an unsupported extension, or nothing to draw.
+/// When a file cannot be read, is not valid glTF, requires an unsupported extension, or contains nothing to draw.
 pub fn append_gltf(
     builder: &mut Builder,
     path: &Path,
@@ -66,12 +66,12 @@ pub fn append_gltf(
     Ok(model.cameras)
 }
 
-/// Parses the document and its binary chunk; every index in the document is in range.
+/// Parses the document and its binary chunk. All indices in the result are in range.
 fn parse(bytes: &[u8]) -> Result<gltf::Gltf, String> {
     let unchecked = gltf::Gltf::from_slice_without_validation(bytes);
     let gltf::Gltf { document, blob } = unchecked.map_err(|e| e.to_string())?;
     let mut root = document.into_json();
-    // The validation of the crate looks up the accessor of positions before it checks the index.
+    // The crate's validation looks up the position accessor before it checks the index.
     let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let mut named = primitives.flat_map(|primitive| primitive.attributes.values());
     if named.any(|accessor| accessor.value() >= root.accessors.len()) {
@@ -83,7 +83,7 @@ fn parse(bytes: &[u8]) -> Result<gltf::Gltf, String> {
                 "image {number} has neither a URI nor a buffer view"
             ));
         }
-        // The crate requires a type, but the decoder finds it from the content.
+        // The crate requires a MIME type, but the decoder detects it from the content.
         let unknown = || gltf::json::image::MimeType("image/png".to_owned());
         image.mime_type.get_or_insert_with(unknown);
     }
@@ -91,7 +91,7 @@ fn parse(bytes: &[u8]) -> Result<gltf::Gltf, String> {
     Ok(gltf::Gltf { document, blob })
 }
 
-/// The nodes of the default scene (else of the first scene, else all nodes), each once, with their transforms.
+/// The nodes of the default scene (or else the first scene, or else all nodes), each once, with their transforms.
 fn nodes(gltf: &gltf::Document) -> Vec<(gltf::Node<'_>, Affine3A)> {
     let scene = gltf.default_scene().or_else(|| gltf.scenes().next());
     let roots: Vec<gltf::Node<'_>> = match scene {
@@ -106,7 +106,7 @@ fn nodes(gltf: &gltf::Document) -> Vec<(gltf::Node<'_>, Affine3A)> {
                 .collect()
         }
     };
-    // A malformed file may have cycles.
+    // A malformed file may contain cycles.
     let mut seen = HashSet::new();
     let mut open: Vec<_> = roots
         .into_iter()
@@ -131,9 +131,9 @@ struct Model<'m> {
     placement: &'m Placement,
     buffers: Buffers,
     materials: Materials,
-    /// Meshes read so far, for further instances.
+    /// Meshes read so far, for reuse by further instances.
     known: HashMap<usize, Rc<Vec<Mesh>>>,
-    /// Triangles read, drawn or not, without instances.
+    /// Triangles read, drawn or not, not counting instances.
     triangles: usize,
     report: ImportReport,
     cameras: Vec<NamedCamera>,
@@ -194,7 +194,7 @@ impl Model<'_> {
         Ok(meshes)
     }
 
-    /// None for a material that is not drawn.
+    /// `None` for a material that is not drawn.
     fn make_mesh(&mut self, faces: Faces, surface: Surface) -> Option<Mesh> {
         if surface.material.index == NONE {
             self.report.undrawn += faces.indices.len() / 3;

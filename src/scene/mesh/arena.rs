@@ -1,4 +1,4 @@
-//! The arena of vertices, indices and parts of a scene, and the welding of triangle soups into it.
+//! The arena of vertices, indices and parts of a scene, and welding of triangle soups into it.
 
 use glam::{Vec2, Vec3};
 
@@ -8,8 +8,8 @@ use crate::scene::mesh::soup::{Corner, MaterialUse, NONE, Soup, Triangle};
 use crate::scene::texture::normal_map::TangentInput;
 use crate::scene::{Part, Scene};
 
-/// Most vertices at one position that are compared with a new corner. Beyond it equal corners are not welded: this bounds
-/// the time that a hostile file can take.
+/// Maximum number of vertices at one position that are compared with a new corner. Beyond it, equal corners are not welded;
+/// this bounds the time for malicious files.
 const MAX_COMPARED: usize = 64;
 
 /// A vertex of the arena.
@@ -17,18 +17,18 @@ const MAX_COMPARED: usize = 64;
 pub struct Vertex {
     /// World space, metres.
     pub position: Vec3,
-    /// World space, unit.
+    /// World space, unit length.
     pub normal: Vec3,
     /// (0, 0) is the corner of the first texel of the first row.
     pub texcoord: Vec2,
     /// Linear RGBA.
     pub colour: Option<[f32; 4]>,
-    /// World space, unit; then the sign of the bitangent.
+    /// World space, unit length, followed by the sign of the bitangent.
     pub tangent: Option<[f32; 4]>,
 }
 
 impl Scene {
-    /// Adds a vertex; returns its index.
+    /// Appends a vertex; returns its index.
     pub(in crate::scene) fn push_vertex(&mut self, vertex: Vertex) -> u32 {
         let number = self.positions.len();
         self.positions.push(vertex.position.to_array());
@@ -47,7 +47,7 @@ impl Scene {
         number as u32
     }
 
-    /// Adds the part that starts at `first_index`, unless it has no triangles.
+    /// Appends the part starting at `first_index`, unless it has no triangles.
     pub(in crate::scene) fn finish_part(
         &mut self,
         first_index: usize,
@@ -73,15 +73,15 @@ impl Scene {
         });
     }
 
-    /// Whether 32-bit indices suffice for this many more corners.
+    /// Whether this many more corners fit into 32-bit indices.
     pub(in crate::scene) fn has_indices_for(&self, corners: usize) -> bool {
         let most = self.positions.len().max(self.indices.len());
         most.saturating_add(corners) < u32::MAX as usize
     }
 }
 
-/// Appends triangles without unusable ones, with their face normals: equal corners become one vertex, the triangles of one
-/// material one part. The caller has checked the number of triangles.
+/// Appends the usable triangles of a soup with their face normals. Equal corners are welded into one vertex, and the triangles
+/// of each material become one part. The caller has checked the number of triangles.
 pub fn append_soup(
     scene: &mut Scene,
     soup: &Soup,
@@ -115,7 +115,7 @@ pub fn append_soup(
 struct PartBuilder<'s> {
     soup: &'s Soup,
     normals: &'s [[Vec3; 3]],
-    /// One for each corner of the part's triangles; empty without a normal map.
+    /// One per corner of the part's triangles; empty without a normal map.
     tangents: Vec<[f32; 4]>,
     material: MaterialUse,
 }
@@ -146,14 +146,14 @@ impl PartBuilder<'_> {
         Vertex {
             position: self.soup.position(corner),
             normal,
-            // v runs upward from the last row in OBJ, downward from the first in Vulkan.
+            // In OBJ v points up from the last row, in Vulkan down from the first.
             texcoord: Vec2::new(uv.x, 1.0 - uv.y),
             colour: coloured.then(|| self.soup.colour_of(corner.position)),
             tangent,
         }
     }
 
-    /// With v upward.
+    /// v points up.
     fn texcoord(&self, corner: Corner) -> Vec2 {
         let placed = self
             .material
@@ -181,13 +181,13 @@ impl PartBuilder<'_> {
     }
 }
 
-/// Finds equal vertices of the part that is being built.
+/// Finds equal vertices in the part being built.
 struct Welder {
-    /// For each position its newest vertex, or [`NONE`].
+    /// For each position, its most recent vertex, or [`NONE`].
     newest: Vec<u32>,
-    /// For each vertex of the part the previous one at the same position, or [`NONE`].
+    /// For each vertex of the part, the previous vertex at the same position, or [`NONE`].
     before: Vec<u32>,
-    /// Positions of the vertices of the part, to reset `newest`.
+    /// Positions used by the part, to reset `newest`.
     used: Vec<u32>,
     first: usize,
 }
@@ -202,7 +202,7 @@ impl Welder {
         }
     }
 
-    /// Starts a part whose first vertex has the index `first`.
+    /// Starts a part whose first vertex has index `first`.
     fn begin(&mut self, first: usize) {
         for position in self.used.drain(..) {
             self.newest[position as usize] = NONE;
@@ -211,7 +211,7 @@ impl Welder {
         self.first = first;
     }
 
-    /// The index of a vertex, added at first use.
+    /// Index of a vertex, added on first use.
     fn index(&mut self, scene: &mut Scene, position: u32, vertex: &Vertex) -> u32 {
         let mut known = self.newest[position as usize];
         for _ in 0..MAX_COMPARED {
@@ -230,7 +230,7 @@ impl Welder {
         index
     }
 
-    /// Whether normal, texture coordinate and tangent agree; position and colour do already.
+    /// Whether normal, texture coordinate and tangent match; position and colour already do.
     fn agrees(&self, scene: &Scene, known: usize, vertex: &Vertex) -> bool {
         let near = |i: i16, v: f32| (f32::from(i) / f32::from(i16::MAX) - v).abs() < 1e-3;
         scene.normals[known] == vertex.normal.to_array()

@@ -1,4 +1,4 @@
-//! Instances: a mesh that a scene places several times in the arena.
+//! Instances: a mesh placed several times in a scene.
 
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 
@@ -6,26 +6,26 @@ use crate::scene::Scene;
 use crate::scene::mesh::arena::Vertex;
 use crate::scene::mesh::soup::{Dropped, NONE, usable_face};
 
-/// Triangles of one material with their vertices, in mesh space.
+/// Triangles with one material and their vertices, in mesh space.
 #[derive(Debug)]
 pub struct Mesh {
     pub positions: Vec<Vec3>,
-    /// Unit, one for each position.
+    /// Unit length, one per position.
     pub normals: Vec<Vec3>,
-    /// One for each position, v downward.
+    /// One per position, v pointing down.
     pub texcoords: Vec<[f32; 2]>,
-    /// Linear RGBA, one for each position.
+    /// Linear RGBA, one per position.
     pub colours: Option<Vec<[f32; 4]>>,
-    /// Unit, and the sign of the bitangent; one for each position.
+    /// Unit length plus the sign of the bitangent, one per position.
     pub tangents: Option<Vec<[f32; 4]>>,
-    /// Three for each triangle, into `positions`.
+    /// Three per triangle, indexing `positions`.
     pub indices: Vec<u32>,
     /// Index of the material in the scene.
     pub material: u32,
 }
 
 impl Mesh {
-    /// The mesh of a scene that holds one mesh.
+    /// The mesh of a scene that contains a single mesh.
     pub fn of(scene: Scene, material: u32) -> Self {
         let unorm = |c: [u16; 4]| c.map(|v| f32::from(v) / f32::from(u16::MAX));
         let snorm = |t: [i16; 4]| t.map(|v| f32::from(v) / f32::from(i16::MAX));
@@ -44,14 +44,14 @@ impl Mesh {
     }
 }
 
-/// Adds an instance of the mesh as a part, without unused vertices; counts the triangles that the transform makes unusable.
-/// The caller has checked the number of triangles.
+/// Adds an instance of the mesh as a part, without unused vertices. Counts the triangles that the transform makes unusable. The
+/// caller has checked the number of triangles.
 pub fn append_instance(scene: &mut Scene, mesh: &Mesh, world_from_mesh: &Affine3A) -> Dropped {
     let linear = Mat3::from(world_from_mesh.matrix3);
     let determinant = linear.determinant();
     let mut dropped = Dropped::default();
     if determinant == 0.0 || !determinant.is_finite() || !world_from_mesh.is_finite() {
-        // Some programs hide objects by a scale of zero.
+        // Some programs hide objects by scaling them to zero.
         dropped.degenerate = mesh.indices.len() / 3;
         return dropped;
     }
@@ -87,7 +87,7 @@ struct Instance<'m> {
 }
 
 impl Instance<'_> {
-    /// Whether the transform keeps all triangles usable: its scale and its translation are moderate.
+    /// Whether scale and translation are moderate enough to keep all triangles usable.
     fn keeps_area(&self) -> bool {
         let m = self.world_from_mesh.matrix3;
         let lengths = [m.x_axis, m.y_axis, m.z_axis].map(|axis| axis.length());
@@ -100,7 +100,7 @@ impl Instance<'_> {
         self.world_from_mesh.transform_point3(position)
     }
 
-    /// The index of a vertex in the scene, added at first use.
+    /// Index of a vertex in the scene, added on first use.
     fn index(&self, scene: &mut Scene, indices_of: &mut [u32], i: u32) -> u32 {
         let known = &mut indices_of[i as usize];
         if *known == NONE {

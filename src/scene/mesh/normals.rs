@@ -6,15 +6,14 @@ use glam::{DVec3, Vec3};
 
 use crate::scene::mesh::soup::{NONE, Soup, Triangle};
 
-/// Most corners at one position that are compared pairwise. Beyond it they stay flat: this bounds the time that a hostile
-/// file can take.
+/// Maximum number of corners at one position that are compared pairwise. Beyond it they stay flat; this bounds the time for
+/// malicious files.
 const MAX_COMPARED: usize = 512;
 
-/// One unit normal for each corner of each triangle.
+/// Computes one unit normal per triangle corner.
 ///
-/// The file's normal where it is usable, else the face's, smoothed over the faces around the position: those within
-/// `smooth_deg` degrees if given, otherwise those of the same smoothing group. `face_normals` holds one unit vector for
-/// each triangle.
+/// The file's normal if it is usable. Otherwise the face normal, averaged over the faces around the position that are within
+/// `smooth_deg` degrees if given, or in the same smoothing group. `face_normals` holds one unit vector per triangle.
 pub fn corner_normals(
     soup: &Soup,
     face_normals: &[Vec3],
@@ -43,7 +42,7 @@ pub fn corner_normals(
 struct Corner {
     triangle: u32,
     corner: u8,
-    /// Angle of the triangle at this corner, radians: the weight of its face.
+    /// Angle of the triangle at this corner, radians: the weight of its face normal.
     angle: f32,
 }
 
@@ -70,13 +69,13 @@ fn angle_at(soup: &Soup, triangle: &Triangle, corner: usize) -> f32 {
     if angle.is_finite() { angle } else { 0.0 }
 }
 
-/// Groups corners by position, whatever index the position has in the file.
+/// Groups corners by position, regardless of the position's index in the file.
 fn weld(soup: &Soup, open: &[Corner]) -> Vec<Vec<Corner>> {
     let mut index: HashMap<[u32; 3], usize> = HashMap::new();
     let mut points: Vec<Vec<Corner>> = Vec::new();
     for corner in open {
         let triangle = &soup.triangles[corner.triangle as usize];
-        // Adding zero turns −0 into 0.
+        // Adding zero normalises −0 to 0.
         let position = soup.position(triangle.corners[usize::from(corner.corner)]) + 0.0;
         let key = position.to_array().map(f32::to_bits);
         let at = *index.entry(key).or_insert_with(|| {
@@ -104,7 +103,7 @@ fn by_group(soup: &Soup, points: &[Vec<Corner>], faces: &[Vec3], normals: &mut [
 }
 
 fn by_crease(points: &[Vec<Corner>], faces: &[Vec3], degrees: f32, normals: &mut [[Vec3; 3]]) {
-    // With a tolerance: 30 degrees smooths a prism of twelve sides.
+    // With a tolerance, so that 30 degrees smooths a twelve-sided prism.
     let limit = (degrees + 0.01).min(180.0).to_radians().cos();
     for around in points.iter().filter(|around| around.len() <= MAX_COMPARED) {
         for c in around {
@@ -125,7 +124,7 @@ mod tests {
     use super::*;
     use crate::scene::mesh::soup::Corner as SoupCorner;
 
-    /// Two unit squares that meet at a right angle along the x axis: one lies on the floor, one stands.
+    /// Two unit squares that meet at a right angle along the x axis: a floor and a wall.
     fn corner_of_a_room(smoothing: [u32; 2]) -> Soup {
         let quads = [
             [Vec3::ZERO, Vec3::Z, Vec3::new(1.0, 0.0, 1.0), Vec3::X],

@@ -1,14 +1,14 @@
-//! A triangle soup: the triangles of one mesh between the file and the arena, with separate indices of positions, texture
-//! coordinates and normals.
+//! A triangle soup: the triangles of one mesh between file and arena, with separate indices for positions, texture coordinates
+//! and normals.
 
 use glam::{Affine2, Affine3A, Mat3, Vec2, Vec3};
 
 use crate::scene::mesh::triangulate::Triangulator;
 
-/// "No index" of a [`Corner`] or a [`MaterialUse`].
+/// "No index" in a [`Corner`] or a [`MaterialUse`].
 pub const NONE: u32 = u32::MAX;
 
-/// Triangles with larger coordinates are dropped, metres: their squares and sums overflow `f32`.
+/// Triangles with larger coordinates (metres) are dropped: their squares and sums would overflow `f32`.
 const MAX_COORDINATE: f32 = 1e9;
 
 /// One corner of a triangle: indices into the lists of [`Soup`], or [`NONE`].
@@ -28,10 +28,10 @@ pub struct Triangle {
     pub smoothing: u32,
 }
 
-/// A face of more than three corners, flat or nearly so.
+/// A face with more than three corners, flat or nearly so.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polygon {
-    /// End of its corners in [`Polygons::corners`]; they start at the end of the polygon before.
+    /// End of its corners in [`Polygons::corners`]; they start where the previous polygon ends.
     end: usize,
     material: u32,
     smoothing: u32,
@@ -48,14 +48,14 @@ pub struct Polygons {
 pub struct MaterialUse {
     /// Index in [`Scene::materials`](crate::scene::Scene::materials), or [`NONE`] if it is not drawn.
     pub index: u32,
-    /// From the texture coordinates of the mesh to those of the textures; v runs as in the mesh.
+    /// Maps texture coordinates of the mesh to those of the textures; v has the same direction as in the mesh.
     pub texture_from_mesh: Affine2,
-    /// Whether it has a normal map, which needs tangents.
+    /// Whether it has a normal map, which requires tangents.
     pub has_normal_map: bool,
 }
 
 impl MaterialUse {
-    /// A material without a normal map and without a transform of texture coordinates.
+    /// A material without a normal map or texture transform.
     pub fn plain(index: u32) -> Self {
         Self {
             index,
@@ -69,7 +69,7 @@ impl MaterialUse {
 #[derive(Debug, Default)]
 pub struct Soup {
     pub positions: Vec<Vec3>,
-    /// Linear RGBA factors on ρ_d and the opacity, one for each position; positions beyond the end are white.
+    /// Linear RGBA factors on ρ_d and opacity, one per position; positions beyond the end are white.
     pub colours: Vec<[f32; 4]>,
     pub texcoords: Vec<Vec2>,
     pub normals: Vec<Vec3>,
@@ -78,7 +78,7 @@ pub struct Soup {
     pub polygons: Polygons,
 }
 
-/// How many triangles were dropped as unusable.
+/// Number of triangles dropped as unusable.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 pub struct Dropped {
     pub not_finite: usize,
@@ -90,25 +90,25 @@ impl Soup {
         self.positions[corner.position as usize]
     }
 
-    /// The unit normal of a corner in the file; none if it is missing, zero or not finite.
+    /// Unit normal of a corner from the file; `None` if it is missing, zero or not finite.
     pub fn normal(&self, corner: Corner) -> Option<Vec3> {
         let normal = self.normals.get(corner.normal as usize)?;
         normal.is_finite().then(|| normal.try_normalize()).flatten()
     }
 
-    /// The texture coordinate of a corner in the file; (0, 0) if it is missing or not finite.
+    /// Texture coordinate of a corner from the file; (0, 0) if it is missing or not finite.
     pub fn texcoord(&self, corner: Corner) -> Vec2 {
         let texcoord = self.texcoords.get(corner.texcoord as usize).copied();
         texcoord.filter(|t| t.is_finite()).unwrap_or(Vec2::ZERO)
     }
 
-    /// The colour of a position; white if it has none.
+    /// Colour of a position; white if it has none.
     pub fn colour_of(&self, position: u32) -> [f32; 4] {
         let colour = self.colours.get(position as usize).copied();
         colour.unwrap_or([1.0; 4])
     }
 
-    /// Adds a face of more than three corners.
+    /// Adds a face with more than three corners.
     pub fn push_polygon(
         &mut self,
         corners: impl Iterator<Item = Corner>,
@@ -123,8 +123,8 @@ impl Soup {
         });
     }
 
-    /// Appends the next chunk of the same file; `material` maps its material indices. Indices of corners count from the
-    /// start of the file.
+    /// Appends the next chunk of the same file; `material` maps its material indices. Corner indices are relative to the start
+    /// of the file.
     pub fn append(&mut self, mut next: Self, material: impl Fn(u32) -> u32) {
         if !next.colours.is_empty() {
             self.colours.resize(self.positions.len(), [1.0; 4]);
@@ -134,7 +134,7 @@ impl Soup {
             *m = material(*m);
         }
         if self.positions.is_empty() && self.triangles.is_empty() {
-            // The first chunk needs no copy.
+            // The first chunk is moved instead of copied.
             (self.positions, self.triangles) = (next.positions, next.triangles);
             (self.texcoords, self.normals) = (next.texcoords, next.normals);
         } else {
@@ -153,10 +153,10 @@ impl Soup {
         }));
     }
 
-    /// Number of triangles once the polygons are split.
+    /// Number of triangles after splitting the polygons.
     pub fn count(&self) -> usize {
         let polygons = &self.polygons;
-        // Each has at least three corners.
+        // Each polygon has at least three corners.
         self.triangles.len() + polygons.corners.len() - 2 * polygons.list.len()
     }
 
@@ -182,8 +182,8 @@ impl Soup {
         }
     }
 
-    /// Transforms everything to world space. A mirroring transform also reverses the winding, so that it still agrees with
-    /// the normals.
+    /// Transforms everything to world space. A mirroring transform also reverses the winding, to keep it consistent with the
+    /// normals.
     pub fn transform(&mut self, world_from_mesh: &Affine3A) {
         if *world_from_mesh == Affine3A::IDENTITY {
             return;
@@ -201,7 +201,8 @@ impl Soup {
         }
     }
 
-    /// Drops triangles without area or with unusable positions; returns their counts and the unit face normals of the rest.
+    /// Drops degenerate triangles and those with unusable positions; returns their counts and the unit face normals of the
+    /// rest.
     pub fn drop_unusable(&mut self) -> (Dropped, Vec<Vec3>) {
         let mut dropped = Dropped::default();
         let mut faces = Vec::with_capacity(self.triangles.len());
@@ -218,7 +219,7 @@ impl Soup {
     }
 }
 
-/// The unit normal of a usable triangle; counts it in `dropped` otherwise.
+/// Unit normal of a triangle if it is usable; otherwise counts it in `dropped`.
 pub fn usable_face(corners: [Vec3; 3], dropped: &mut Dropped) -> Option<Vec3> {
     let usable = |p: Vec3| p.is_finite() && p.abs().max_element() <= MAX_COORDINATE;
     if !corners.into_iter().all(usable) {
@@ -230,7 +231,7 @@ pub fn usable_face(corners: [Vec3; 3], dropped: &mut Dropped) -> Option<Vec3> {
     face
 }
 
-/// The unit normal of a counter-clockwise triangle; none if its area is zero within rounding.
+/// Unit normal of a counter-clockwise triangle; `None` if its area is zero within rounding.
 fn face_normal(corners: [Vec3; 3]) -> Option<Vec3> {
     let [a, b, c] = corners.map(|p| p.as_dvec3());
     let cross = (b - a).cross(c - a);
@@ -238,7 +239,7 @@ fn face_normal(corners: [Vec3; 3]) -> Option<Vec3> {
         .length_squared()
         .max((c - a).length_squared())
         .max((c - b).length_squared());
-    // Positions have 24 bits: a height below 1e-10 of the longest edge is rounding.
+    // Positions have 24 significant bits: a height below 1e-10 of the longest edge is rounding error.
     (cross.length() > 1e-10 * longest).then(|| cross.normalize().as_vec3())
 }
 

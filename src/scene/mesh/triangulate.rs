@@ -1,29 +1,29 @@
-//! Triangulation of polygons: a fan if the polygon is convex, ear clipping in its plane otherwise.
+//! Triangulation of polygons: a fan for convex polygons, ear clipping in the polygon's plane otherwise.
 
 use glam::{DVec2, DVec3};
 
-/// Most corners of a polygon that is clipped; larger ones become fans.
+/// Maximum number of corners for ear clipping; larger polygons become fans.
 const MAX_CLIPPED: usize = 512;
-/// Budget of ear clipping, comparisons for each corner of a model: real outlines need a few hundred.
+/// Budget for ear clipping, comparisons per corner of a model. Real outlines need a few hundred.
 const EFFORT: usize = 2_000;
 
-/// Splits polygons with bounded effort, because ear clipping is cubic at worst.
+/// Triangulates polygons with bounded effort, because ear clipping is cubic in the worst case.
 #[derive(Debug)]
 pub struct Triangulator {
-    /// Comparisons left; without any, polygons become fans.
+    /// Comparisons left; at zero, polygons become fans.
     effort: usize,
 }
 
 impl Triangulator {
-    /// For the polygons of one model, which have this many corners in total.
+    /// Creates a triangulator for the polygons of one model, with this many corners in total.
     pub fn for_corners(corners: usize) -> Self {
         let effort = corners.saturating_mul(EFFORT).max(10_000_000);
         Self { effort }
     }
 
-    /// Splits a polygon of n points into n − 2 triangles of the same winding, as indices of points.
+    /// Splits a polygon of n points into n − 2 triangles with the same winding, as point indices.
     ///
-    /// Fewer than three points give none. A polygon without a plane (all points on a line) gives degenerate triangles.
+    /// Fewer than three points give no triangles. A polygon without a plane (all points collinear) gives degenerate triangles.
     pub fn triangulate(&mut self, points: &[DVec3]) -> Vec<[usize; 3]> {
         let n = points.len();
         if n < 3 {
@@ -47,7 +47,7 @@ impl Triangulator {
                 self.effort = self.effort.saturating_sub(left.len());
                 self.effort == 0 || is_ear(flat, &left, i)
             });
-            // The outline crosses itself: no triangulation is right, and a fan keeps the corners.
+            // The outline intersects itself: no triangulation is correct, and a fan keeps all corners.
             let Some(ear) = ear.filter(|_| self.effort > 0) else {
                 break;
             };
@@ -65,7 +65,7 @@ fn fan(corners: &[usize]) -> Vec<[usize; 3]> {
         .collect()
 }
 
-/// Newell's normal, which also holds for polygons that are concave or not quite flat.
+/// Newell's normal, which is also valid for concave and slightly non-planar polygons.
 fn newell_normal(points: &[DVec3]) -> DVec3 {
     let next = points.iter().cycle().skip(1);
     points
@@ -75,7 +75,7 @@ fn newell_normal(points: &[DVec3]) -> DVec3 {
         .sum()
 }
 
-/// The polygon in its plane, counter-clockwise.
+/// Projects the polygon into its plane, counter-clockwise.
 fn project(points: &[DVec3]) -> Vec<DVec2> {
     let normal = newell_normal(points).normalize_or(DVec3::Y);
     let (s, t) = normal.any_orthonormal_pair();
@@ -86,7 +86,7 @@ fn project(points: &[DVec3]) -> Vec<DVec2> {
         .collect()
 }
 
-/// Twice the signed area of a, b, c: positive if they turn left.
+/// Twice the signed area of triangle a, b, c; positive for a left turn.
 fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
@@ -94,7 +94,7 @@ fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
 fn is_convex(flat: &[DVec2]) -> bool {
     let n = flat.len();
     (0..n).all(|i| turn(flat[i], flat[(i + 1) % n], flat[(i + 2) % n]) >= 0.0)
-        // A star that winds twice also turns left everywhere, but its fan folds back.
+        // A star that winds twice also turns left at every corner, but its fan folds back.
         && (1..n - 1).all(|i| turn(flat[0], flat[i], flat[i + 1]) >= 0.0)
 }
 
@@ -109,7 +109,7 @@ fn is_ear(flat: &[DVec2], left: &[usize], i: usize) -> bool {
         return false;
     }
     let blocks = |p: DVec2| {
-        // An outline with a slit to a hole visits the same point twice: a corner does not block itself.
+        // An outline with a slit to a hole visits the same point twice; a corner does not block itself.
         p != a
             && p != b
             && p != c

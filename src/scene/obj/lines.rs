@@ -1,4 +1,4 @@
-//! Lines of OBJ files.
+//! Parsing of the lines of OBJ files.
 
 use std::collections::HashMap;
 
@@ -10,32 +10,32 @@ use crate::scene::obj::text::{Counts, ObjText};
 /// A malformed line.
 #[derive(Debug, PartialEq, Eq)]
 pub struct LineError {
-    /// Number of the line, from 1.
+    /// Line number, from 1.
     pub line: usize,
     pub what: String,
 }
 
-/// State that earlier lines leave.
+/// Parser state left by the preceding lines.
 #[derive(Debug, Default, Clone)]
 pub struct State {
-    /// How many `v`, `vt` and `vn` lines there were: negative indices count back from here.
+    /// Number of `v`, `vt` and `vn` lines so far; negative indices count back from here.
     pub seen: Counts,
-    /// How many lines there were.
+    /// Number of lines so far.
     pub lines: usize,
-    /// Name of the material; empty for none.
+    /// Name of the current material; empty for none.
     pub material: String,
-    /// Smoothing group; 0 for none.
+    /// Current smoothing group; 0 for none.
     pub smoothing: u32,
 }
 
-/// A line by its keyword, with its arguments.
+/// A line by keyword, with its arguments.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Statement<'t> {
     Vertex(&'t str),
     Texcoord(&'t str),
     Normal(&'t str),
     Face(&'t str),
-    /// A point or a line, which are not drawn.
+    /// A point or a line element, which is not drawn.
     Undrawn,
     Smoothing(u32),
     Material(&'t str),
@@ -63,7 +63,7 @@ impl<'t> Statement<'t> {
     }
 }
 
-/// `off`, `0` and anything that is not a number end smoothing.
+/// `off`, `0` and anything that is not a number turn smoothing off.
 fn smoothing_group(word: &str) -> u32 {
     if word.eq_ignore_ascii_case("on") {
         1
@@ -76,9 +76,9 @@ fn smoothing_group(word: &str) -> u32 {
 pub struct LineReader {
     out: ObjText,
     state: State,
-    /// Of the whole file: positive indices may refer to later lines.
+    /// Totals of the whole file: positive indices may refer to later lines.
     total: Counts,
-    /// Index of the state's material in `out`; none until a face uses it.
+    /// Index in `out` of the state's material; `None` until a face uses it.
     material: Option<u32>,
     indices: HashMap<String, u32>,
     corners: Vec<[Index; 3]>,
@@ -126,7 +126,7 @@ impl LineReader {
         Ok(())
     }
 
-    /// Three coordinates, a weight that is ignored (it belongs to rational curves), a colour.
+    /// Three coordinates, an ignored weight (for rational curves), and a colour.
     fn vertex(&mut self, rest: &str) -> Result<(), String> {
         let soup = &mut self.out.soup;
         let mut words = rest.split_ascii_whitespace();
@@ -138,7 +138,7 @@ impl LineReader {
             _ => None,
         };
         if let Some(colour) = colour.filter(|rgb| rgb.iter().all(|v| v.is_finite())) {
-            // Earlier positions have no colour.
+            // Earlier positions had no colour: fill with white.
             soup.colours.resize(soup.positions.len(), [1.0; 4]);
             let [r, g, b] = colour;
             soup.colours.push([r, g, b, 1.0]);
@@ -152,7 +152,7 @@ impl LineReader {
         let mut corners = std::mem::take(&mut self.corners);
         corners.clear();
         for word in rest.split_ascii_whitespace() {
-            // A comment after the face.
+            // A trailing comment.
             if word.starts_with('#') {
                 continue;
             }
@@ -168,7 +168,7 @@ impl LineReader {
     }
 
     fn push_face(&mut self, corners: &[[Index; 3]]) {
-        // An attribute counts only where all corners have it.
+        // An attribute counts only if all corners have it.
         let every = |kind: usize| corners.iter().all(|c| matches!(c[kind], Index::At(_)));
         let (texcoords, normals) = (every(1), every(2));
         let is_dangling = corners.iter().flatten().any(|i| *i == Index::OutOfRange);
@@ -235,7 +235,7 @@ impl LineReader {
     }
 }
 
-/// The first 40 characters of a word, for a message: hostile words may be megabytes long.
+/// The first 40 characters of a word, for messages: malicious words may be megabytes long.
 fn short(word: &str) -> &str {
     let end = word.char_indices().nth(40).map_or(word.len(), |(i, _)| i);
     &word[..end]
@@ -245,7 +245,7 @@ fn numbers<const N: usize>(rest: &str, least: usize, what: &str) -> Result<[f32;
     numbers_of(&mut rest.split_ascii_whitespace(), least, what)
 }
 
-/// `N` numbers, of which `least` are required; the others default to 0.
+/// Parses `N` numbers, of which the first `least` are required; the others default to 0.
 fn numbers_of<'t, const N: usize>(
     words: &mut impl Iterator<Item = &'t str>,
     least: usize,
@@ -254,7 +254,7 @@ fn numbers_of<'t, const N: usize>(
     let mut values = [0.0; N];
     for (i, value) in values.iter_mut().enumerate() {
         match words.next() {
-            // The C runtime of old Windows programs writes 1.#INF, 1.#IND, 1.#QNAN.
+            // The C runtime of old Windows programs prints 1.#INF, 1.#IND and 1.#QNAN.
             Some(word) if word.contains('#') && i < least => *value = f32::NAN,
             Some(word) => {
                 let parsed = word.parse().map_err(|_| format!("{what} is not a number"));
@@ -281,9 +281,9 @@ fn numbers_of<'t, const N: usize>(
 /// An index of a face corner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Index {
-    /// Omitted.
+    /// Not given.
     None,
-    /// In range, from 0.
+    /// In range, zero-based.
     At(u32),
     /// Out of range.
     OutOfRange,

@@ -1,4 +1,4 @@
-//! OBJ models.
+//! Loading of OBJ models.
 
 mod lines;
 mod mtl;
@@ -17,7 +17,7 @@ use crate::scene::obj::mtl::Libraries;
 use crate::scene::obj::text::ObjText;
 use crate::scene::texture::linear_from_srgb;
 
-/// How a mesh is placed in the world.
+/// Placement of a mesh in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
     pub world_from_mesh: Affine3A,
@@ -25,10 +25,10 @@ pub struct Placement {
     pub smooth_deg: Option<f32>,
 }
 
-/// Adds the model of `path` to the scene.
+/// Adds the model at `path` to the scene.
 ///
 /// # Errors
-/// A file that cannot be read, a malformed line, or nothing to draw.
+/// When a file cannot be read, a line is malformed, or there is nothing to draw.
 pub fn append_obj(
     builder: &mut Builder,
     path: &Path,
@@ -54,7 +54,7 @@ pub fn append_obj(
         dangling,
         ..
     } = parsed;
-    // Before the polygons are split: each of their triangles takes few bytes of the file.
+    // Checked before the polygons are split, because a polygon's triangles take few bytes in the file.
     builder.check_triangles(path, soup.count())?;
     soup.triangulate();
     finish_colours(&mut soup);
@@ -83,20 +83,20 @@ pub fn append_obj(
     Ok(())
 }
 
-/// Counts of what is not drawn, or not as the file says.
+/// Counts of elements that are not drawn, or not drawn as specified in the file.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct ImportReport {
     pub dropped: Dropped,
     /// Triangles of transparent materials.
     pub undrawn: usize,
-    /// Points, lines, and faces of fewer than three corners.
+    /// Points, lines, and faces with fewer than three corners.
     pub not_faces: usize,
-    /// Faces with indices out of range.
+    /// Faces with out-of-range indices.
     pub dangling: usize,
 }
 
 impl ImportReport {
-    /// Adds a warning for each count; if the model is `empty`, fails with them instead.
+    /// Adds a warning for each nonzero count; fails with them instead if the model is `empty`.
     pub fn finish(
         &self,
         builder: &mut Builder,
@@ -148,7 +148,7 @@ impl ImportReport {
     }
 }
 
-/// The material of this name; its index is [`NONE`] if it is not drawn.
+/// Looks up a material by name; its index is [`NONE`] if it is not drawn.
 fn material_use(
     builder: &mut Builder,
     path: &Path,
@@ -170,7 +170,7 @@ fn material_use(
     }
 }
 
-/// Grey, or white where the vertices have colours.
+/// Grey, or white if the vertices have colours.
 fn default_material(soup: &Soup) -> Material {
     let mut material = MTL_DEFAULT.clone();
     if !soup.colours.is_empty() {
@@ -186,8 +186,8 @@ fn drop_undrawn(soup: &mut Soup, uses: &[MaterialUse]) -> usize {
     before - soup.triangles.len()
 }
 
-/// Converts colours to linear light. OBJ does not define their encoding; files hold sRGB, 0..1 (or 0..255 if any is above 1).
-/// Colours that are white everywhere are dropped.
+/// Converts vertex colours to linear light. OBJ does not define their encoding; in practice files contain sRGB, 0..1 (or 0..255
+/// if any value exceeds 1). Colours that are all white are dropped.
 fn finish_colours(soup: &mut Soup) {
     let rgb = |c: &[f32; 4]| [c[0], c[1], c[2]];
     if soup.colours.iter().all(|c| rgb(c) == [1.0; 3]) {

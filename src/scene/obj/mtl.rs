@@ -1,4 +1,4 @@
-//! MTL files: the materials of OBJ models.
+//! MTL files: materials of OBJ models.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use crate::scene::files::Lookup;
 use crate::scene::material::{MTL_DEFAULT, Material, MetallicRoughness, phong_of};
 use crate::scene::texture::picture::{Channel, TextureKey};
 
-/// The lines of one `newmtl`.
+/// The statements of one `newmtl` block.
 #[derive(Debug, Default, Clone)]
 struct Entry {
     name: String,
@@ -31,10 +31,10 @@ struct Entry {
     roughness_map: Option<Map>,
 }
 
-/// The arguments of a `map_..` line.
+/// The arguments of a `map_..` statement.
 #[derive(Debug, Clone)]
 struct Map {
-    /// Folder of the library.
+    /// Folder of the material library.
     folder: PathBuf,
     name: String,
     options: MapOptions,
@@ -50,7 +50,7 @@ impl Map {
         })
     }
 
-    /// Path of the picture, which may be missing; none (and a warning) outside the model's folder.
+    /// Path of the image, which may not exist; `None` (with a warning) if it is outside the model's folder.
     fn path(&self, builder: &mut Builder, owner: &Path) -> Option<PathBuf> {
         match builder.files.find(&self.folder, &self.name) {
             Lookup::Found(path) | Lookup::Missing(path) => Some(path),
@@ -70,7 +70,7 @@ pub struct Libraries {
 }
 
 impl Libraries {
-    /// Reads the libraries that the arguments of the `mtllib` lines name. A missing library is a warning.
+    /// Reads the libraries listed by the `mtllib` lines. A missing library is a warning.
     pub fn read(builder: &mut Builder, obj: &Path, folder: &Path, names: &[String]) -> Self {
         let mut libraries = Self::default();
         let mut seen: HashSet<PathBuf> = HashSet::new();
@@ -115,7 +115,7 @@ impl Libraries {
         }
     }
 
-    /// Reads a line; false if it is malformed.
+    /// Parses a line; false if it is malformed.
     fn line(&mut self, folder: &Path, line: &str) -> bool {
         let (key, rest) = line
             .split_once(|c: char| c.is_whitespace())
@@ -127,7 +127,7 @@ impl Libraries {
             return true;
         }
         let Some(entry) = self.entries.last_mut() else {
-            // Lines before the first material belong to none.
+            // Lines before the first `newmtl` are ignored.
             return true;
         };
         let map = || Map::read(folder, rest);
@@ -159,7 +159,7 @@ impl Libraries {
 
     fn begin(&mut self, name: &str) {
         let name = if name.is_empty() { "unnamed" } else { name };
-        // The first of two materials of the same name counts, as in other readers.
+        // If two materials share a name, the first one wins, as in other readers.
         let number = self.entries.len();
         self.by_name.entry(name.to_owned()).or_insert(number);
         self.entries.push(Entry {
@@ -168,13 +168,13 @@ impl Libraries {
         });
     }
 
-    /// Whether there is a material of this name.
+    /// Whether a material with this name exists.
     pub fn has(&self, name: &str) -> bool {
         self.by_name.contains_key(name)
     }
 
-    /// The material of this name with its textures decoded, and the transform from the mesh's texture coordinates (v upward)
-    /// to those of the textures.
+    /// The material with this name, with its textures decoded, and the transform from the mesh's texture coordinates (v
+    /// pointing up) to those of the textures.
     pub fn material(
         &self,
         builder: &mut Builder,
@@ -186,7 +186,7 @@ impl Libraries {
     }
 }
 
-/// Replaces a value by one that was read; false if none was.
+/// Stores a parsed value; false if there was none.
 fn set<T>(place: &mut Option<T>, value: Option<T>) -> bool {
     let read = value.is_some();
     *place = value.or(place.take());
@@ -194,7 +194,7 @@ fn set<T>(place: &mut Option<T>, value: Option<T>) -> bool {
 }
 
 impl Entry {
-    /// The transform of the first map: all maps of a material share their texture coordinates.
+    /// The texture transform of the first map; all maps of a material share their texture coordinates.
     fn texture_from_mesh(&self) -> Affine2 {
         let maps = [
             &self.diffuse_map,
@@ -220,7 +220,7 @@ impl Entry {
             builder.texture(obj, TextureKey::Normals(path, map.options.bump.to_bits()))
         });
         let has_mask = self.mask.is_some() && diffuse_texture.is_some();
-        // A texture without `Kd` is the reflectance itself; without either the surface is grey.
+        // A texture without `Kd` is the reflectance itself; with neither, the surface is grey.
         let default_diffuse = if diffuse_texture.is_some() && self.diffuse_map.is_some() {
             1.0
         } else {
@@ -260,7 +260,7 @@ impl Entry {
             .map(|v| v.clamp(0.0, 1.0))
     }
 
-    /// The PBR keys, if there are any: `Pm`, `Pr` and the means of their maps. `Ni` is the index of refraction.
+    /// The PBR statements, if any: `Pm`, `Pr` and the means of their maps. `Ni` is the index of refraction.
     fn metallic_roughness(
         &self,
         builder: &mut Builder,
@@ -300,14 +300,14 @@ impl Entry {
         builder.texture(obj, wanted)
     }
 
-    /// Whether the material has a specular lobe. The illumination models 0 and 1 (`illum`) have none; many exporters write
-    /// a meaningless `Ks` with them.
+    /// Whether the material has a specular lobe. Illumination models 0 and 1 (`illum`) have none, and many exporters write a
+    /// meaningless `Ks` with them.
     fn has_highlights(&self) -> bool {
         !matches!(self.illumination, Some(0 | 1))
     }
 
-    /// `d`, else 1 − `Tr`, 0..1. `Tr 1` alone is opaque: some exporters mean that. So is `d 0` with a mask: the mask decides
-    /// where the surface is opaque.
+    /// Opacity, 0..1: `d`, otherwise 1 − `Tr`. `Tr 1` alone is treated as opaque, because that is what some exporters mean. So
+    /// is `d 0` with a mask, because the mask decides where the surface is opaque.
     fn opacity(&self) -> f32 {
         let opacity = match (self.dissolve, self.transparency) {
             (Some(d), _) if d <= 0.0 && self.mask.is_some() => 1.0,
@@ -338,8 +338,8 @@ fn number(rest: &str) -> Option<f32> {
     value.is_finite().then_some(value)
 }
 
-/// The libraries that the arguments of one `mtllib` line name: one file with spaces in its name, or several files with
-/// `\ ` for a space.
+/// The libraries listed by one `mtllib` line: one file whose name contains spaces, or several files in which spaces are written
+/// as `\ `.
 pub fn find_libraries(
     builder: &mut Builder,
     obj: &Path,
@@ -349,7 +349,7 @@ pub fn find_libraries(
     if let Lookup::Found(path) = builder.files.find(folder, rest.trim_matches('"')) {
         return vec![path];
     }
-    // File names have no NUL, so it can stand for an escaped space while the line is split.
+    // File names cannot contain NUL, so it stands in for an escaped space while the line is split.
     let escaped = rest.replace("\\ ", "\0");
     let mut found = Vec::new();
     for name in escaped.split_whitespace() {
@@ -362,16 +362,16 @@ pub fn find_libraries(
     found
 }
 
-/// Options of a `map_..` line. `-clamp`, `-blendu`, `-blendv`, `-mm`, `-t`, `-type` and unknown ones are ignored.
+/// Options of a `map_..` statement. `-clamp`, `-blendu`, `-blendv`, `-mm`, `-t`, `-type` and unknown options are ignored.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct MapOptions {
     /// `-s`: factor on the texture coordinates.
     scale: [f32; 2],
-    /// `-o`: offset of the texture coordinates, added after the factor.
+    /// `-o`: offset of the texture coordinates, applied after the scale.
     offset: [f32; 2],
     /// `-bm`: factor on the heights of a bump map.
     bump: f32,
-    /// `-imfchan`: channel of a mask.
+    /// `-imfchan`: channel used as a mask.
     channel: Channel,
 }
 
@@ -400,13 +400,13 @@ const TRAILING_OPTIONS: [&str; 10] = [
     " -texres ",
 ];
 
-/// The file name, perhaps with spaces, and the options: exporters write both in any order.
+/// Splits the arguments into the file name (possibly with spaces) and the options, which exporters write in either order.
 fn map_options(rest: &str) -> (&str, MapOptions) {
     let mut options = MapOptions::default();
     let rest = options.take_leading(rest.trim());
     let end = TRAILING_OPTIONS.iter().filter_map(|o| rest.find(o)).min();
     let (name, mut trailing) = rest.split_at(end.unwrap_or(rest.len()));
-    // Here the last argument of the last option ends the line.
+    // Here the arguments of the last option end the line.
     while let Some((option, tail)) = option_word(trailing.trim_start()) {
         trailing = options.take(option, tail, true);
     }
@@ -428,7 +428,7 @@ impl MapOptions {
         rest
     }
 
-    /// Reads the arguments of an option; returns what follows. `last`: the arguments may end the line.
+    /// Parses the arguments of an option; returns the remaining text. With `last`, the arguments may end the line.
     fn take<'a>(&mut self, option: &str, tail: &'a str, last: bool) -> &'a str {
         let numbers_only = matches!(option, "o" | "s" | "t");
         let most = match option {
@@ -459,7 +459,7 @@ impl MapOptions {
             value.filter(|v| v.is_finite() && v.abs() < 1e6)
         };
         match option {
-            // A missing second number is scale 1, offset 0.
+            // A missing second number defaults to scale 1, offset 0.
             "s" => {
                 let u = number(0).unwrap_or(1.0);
                 self.scale = [u, number(1).unwrap_or(1.0)];

@@ -1,7 +1,7 @@
-//! The text of an OBJ file: cut at line ends into chunks that are parsed in parallel, each into a [`Soup`].
+//! The text of an OBJ file, split at line ends into chunks that are parsed in parallel, each into a [`Soup`].
 //!
-//! A prescan counts the vertices of each chunk and finds the state at its end (material, smoothing group), so that every
-//! chunk starts in the state that the chunks before it leave.
+//! A prescan counts the vertices of each chunk and finds the parser state at its end (material, smoothing group), so that each
+//! chunk starts in the state left by the chunks before it.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -12,30 +12,30 @@ use memchr::{memchr_iter, memrchr};
 use crate::scene::mesh::soup::Soup;
 use crate::scene::obj::lines::{LineError, LineReader, State, Statement};
 
-/// Smallest chunk, bytes: a shorter one is not worth a thread.
+/// Minimum chunk size, bytes: a smaller chunk is not worth a thread.
 const MIN_CHUNK: usize = 1 << 20;
 
-/// The content of an OBJ file. Triangles refer to their material by its index in `materials`.
+/// The content of an OBJ file. Triangles refer to their material by index in `materials`.
 #[derive(Debug, Default)]
 pub struct ObjText {
     pub soup: Soup,
-    /// Names of the materials that faces use; the empty name means no material.
+    /// Names of the materials used by faces; an empty name means no material.
     pub materials: Vec<String>,
     /// Arguments of the `mtllib` lines.
     pub libraries: Vec<String>,
-    /// Number of points, lines, and faces of fewer than three corners, all skipped.
+    /// Number of skipped points, lines, and faces with fewer than three corners.
     pub not_faces: usize,
-    /// Number of faces with an index of a normal or texture coordinate that is out of range.
+    /// Number of faces with an out-of-range normal or texture coordinate index.
     pub dangling: usize,
 }
 
-/// How many `v`, `vt` and `vn` lines there are.
+/// Numbers of `v`, `vt` and `vn` lines.
 pub type Counts = [usize; 3];
 
-/// Parses a whole file on up to `threads` threads.
+/// Parses a whole file with up to `threads` threads.
 ///
 /// # Errors
-/// The first malformed line, or the first face with the index of a vertex that does not exist.
+/// The first malformed line, or the first face with an out-of-range vertex index.
 pub fn read(text: &str, threads: usize) -> Result<ObjText, LineError> {
     let chunks = cut(text, threads.clamp(1, 1 + text.len() / MIN_CHUNK));
     let prescans: Vec<Prescan> = in_parallel(&chunks, |text| prescan(text));
@@ -57,7 +57,7 @@ pub fn read(text: &str, threads: usize) -> Result<ObjText, LineError> {
     Ok(whole)
 }
 
-/// Runs `work` on all items: the first on this thread, each other on its own.
+/// Runs `work` on all items: the first on this thread, each of the others on its own thread.
 fn in_parallel<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let work = &work;
     let Some((first, rest)) = items.split_first() else {
@@ -70,7 +70,7 @@ fn in_parallel<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> 
             .collect();
         let mut results = vec![work(first)];
         for thread in threads {
-            // A panic on that thread is a panic on this one.
+            // Propagates a panic of that thread.
             let result = thread.join();
             results.push(result.unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
         }
@@ -78,7 +78,7 @@ fn in_parallel<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> 
     })
 }
 
-/// `count` chunks of about equal length that end at the end of a logical line.
+/// Splits the text into `count` chunks of similar length, each ending at the end of a logical line.
 fn cut(text: &str, count: usize) -> Vec<&str> {
     let mut chunks = Vec::with_capacity(count);
     let mut rest = text;
@@ -104,7 +104,7 @@ fn line_end(text: &str, from: usize) -> usize {
     text.len()
 }
 
-/// Logical lines and the numbers of their first lines, from 1; a backslash at the end of a line continues it.
+/// Logical lines with the number of their first line, from 1. A backslash at the end of a line continues it.
 fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     let mut lines = text.lines().enumerate();
     std::iter::from_fn(move || {
@@ -121,7 +121,7 @@ fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     })
 }
 
-/// How a chunk changes the state of the parser.
+/// How a chunk changes the parser state.
 #[derive(Debug, Default)]
 struct Prescan<'t> {
     counts: Counts,
@@ -174,7 +174,7 @@ fn read_chunk(text: &str, state: State, total: Counts) -> Result<ObjText, LineEr
 }
 
 impl ObjText {
-    /// Appends the next chunk; `known` holds the indices of the materials so far.
+    /// Appends the next chunk; `known` maps the names of the materials so far to their indices.
     fn append(&mut self, next: Self, known: &mut HashMap<String, u32>) {
         let mut number = |name: String| {
             *known.entry(name).or_insert_with_key(|name| {

@@ -87,7 +87,7 @@ fn colours_follow_the_position() {
     );
 }
 
-/// The same file parsed in one chunk and in four.
+/// The same file, parsed as one chunk and as four.
 #[test]
 fn chunks_give_what_the_whole_gives() {
     let mut text = String::new();

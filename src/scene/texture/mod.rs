@@ -1,4 +1,4 @@
-//! Textures: sRGB colours or linear values as bytes, and their mip levels filtered in linear light.
+//! Textures: sRGB colours or linear values with 8 bits per channel, and mip levels filtered in linear light.
 
 pub mod normal_map;
 pub mod picture;
@@ -7,33 +7,33 @@ use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
-/// Encoding of the red, green and blue of a [`Texture`]; alpha is always linear.
+/// Encoding of the red, green and blue channels of a [`Texture`]; alpha is always linear.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Encoding {
     /// sRGB.
     Srgb,
-    /// Linear: normals of a normal map, 0..255 for −1..1.
+    /// Linear: the vectors of a normal map, 0..255 for −1..1.
     Linear,
 }
 
-/// A picture or one of its mip levels: RGBA, rows from the top, no padding.
+/// An image or one of its mip levels: RGBA, top row first, no padding.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Texture {
     /// File name, for messages and debug names.
     pub name: String,
-    /// Texels in a row, at least 1.
+    /// Width, texels, at least 1.
     pub width: u32,
-    /// Rows, at least 1.
+    /// Height, texels, at least 1.
     pub height: u32,
     /// `4 * width * height` bytes.
     pub rgba8: Vec<u8>,
-    /// Encoding of the bytes.
+    /// Encoding of red, green and blue.
     pub encoding: Encoding,
 }
 
 impl Texture {
-    /// All mip levels below this one, down to 1 x 1. Each texel is the average, in linear light, of the texels that it covers
-    /// in the level above.
+    /// All mip levels below this one, down to 1 x 1. Each texel is the average, in linear light, of the texels it covers in the
+    /// level above.
     pub fn mip_levels(&self) -> Vec<Texture> {
         let mut levels: Vec<Texture> = Vec::new();
         loop {
@@ -58,7 +58,7 @@ impl Texture {
     }
 }
 
-/// The next mip level: half the size, rounded down. With an odd size, texels that straddle two are shared by area.
+/// The next mip level: half the size, rounded down. With odd sizes, a texel that straddles two is shared by area.
 fn halve(above: &Texture) -> Texture {
     let (width, height) = ((above.width / 2).max(1), (above.height / 2).max(1));
     let mut rgba8 = Vec::with_capacity(4 * width as usize * height as usize);
@@ -95,7 +95,7 @@ fn halve(above: &Texture) -> Texture {
     }
 }
 
-/// The up to three of `large` texels that texel `i` of `small` covers, with weights that sum to 1.
+/// The up to three of `large` texels covered by texel `i` of `small`, with weights that sum to 1.
 fn footprint(i: u32, large: u32, small: u32) -> [(u32, f32); 3] {
     let ratio = f64::from(large) / f64::from(small);
     let (start, end) = (f64::from(i) * ratio, f64::from(i + 1) * ratio);
@@ -113,7 +113,7 @@ fn footprint(i: u32, large: u32, small: u32) -> [(u32, f32); 3] {
     })
 }
 
-/// IEC 61966-2-1 as tables: `linear` decodes; `threshold[v]` is the linear value above which byte `v` becomes `v + 1`.
+/// IEC 61966-2-1 as lookup tables: `linear` decodes; `threshold[v]` is the linear value above which byte `v` becomes `v + 1`.
 struct Codec {
     linear: [f32; 256],
     threshold: [f32; 255],
@@ -138,7 +138,7 @@ pub fn linear_from_srgb(signal: f32) -> f32 {
     decode(f64::from(signal)) as f32
 }
 
-/// The sRGB byte nearest to linear light 0..1.
+/// The sRGB byte nearest to a linear value, 0..1.
 pub fn srgb8_from_linear(light: f32) -> u8 {
     CODEC
         .threshold

@@ -1,23 +1,23 @@
-//! Normal maps: the tangents that they need, and conversion from height maps.
+//! Normal maps: tangents, and conversion from height maps.
 
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 use glam::Vec3;
 
-/// Corners of triangles as MikkTSpace expects them, three for each triangle.
+/// Triangle corners in the form MikkTSpace expects, three per triangle.
 #[derive(Debug, Default)]
 pub struct TangentInput {
     pub positions: Vec<[f32; 3]>,
     pub normals: Vec<[f32; 3]>,
     pub texcoords: Vec<[f32; 2]>,
-    /// The result: unit tangent, and the sign of the bitangent.
+    /// Output: unit tangent and the sign of the bitangent.
     pub tangents: Vec<[f32; 4]>,
 }
 
 impl TangentInput {
-    /// Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited": the tangents that programs that bake normal maps use.
+    /// Tangents as in Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited", which normal map bakers also use.
     pub fn compute_tangents(&mut self) {
         self.tangents = vec![[0.0; 4]; self.positions.len()];
-        // Fails only without faces.
+        // Fails only if there are no faces.
         let _ = generate_tangents(self);
         for (tangent, normal) in self.tangents.iter_mut().zip(&self.normals) {
             *tangent = usable_tangent(*tangent, Vec3::from(*normal));
@@ -25,7 +25,7 @@ impl TangentInput {
     }
 }
 
-/// A unit tangent at right angles to `normal`, and the sign of the bitangent; an arbitrary one if the given one is unusable.
+/// A unit tangent perpendicular to `normal`, and the sign of the bitangent; an arbitrary tangent if the given one is unusable.
 pub fn usable_tangent([x, y, z, w]: [f32; 4], normal: Vec3) -> [f32; 4] {
     let given = Vec3::new(x, y, z);
     let flat = given - normal * normal.dot(given);
@@ -65,7 +65,7 @@ impl Geometry for TangentInput {
     }
 }
 
-/// Whether a picture (RGBA) is a height map: grey everywhere. A normal map is bluish.
+/// Whether an image (RGBA) is a height map, that is, grey everywhere. Normal maps are bluish.
 pub fn is_height_field(rgba8: &[u8]) -> bool {
     rgba8
         .chunks_exact(4)
@@ -80,7 +80,7 @@ pub fn normals_from_heights(rgba8: &[u8], width: u32, height: u32, strength: f32
     for y in 0..h {
         for x in 0..w {
             let slope_x = 0.5 * (at(x + 1, y) - at(x + w - 1, y));
-            // Rows run downward; the green channel points upward.
+            // Rows run down; the green channel points up.
             let slope_y = 0.5 * (at(x, y + h - 1) - at(x, y + 1));
             let n = Vec3::new(-slope_x, -slope_y, 1.0).normalize();
             let byte = |v: f32| ((0.5 * v + 0.5) * 255.0).round() as u8;
@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn tangents_follow_the_texture() {
-        // A square on the floor whose u runs along -z.
+        // A square on the floor with u running along -z.
         let mut corners = TangentInput {
             positions: vec![[0.0; 3], [0.0, 0.0, -1.0], [-1.0, 0.0, -1.0]],
             normals: vec![[0.0, 1.0, 0.0]; 3],
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn a_ramp_leans_against_its_rise() {
-        // Heights rise to the right by one texel a texel: the normal leans left by 45 degrees.
+        // Heights rise to the right by one texel per texel: the normal tilts left by 45 degrees.
         let ramp: Vec<u8> = (0..16).flat_map(|i| [(i % 4) * 85; 4]).collect();
         assert!(is_height_field(&ramp));
         let normals = normals_from_heights(&ramp, 4, 4, 3.0);

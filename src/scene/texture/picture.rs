@@ -1,4 +1,4 @@
-//! Decoding of pictures of all common formats into the textures of a scene, with limits that are checked before decoding.
+//! Decoding of common image formats into the textures of a scene, with limits checked before decoding.
 
 use std::collections::HashMap;
 use std::io::Cursor;
@@ -14,55 +14,55 @@ use crate::scene::files::Files;
 use crate::scene::texture::normal_map::{is_height_field, normals_from_heights};
 use crate::scene::texture::{Encoding, Texture, srgb8_from_linear};
 
-/// Channel of a picture that is the mask of a cut-out (MTL `-imfchan`).
+/// The image channel used as a cut-out mask (MTL `-imfchan`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Channel {
-    /// Alpha if the picture has any, else the mean of red, green and blue.
+    /// Alpha if the image has one, otherwise the mean of red, green and blue.
     #[default]
     Automatic,
     /// Red, green, blue or alpha: 0..3.
     Number(u8),
 }
 
-/// What a texture is made of: equal keys give the same texture.
+/// Identifies a texture: equal keys give the same texture.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum TextureKey {
-    /// Colours; alpha becomes 1.
+    /// Colours; alpha is set to 1.
     Colour(PathBuf),
-    /// Colours with the alpha of the picture.
+    /// Colours with the alpha of the image.
     ColourAndAlpha(PathBuf),
-    /// Colours of the first picture (white without one), alpha from a channel of the second.
+    /// Colours of the first image (white if none), alpha from a channel of the second.
     Masked(Option<PathBuf>, PathBuf, Channel),
-    /// A normal map, or a height map that is converted into one; the `f32` of these bits is a factor on its slopes.
+    /// A normal map, or a height map to convert into one. The `u32` holds the bits of an `f32`, a factor on its slopes.
     Normals(PathBuf, u32),
 }
 
-/// Makes each texture once and bounds their memory and the work of decoding.
+/// Creates each texture once, and limits memory and decoding work.
 #[derive(Debug)]
 pub struct TextureStore {
     max_edge: u32,
     bytes_left: u64,
-    /// Bytes that may still be decoded, for pictures that fail or are not textures too.
+    /// Bytes that may still be decoded, including images that fail or do not become textures.
     effort_left: u64,
     known: HashMap<TextureKey, Option<usize>>,
-    /// Pictures embedded in models, by the names that the importer gave them.
+    /// Images embedded in models, by the names given by the importer.
     embedded: HashMap<PathBuf, EmbeddedImage>,
     means: HashMap<PathBuf, Result<[f32; 3], String>>,
 }
 
-/// A picture embedded in a model.
+/// An image embedded in a model.
 #[derive(Debug)]
 pub struct EmbeddedImage {
-    /// The buffer that holds it, which pictures may share.
+    /// The buffer that contains the image; images may share it.
     pub bytes: Rc<Vec<u8>>,
-    /// Its bytes in the buffer.
+    /// Byte range of the image in the buffer.
     pub range: Range<usize>,
 }
 
-/// Budget of decoding as a multiple of the texture limit: bounds the work for thousands of pictures that fail.
+/// Decoding budget as a multiple of the texture limit. Bounds the work for thousands of images that fail.
 const EFFORT: u64 = 4;
 
-/// End of the warning about a picture that cannot be used.
+/// End of the warning about an unusable image.
 const WITHOUT: &str = "; drawn without it";
 
 impl TextureStore {
@@ -77,12 +77,12 @@ impl TextureStore {
         }
     }
 
-    /// Registers a picture embedded in a model under a name.
+    /// Registers an image embedded in a model under a name.
     pub fn insert(&mut self, name: PathBuf, picture: EmbeddedImage) {
         self.embedded.insert(name, picture);
     }
 
-    /// Index of the texture in `textures`; none if it failed before. The first failure is an error.
+    /// Index of the texture in `textures`; `None` if it failed before. Only the first failure is returned as an error.
     pub fn get(
         &mut self,
         files: &Files,
@@ -109,7 +109,7 @@ impl TextureStore {
             TextureKey::ColourAndAlpha(path) => self.colours(files, path),
             TextureKey::Masked(colour, mask, channel) => {
                 let mask = self.colours(files, mask)?;
-                // Without the colour the mask still cuts out the right holes.
+                // Without the colours, the mask still cuts out the right holes.
                 let colour = colour.as_ref().and_then(|p| self.colours(files, p).ok());
                 Ok(masked(colour, mask, *channel))
             }
@@ -120,7 +120,7 @@ impl TextureStore {
         }
     }
 
-    /// Mean red, green and blue of a picture, 0..1 as encoded.
+    /// Mean red, green and blue of an image, 0..1 as encoded.
     pub fn mean(&mut self, files: &Files, path: &Path) -> Result<[f32; 3], String> {
         if let Some(mean) = self.means.get(path) {
             return mean.clone();
@@ -192,7 +192,7 @@ fn undecodable(error: &image::ImageError) -> String {
     format!("cannot be decoded ({})", one_line(&error.to_string()))
 }
 
-/// Reads the header of a picture and checks its size. Returns the decoder and the bytes that the texture will take.
+/// Reads the header of an image and checks its size. Returns the decoder and the size of the resulting texture, bytes.
 fn open_bounded<'b>(
     path: &Path,
     bytes: &'b [u8],
@@ -201,7 +201,7 @@ fn open_bounded<'b>(
 ) -> Result<(impl ImageDecoder + 'b, u64), String> {
     let unreadable = |error: image::ImageError| undecodable(&error);
     let mut reader = ImageReader::new(Cursor::new(bytes));
-    // The content decides the format; only TGA has no signature, so there the name decides.
+    // The format is detected from the content, except for TGA, which has no signature and is recognised by its name.
     match image::guess_format(bytes)
         .ok()
         .or_else(|| ImageFormat::from_path(path).ok())
@@ -212,7 +212,7 @@ fn open_bounded<'b>(
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(max_edge);
     limits.max_image_height = Some(max_edge);
-    // Decoders of 16 and 32 bits a channel need more memory than the result.
+    // Decoders with 16 or 32 bits per channel need more memory than the result.
     limits.max_alloc = Some(bytes_left.saturating_mul(4));
     reader.limits(limits);
     let decoder = reader.into_decoder().map_err(unreadable)?;
@@ -234,7 +234,7 @@ fn open_bounded<'b>(
     Ok((decoder, size))
 }
 
-/// Eight bits a channel, sRGB. Float pictures (HDR) are linear and get encoded; all others are sRGB already.
+/// Converts to 8 bits per channel, sRGB. Floating-point images (HDR) are linear and get encoded; all others are sRGB already.
 fn to_srgb8(image: DynamicImage) -> Vec<u8> {
     match image {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
@@ -271,7 +271,7 @@ fn normals(name: String, image: DynamicImage, strength: f32) -> Texture {
     }
 }
 
-/// The colour with the mask as alpha, in the size of the colour, or of the mask if there is no colour.
+/// The colours with the mask as alpha, at the size of the colours, or of the mask if there are none.
 fn masked(colour: Option<Texture>, mask: Texture, channel: Channel) -> Texture {
     let mut colour = colour.unwrap_or_else(|| Texture {
         rgba8: vec![255; mask.rgba8.len()],
@@ -281,7 +281,7 @@ fn masked(colour: Option<Texture>, mask: Texture, channel: Channel) -> Texture {
     let pick = |t: &[u8]| match channel {
         Channel::Number(i) => t[usize::from(i.min(3))],
         Channel::Automatic if has_alpha => t[3],
-        // Masks are grey: the mean serves as well as the luminance.
+        // Masks are grey, so the mean is as good as the luminance.
         Channel::Automatic => ((u16::from(t[0]) + u16::from(t[1]) + u16::from(t[2])) / 3) as u8,
     };
     let nearest =

@@ -8,7 +8,9 @@ use std::path::PathBuf;
 use clap::error::ErrorKind;
 use clap::{Arg, Parser, Subcommand};
 
-pub use args::{BakeArgs, BenchArgs, CompareArgs, Layout, Map, Motion, SkyArgs, Sweep};
+pub use args::{
+    BakeArgs, BenchArgs, CompareArgs, DaylightArgs, Layout, Map, Motion, SkyArgs, Sweep,
+};
 
 use crate::options::{OptionValues, Optional, choice, decides_light, one_line};
 
@@ -55,6 +57,18 @@ pub enum Command {
         /// Arguments of its own.
         #[command(flatten)]
         args: SkyArgs,
+        /// Options of the daylight.
+        #[command(flatten)]
+        options: OptionValues,
+    },
+    /// Measure illuminance at points of a model: sun, sky and every diffuse bounce, with standard errors. Needs no device.
+    ///
+    /// The options of a picture (its size, camera, tone ..) are accepted and have no effect.
+    #[command(mut_args = hidden_if_of_pictures)]
+    Daylight {
+        /// Arguments of its own.
+        #[command(flatten)]
+        args: DaylightArgs,
         /// Options of the daylight.
         #[command(flatten)]
         options: OptionValues,

@@ -6,6 +6,7 @@ use crate::daylight::sun_position::SunPositionError;
 use crate::gpu::GpuError;
 use crate::options::{OptionsError, ResolveError};
 use crate::scene::{SceneError, shown};
+use crate::sensors::GridError;
 
 /// Result of a command.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -19,6 +20,9 @@ pub enum Error {
     /// A scene that cannot be shown.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// A file of sensors that cannot be used.
+    #[error(transparent)]
+    Grid(#[from] GridError),
     /// The device.
     #[error(transparent)]
     Gpu(#[from] GpuError),

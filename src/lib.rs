@@ -29,11 +29,12 @@
 //! - [`scene`]: models, materials, textures, cameras, scene files; no device.
 //! - [`gpu`]: Vulkan nouns; knows no pass by name.
 //! - [`passes`]: passes in folders by topic; [`frame`] owns them.
+//! - [`sensors`]: illuminance at points with all diffuse bounces, by path tracing on the CPU; no device.
 //! - [`lecture`]: every formula of the slides with its function, shader and test.
 //! - [`compare`]: two pictures, how far apart: radiometric errors and FLIP.
 //! - [`cli`] and [`options`]: text to options. [`commands`]: drivers of the one frame. [`output`]: files, whole or not at all.
 //!
-//! Imports run one way: commands → frame → passes → gpu, scene, daylight; the last three import nothing of ours.
+//! Imports run one way: commands → frame, sensors → passes → gpu, scene, daylight; the last three import nothing of ours.
 //!
 //! # Conventions
 //!
@@ -63,3 +64,4 @@ pub mod options;
 pub mod output;
 pub mod passes;
 pub mod scene;
+pub mod sensors;

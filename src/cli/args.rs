@@ -176,3 +176,26 @@ pub(super) fn named(extensions: &'static [&'static str]) -> impl TypedValueParse
         Err(format!("the name must end in {}", known.join(" or ")))
     })
 }
+
+/// Points to measure at, and where to put the result.
+#[derive(Debug, Clone, PartialEq, Args)]
+pub struct DaylightArgs {
+    /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, island).
+    pub scene: PathBuf,
+    /// Sensors: lines of x y z, or x y z and a normal (up without one), separated by blanks or commas. A .pts file is Radiance's, with
+    /// +Z up; any other has the model's axes. Metres.
+    #[arg(long, value_name = "FILE")]
+    pub grid: PathBuf,
+    /// Print JSON instead of a table.
+    #[arg(long, conflicts_with = "csv")]
+    pub json: bool,
+    /// Print CSV instead of a table.
+    #[arg(long)]
+    pub csv: bool,
+    /// Standard error of each sensor's total at which to stop, relative to the total.
+    #[arg(long, value_name = "R", value_parser = crate::options::ratio, default_value_t = 0.01)]
+    pub error: f64,
+    /// Most paths of a sensor.
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1024..), default_value_t = 1 << 22)]
+    pub max_paths: u32,
+}

@@ -3,6 +3,7 @@
 mod bake;
 mod bench;
 mod compare;
+mod daylight;
 mod info;
 mod interrupt;
 mod job;
@@ -48,6 +49,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::View { .. } => Err(crate::error::Error::NoWindow),
         Command::Bench { args, options } => bench::run(&args, options),
         Command::Sky { args, options } => sky::run(&args, options),
+        Command::Daylight { args, options } => daylight::run(&args, &options),
         Command::Bake { args, options } => bake::run(&args, options),
         Command::Compare { args } => compare::run(&args),
         Command::Info {

@@ -94,6 +94,12 @@ pub fn scrambled_sobol(index: u32, seed: u32) -> DVec2 {
     )
 }
 
+/// [`scrambled_sobol`] in an order shuffled by `seed` (Burley 2020, "Practical hash-based Owen scrambling"): sequences of different
+/// seeds can be the pairs of one point in many dimensions. Every aligned block of 2ⁿ points is as well spread as the unshuffled one.
+pub fn shuffled_sobol(index: u32, seed: u32) -> DVec2 {
+    scrambled_sobol(scrambled(index, tea::<4>(seed, 2)), seed)
+}
+
 /// Multiples of √2 and √3 (Richtmyer 1951), point `index` in [0, 1)²: less uniform than [`r2`], but not correlated with it.
 pub fn richtmyer(index: u32) -> DVec2 {
     let roots = DVec2::new(std::f64::consts::SQRT_2, 3f64.sqrt());

@@ -55,6 +55,12 @@ impl SkySampler {
         }
     }
 
+    /// Probability density of [`SkySampler::light`] at a unit direction of the upper hemisphere, 1/sr.
+    pub fn density(&self, direction: DVec3) -> f64 {
+        let (row, column) = cell_of(direction);
+        share(&self.rows, row) * share(&self.columns[row], column) / CELL
+    }
+
     /// The light sampled by a point in [0, 1)².
     pub fn light(&self, daylight: &Daylight, xi: DVec2) -> DomeLight {
         let (row, y, row_share) = invert(&self.rows, xi.y);
@@ -88,6 +94,19 @@ fn toward(at: DVec2) -> DVec3 {
     let cosine = (1.0 - sine * sine).max(0.0).sqrt();
     let (s, c) = (at.x / COLUMNS as f64 * TAU).sin_cos();
     DVec3::new(s * cosine, sine, -c * cosine)
+}
+
+/// Row and column of the cell in which a direction of the upper hemisphere lies.
+fn cell_of(direction: DVec3) -> (usize, usize) {
+    let row = (direction.y.max(0.0) * ROWS as f64) as usize;
+    let turn = direction.x.atan2(-direction.z) / TAU;
+    let column = (turn.rem_euclid(1.0) * COLUMNS as f64) as usize;
+    (row.min(ROWS - 1), column.min(COLUMNS - 1))
+}
+
+/// Probability of a cell of a cumulative distribution.
+fn share(cumulative: &[f64], cell: usize) -> f64 {
+    cumulative[cell] - cell.checked_sub(1).map_or(0.0, |below| cumulative[below])
 }
 
 /// Cumulative distribution of `values`; uniform if they sum to 0.
@@ -129,6 +148,23 @@ mod tests {
     use super::*;
     use crate::daylight::quadrature::SphereQuadrature;
     use crate::daylight::sky::{Conditions, SkyModel};
+
+    #[test]
+    fn the_density_is_that_of_the_directions_drawn() {
+        let daylight = day(SkyModel::Preetham, 30.0);
+        let dome = SkySampler::new(&daylight);
+        for i in 0..1000 {
+            let light = dome.light(&daylight, sampling::r2(i));
+            let drawn =
+                luminance(daylight.sky_radiance(light.direction)) / luminance(light.illuminance);
+            let ratio = dome.density(light.direction) / drawn;
+            // On the border of two cells rounding may tell the other.
+            assert!((ratio - 1.0).abs() < 1e-9 || i == 0, "{i}: {ratio}");
+        }
+        let upper = SphereQuadrature::upper(256, 512);
+        let total = upper.integrate(|d| DVec3::splat(dome.density(d))).x;
+        assert!((total - 1.0).abs() < 0.01, "{total}");
+    }
 
     fn day(model: SkyModel, elevation: f64) -> Daylight {
         Daylight::new(&Conditions {

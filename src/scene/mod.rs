@@ -6,6 +6,7 @@
 mod bounds;
 mod builder;
 mod bundled;
+mod bvh;
 mod cache;
 mod camera;
 mod culling;
@@ -25,6 +26,7 @@ use serde::{Deserialize, Serialize};
 
 pub use bounds::Bounds;
 pub use bundled::{BUNDLED, bundled, bundled_name};
+pub use bvh::{Bvh, Hit, Ray};
 pub use camera::{Camera, DEFAULT_FOV_DEG};
 pub use culling::bodies::{Bodies, Body};
 pub use culling::clusters::{Cluster, Clusters, Solid};

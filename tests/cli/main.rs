@@ -3,6 +3,7 @@
 mod bake;
 mod bench;
 mod compare;
+mod daylight;
 mod false_colour;
 mod mitsuba_bake;
 mod moment;

@@ -7,3 +7,4 @@ mod truth;
 
 mod converged;
 mod preview;
+mod sensors;

@@ -46,7 +46,8 @@ impl Texture {
         }
     }
 
-    fn linear(&self, x: u32, y: u32) -> [f32; 4] {
+    /// A texel in linear light, RGBA.
+    pub fn linear(&self, x: u32, y: u32) -> [f32; 4] {
         let at = 4 * (y as usize * self.width as usize + x as usize);
         let [r, g, b, a] = [0, 1, 2, 3].map(|i| self.rgba8[at + i]);
         let plain = |v: u8| f32::from(v) / 255.0;

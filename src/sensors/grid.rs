@@ -1,0 +1,176 @@
+//! Files of sensors: Radiance's `.pts` and tables in CSV.
+
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+use thiserror::Error;
+
+use super::Sensor;
+
+/// Why a file of sensors cannot be used.
+#[derive(Debug, Error, PartialEq, Eq)]
+pub enum GridError {
+    /// It cannot be read.
+    #[error("{}: {reason}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        reason: String,
+    },
+    /// A line is no sensor.
+    #[error("{}, line {line}: {what}", path.display())]
+    Line {
+        /// The file.
+        path: PathBuf,
+        /// From 1.
+        line: usize,
+        /// What is wrong, and what belongs there.
+        what: String,
+    },
+    /// It has no sensor.
+    #[error("{}: no sensors; each line is x y z, or x y z and a normal", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// Largest file that is read, bytes: some ten million sensors.
+const MAX_BYTES: u64 = 1 << 30;
+
+/// Reads the sensors of a file, in its order.
+///
+/// A line has three numbers, a position in metres, and may have three more, a normal of any length (up without them). Numbers are
+/// separated by blanks or commas; a first line of words names columns and is left out; lines after `#` are comments. A `.pts`
+/// file is Radiance's, with +Z up and +Y north; any other is in the model's coordinates, with +Y up and −Z north.
+///
+/// # Errors
+/// A file that cannot be read, a line that is no sensor, or no sensor at all.
+pub fn read_grid(path: &Path) -> Result<Vec<Sensor>, GridError> {
+    let unreadable = |reason: String| GridError::Unreadable {
+        path: path.to_owned(),
+        reason,
+    };
+    let size = std::fs::metadata(path).map_err(|e| unreadable(e.to_string()))?;
+    if size.len() > MAX_BYTES {
+        return Err(unreadable("larger than 1 GiB".to_owned()));
+    }
+    let bytes = std::fs::read(path).map_err(|e| unreadable(e.to_string()))?;
+    let text = String::from_utf8_lossy(&bytes);
+    let is_z_up = path
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("pts"));
+    parse(text.trim_start_matches('\u{feff}'), is_z_up).map_err(|fault| match fault {
+        Some((line, what)) => GridError::Line {
+            path: path.to_owned(),
+            line,
+            what,
+        },
+        None => GridError::Empty {
+            path: path.to_owned(),
+        },
+    })
+}
+
+/// Sensors of a text; of an error the line and what is wrong, or nothing where no sensor is.
+fn parse(text: &str, is_z_up: bool) -> Result<Vec<Sensor>, Option<(usize, String)>> {
+    let mut sensors = Vec::new();
+    let mut has_header = false;
+    for (at, line) in text.lines().enumerate() {
+        let line = line.split('#').next().unwrap_or_default();
+        let words: Vec<&str> = line
+            .split(|c: char| c == ',' || c == ';' || c.is_whitespace())
+            .filter(|word| !word.is_empty())
+            .collect();
+        if words.is_empty() {
+            continue;
+        }
+        let is_named = words.iter().all(|word| word.parse::<f32>().is_err());
+        if is_named && sensors.is_empty() && !has_header {
+            has_header = true;
+            continue;
+        }
+        sensors.push(sensor(&words, is_z_up).map_err(|what| Some((at + 1, what)))?);
+    }
+    if sensors.is_empty() {
+        return Err(None);
+    }
+    Ok(sensors)
+}
+
+fn sensor(words: &[&str], is_z_up: bool) -> Result<Sensor, String> {
+    let number = |word: &&str| match word.parse::<f32>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(format!("\"{word}\" is no number")),
+    };
+    let values: Vec<f32> = words.iter().map(number).collect::<Result<_, _>>()?;
+    let (position, normal) = match values[..] {
+        [x, y, z] => (Vec3::new(x, y, z), None),
+        [x, y, z, a, b, c] => (Vec3::new(x, y, z), Some(Vec3::new(a, b, c))),
+        _ => {
+            return Err(format!(
+                "{} numbers; a sensor is x y z, or x y z and a normal",
+                values.len()
+            ));
+        }
+    };
+    let world = |v: Vec3| {
+        if is_z_up {
+            Vec3::new(v.x, v.z, -v.y)
+        } else {
+            v
+        }
+    };
+    let normal = match normal {
+        None => Vec3::Y,
+        Some(normal) => world(normal)
+            .try_normalize()
+            .ok_or("a normal of no length; give a direction, or leave it out for up")?,
+    };
+    Ok(Sensor {
+        position: world(position),
+        normal,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(text: &str, is_z_up: bool) -> Vec<([f32; 3], [f32; 3])> {
+        let sensors = parse(text, is_z_up).expect("sensors");
+        let plain = sensors
+            .iter()
+            .map(|s| (s.position.to_array(), s.normal.to_array()));
+        plain.collect()
+    }
+
+    #[test]
+    fn radiance_points_have_z_up_and_tables_the_models_axes() {
+        let text = "1 2 3 0 0 2\n\n# a comment\n4\t5 6 0 -1 0 # facing south\r\n";
+        let expected = [
+            ([1.0, 3.0, -2.0], [0.0, 1.0, 0.0]),
+            ([4.0, 6.0, -5.0], [0.0, 0.0, 1.0]),
+        ];
+        assert_eq!(points(text, true), expected);
+        let table = "x,y,z,nx,ny,nz\n1, 2, 3, 0, 0, 2\n4,5,6,1,0,0\n";
+        let expected = [
+            ([1.0, 2.0, 3.0], [0.0, 0.0, 1.0]),
+            ([4.0, 5.0, 6.0], [1.0, 0.0, 0.0]),
+        ];
+        assert_eq!(points(table, false), expected);
+        assert_eq!(points("1 2 3", false), [([1.0, 2.0, 3.0], [0.0, 1.0, 0.0])]);
+    }
+
+    #[test]
+    fn lines_that_are_no_sensors_are_named() {
+        let fault = |text| parse(text, false).expect_err("a fault");
+        assert_eq!(fault("x y z\n# nothing\n"), None);
+        let line = |text| fault(text).expect("a line");
+        assert_eq!(line("1 2 3\n1 2\n").0, 2);
+        assert_eq!(line("1 2 3\nx y z\n"), (2, "\"x\" is no number".to_owned()));
+        assert_eq!(line("1 2 nan\n"), (1, "\"nan\" is no number".to_owned()));
+        assert!(line("1 2 3 0 0 0").1.contains("no length"));
+    }
+}

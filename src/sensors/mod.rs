@@ -1,0 +1,258 @@
+//! Illuminance at points of a scene, with its standard error: sun, sky and every diffuse bounce, by path tracing on the CPU.
+//!
+//! No device is needed. [`read_grid`] reads the points, [`measure`] lights them.
+
+mod grid;
+mod path;
+mod surface;
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+use glam::{DVec3, Vec3};
+
+pub use self::grid::{GridError, read_grid};
+pub use self::path::Lights;
+pub use self::surface::Surfaces;
+
+use crate::daylight::colour::luminance;
+
+/// A point and the side from which light is counted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sensor {
+    /// World space, metres.
+    pub position: Vec3,
+    /// Unit vector.
+    pub normal: Vec3,
+}
+
+/// Illuminance at a sensor, lux.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Reading {
+    /// From the sky, unreflected.
+    pub sky_direct: f64,
+    /// From the sun, unreflected.
+    pub sun_direct: f64,
+    /// Reflected once or more by surfaces of the scene, or by the ground below the horizon.
+    pub reflected: f64,
+    /// Standard error of the sum.
+    pub standard_error: f64,
+    /// Paths that were traced.
+    pub paths: u32,
+}
+
+impl Reading {
+    /// All of it, lux.
+    pub fn total(&self) -> f64 {
+        self.sky_direct + self.sun_direct + self.reflected
+    }
+}
+
+/// When a sensor has been measured well enough.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Precision {
+    /// Standard error relative to the total.
+    pub relative_error: f64,
+    /// Most paths of a sensor.
+    pub max_paths: u32,
+    /// Start of the sample sequences.
+    pub seed: u32,
+}
+
+/// Independent estimates from whose spread the standard error comes: randomised quasi-Monte Carlo (Owen 1997).
+const REPLICATES: u32 = 16;
+
+/// Paths of each replicate in the first round; every round doubles them.
+const FIRST_ROUND: u32 = 64;
+
+/// Measures every sensor on all cores, in the order given; `progress` is told of each that is done. The same seed gives the
+/// same numbers, whatever the number of cores.
+pub fn measure(
+    sensors: &[Sensor],
+    surfaces: &Surfaces,
+    lights: &Lights,
+    precision: &Precision,
+    progress: &(dyn Fn() + Sync),
+) -> Vec<Reading> {
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut done = Vec::new();
+        loop {
+            let at = next.fetch_add(1, Ordering::Relaxed);
+            let Some(sensor) = sensors.get(at) else {
+                return done;
+            };
+            done.push((at, read(sensor, at as u32, surfaces, lights, precision)));
+            progress();
+        }
+    };
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    let mut readings = vec![Reading::default(); sensors.len()];
+    thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        for worker in workers {
+            // A fault of this program is one on this thread too.
+            let done = worker.join();
+            for (at, reading) in done.unwrap_or_else(|fault| std::panic::resume_unwind(fault)) {
+                readings[at] = reading;
+            }
+        }
+    });
+    readings
+}
+
+/// One sensor, number `number` of its grid.
+fn read(
+    sensor: &Sensor,
+    number: u32,
+    surfaces: &Surfaces,
+    lights: &Lights,
+    precision: &Precision,
+) -> Reading {
+    let mut sums = [[DVec3::ZERO; 3]; REPLICATES as usize];
+    let (mut traced, mut wanted) = (0, FIRST_ROUND);
+    loop {
+        for (replicate, sum) in sums.iter_mut().enumerate() {
+            let seed = path::seed(precision.seed, number, replicate as u32);
+            for index in traced..wanted {
+                let parts = path::trace(sensor, surfaces, lights, index, seed);
+                sum.iter_mut().zip(parts).for_each(|(s, p)| *s += p);
+            }
+        }
+        traced = wanted;
+        let reading = reading(&sums, traced);
+        let is_precise = reading.standard_error <= precision.relative_error * reading.total();
+        if is_precise || traced.saturating_mul(2 * REPLICATES) > precision.max_paths {
+            return reading;
+        }
+        wanted = 2 * traced;
+    }
+}
+
+/// The means of all replicates of `paths` paths each, and their spread.
+fn reading(sums: &[[DVec3; 3]; REPLICATES as usize], paths: u32) -> Reading {
+    let n = f64::from(REPLICATES);
+    let lux = |part: usize, replicate: usize| luminance(sums[replicate][part]) / f64::from(paths);
+    let mean = |part| (0..sums.len()).map(|r| lux(part, r)).sum::<f64>() / n;
+    let totals: Vec<f64> = (0..sums.len())
+        .map(|r| (0..3).map(|part| lux(part, r)).sum())
+        .collect();
+    let total = totals.iter().sum::<f64>() / n;
+    let variance = totals.iter().map(|t| (t - total).powi(2)).sum::<f64>() / (n - 1.0);
+    Reading {
+        sky_direct: mean(0),
+        sun_direct: mean(1),
+        reflected: mean(2),
+        standard_error: (variance / n).sqrt(),
+        paths: paths * REPLICATES,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::daylight::sky::{Conditions, Daylight};
+    use crate::scene::{Bounds, Material, Part, Scene};
+
+    /// Squares, each by its corner and two edges, of reflectance 0.5.
+    fn squares(list: &[[Vec3; 3]]) -> Scene {
+        let corners = |[at, u, v]: [Vec3; 3]| [at, at + u, at + u + v, at + v];
+        let positions: Vec<Vec3> = list.iter().copied().flat_map(corners).collect();
+        let indices: Vec<u32> = (0..list.len() as u32)
+            .flat_map(|n| [0, 1, 2, 0, 2, 3].map(|i| 4 * n + i))
+            .collect();
+        let bounds = Bounds::of(positions.iter().copied());
+        Scene {
+            normals: vec![[0.0, 1.0, 0.0]; positions.len()],
+            texcoords: vec![[0.0; 2]; positions.len()],
+            parts: vec![Part {
+                first_index: 0,
+                index_count: indices.len() as u32,
+                material: 0,
+                has_colours: false,
+                bounds,
+            }],
+            materials: vec![Material::default()],
+            positions: positions.iter().map(Vec3::to_array).collect(),
+            indices,
+            bounds,
+            ..Scene::default()
+        }
+    }
+
+    fn day() -> Daylight {
+        Daylight::new(&Conditions {
+            sun_elevation_deg: 40.0,
+            ground_albedo: 0.0,
+            ..Conditions::default()
+        })
+    }
+
+    fn reading(scene: &Scene, normal: Vec3) -> Reading {
+        let daylight = day();
+        let sensor = Sensor {
+            position: Vec3::new(0.0, 1.0, 0.0),
+            normal,
+        };
+        let precision = Precision {
+            relative_error: 2e-3,
+            max_paths: 1 << 20,
+            seed: 0,
+        };
+        let (surfaces, lights) = (Surfaces::new(scene), Lights::new(&daylight));
+        measure(&[sensor], &surfaces, &lights, &precision, &|| ())[0]
+    }
+
+    /// Illuminance of sun and sky on open ground, lux.
+    fn open() -> [f64; 2] {
+        let day = day();
+        let sun = luminance(day.sun_illuminance) * day.sun_direction.y;
+        [luminance(day.sky_irradiance_up), sun]
+    }
+
+    #[test]
+    fn open_ground_has_the_light_of_sun_and_sky() {
+        let measured = reading(&Scene::default(), Vec3::Y);
+        let [sky, sun] = open();
+        println!("{measured:?}, expected {sky} and {sun}");
+        assert!((measured.sky_direct / sky - 1.0).abs() < 0.005);
+        assert!((measured.sun_direct / sun - 1.0).abs() < 0.005);
+        assert_eq!(measured.reflected, 0.0);
+    }
+
+    #[test]
+    fn a_sensor_over_a_plane_sees_what_it_reflects() {
+        let size = 2e4;
+        let plane = [
+            Vec3::new(-0.5 * size, 0.0, -0.5 * size),
+            size * Vec3::Z,
+            size * Vec3::X,
+        ];
+        let measured = reading(&squares(&[plane]), -Vec3::Y);
+        let expected = 0.5 * open().iter().sum::<f64>();
+        println!("{measured:?}, expected {expected}");
+        assert!((measured.reflected / expected - 1.0).abs() < 0.005);
+        assert_eq!(measured.sun_direct, 0.0);
+        assert!(measured.sky_direct < 1e-3 * expected);
+    }
+
+    #[test]
+    fn a_closed_box_is_dark() {
+        let (low, edge) = (
+            Vec3::new(-2.0, 0.0, -2.0),
+            [4.0 * Vec3::X, 3.0 * Vec3::Y, 4.0 * Vec3::Z],
+        );
+        let [x, y, z] = edge;
+        let walls = [
+            [low, x, z],
+            [low + y, x, z],
+            [low, x, y],
+            [low + z, x, y],
+            [low, z, y],
+            [low + x, z, y],
+        ];
+        let measured = reading(&squares(&walls), Vec3::Y);
+        assert_eq!(measured.total(), 0.0, "{measured:?}");
+        assert_eq!(measured.standard_error, 0.0);
+    }
+}

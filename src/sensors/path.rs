@@ -1,0 +1,148 @@
+//! One path: from a sensor over diffuse surfaces, with the light of sun and sky at every point of it.
+//!
+//! E(x) = E_sun(x) + E_sky(x) + Σ over bounces of the product of reflectances times E_sun + E_sky at each point (Kajiya 1986, "The
+//! rendering equation", for Lambert's surfaces: with directions of density cos θ/π the factor of a bounce is ρ_d).
+
+use std::f64::consts::PI;
+
+use glam::{DVec2, DVec3};
+
+use super::Sensor;
+use super::surface::{Point, Surfaces, lifted};
+use crate::daylight::sampling::{cosine_hemisphere, rnd, shuffled_sobol, tea};
+use crate::daylight::sky::Daylight;
+use crate::daylight::sky_sampler::SkySampler;
+use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
+use crate::daylight::tangent_frame;
+
+/// Bounces after which a path goes on by chance only.
+const SURE_BOUNCES: u32 = 3;
+
+/// Bounces after which a path ends: of surfaces that reflect 95 % less than a millionth of the light is left.
+const MAX_BOUNCES: u32 = 256;
+
+/// Sun and sky of a moment.
+pub struct Lights<'a> {
+    daylight: &'a Daylight,
+    sampler: SkySampler,
+}
+
+impl<'a> Lights<'a> {
+    /// Tabulates the sky for importance sampling.
+    pub fn new(daylight: &'a Daylight) -> Self {
+        Self {
+            sampler: SkySampler::new(daylight),
+            daylight,
+        }
+    }
+}
+
+/// The seed of a replicate of a sensor.
+pub(super) fn seed(of_grid: u32, sensor: u32, replicate: u32) -> u32 {
+    tea::<8>(tea::<8>(of_grid, sensor), replicate)
+}
+
+/// Random numbers of a path: points of scrambled sequences for the first decisions, plain ones after that.
+struct Numbers {
+    index: u32,
+    seed: u32,
+    dimension: u32,
+    state: u32,
+}
+
+/// Pairs of numbers that come from scrambled sequences.
+const SPREAD_PAIRS: u32 = 6;
+
+impl Numbers {
+    fn pair(&mut self) -> DVec2 {
+        self.dimension += 1;
+        if self.dimension <= SPREAD_PAIRS {
+            return shuffled_sobol(self.index, tea::<4>(self.seed, self.dimension));
+        }
+        DVec2::new(rnd(&mut self.state), rnd(&mut self.state))
+    }
+}
+
+/// Irradiance estimated by path `index` of a replicate, linear RGB, lux: from the sky, from the sun, reflected.
+pub(super) fn trace(
+    sensor: &Sensor,
+    surfaces: &Surfaces,
+    lights: &Lights,
+    index: u32,
+    seed: u32,
+) -> [DVec3; 3] {
+    let mut numbers = Numbers {
+        index,
+        seed,
+        dimension: 0,
+        state: tea::<8>(index, seed),
+    };
+    let mut point = Point {
+        position: lifted(sensor.position, sensor.normal),
+        normal: sensor.normal,
+        reflectance: DVec3::ONE,
+    };
+    let [mut sky, mut sun, mut reflected] = [DVec3::ZERO; 3];
+    let mut throughput = DVec3::ONE;
+    for bounce in 0..MAX_BOUNCES {
+        let from_sun = sun_at(&point, surfaces, lights, numbers.pair());
+        let mut from_sky = sky_at(&point, surfaces, lights, numbers.pair());
+        let mut from_ground = DVec3::ZERO;
+        let local = cosine_hemisphere(numbers.pair());
+        let direction = tangent_frame::to_world(local, point.normal.as_dvec3());
+        let next = surfaces.first(point.position, direction.as_vec3());
+        if next.is_none() {
+            if direction.y < 0.0 {
+                from_ground = PI * lights.daylight.ground_luminance;
+            } else {
+                let density = local.z / PI;
+                let weight = density / (density + lights.sampler.density(direction));
+                from_sky += weight * PI * lights.daylight.sky_radiance(direction);
+            }
+        }
+        if bounce == 0 {
+            (sky, sun, reflected) = (from_sky, from_sun, from_ground);
+        } else {
+            reflected += throughput * (from_sky + from_sun + from_ground);
+        }
+        let Some(next) = next else { break };
+        throughput *= next.reflectance;
+        if bounce >= SURE_BOUNCES {
+            let chance = throughput.max_element().min(1.0);
+            if rnd(&mut numbers.state) >= chance {
+                break;
+            }
+            throughput /= chance;
+        }
+        point = next;
+    }
+    [sky, sun, reflected]
+}
+
+/// The sun's irradiance at a point, from a point of its disc.
+fn sun_at(point: &Point, surfaces: &Surfaces, lights: &Lights, xi: DVec2) -> DVec3 {
+    let centre = lights.daylight.sun_direction;
+    let radius = xi.x.sqrt() * SUN_ANGULAR_RADIUS;
+    let (s, c) = (2.0 * PI * xi.y).sin_cos();
+    let offset = DVec3::new(radius * c, radius * s, 1.0).normalize();
+    let toward = tangent_frame::to_world(offset, centre);
+    let cosine = point.normal.as_dvec3().dot(toward);
+    let is_dark = lights.daylight.sun_illuminance == DVec3::ZERO || toward.y <= 0.0;
+    if cosine <= 0.0 || is_dark || !surfaces.is_open(point.position, toward.as_vec3()) {
+        return DVec3::ZERO;
+    }
+    lights.daylight.sun_illuminance * cosine
+}
+
+/// The sky's irradiance at a point from a direction drawn by its luminance, weighted against directions drawn by the cosine
+/// (Veach and Guibas 1995, balance heuristic).
+fn sky_at(point: &Point, surfaces: &Surfaces, lights: &Lights, xi: DVec2) -> DVec3 {
+    let light = lights.sampler.light(lights.daylight, xi);
+    let cosine = point.normal.as_dvec3().dot(light.direction);
+    if cosine <= 0.0 || !surfaces.is_open(point.position, light.direction.as_vec3()) {
+        return DVec3::ZERO;
+    }
+    let density = lights.sampler.density(light.direction);
+    let weight = density / (density + cosine / PI);
+    light.illuminance * (cosine * weight)
+}

@@ -1,0 +1,123 @@
+//! Sensors in rooms against a path tracer: `skylight daylight`, all bounces.
+
+use std::process::Command;
+
+use crate::common;
+
+/// Columns of a CSV text after its header.
+fn rows(text: &str) -> Vec<Vec<f64>> {
+    let lines = text.lines().skip(1).filter(|line| !line.is_empty());
+    let cells = lines.map(|line| line.split(',').map(|cell| cell.parse().expect("a number")));
+    cells.map(Iterator::collect).collect()
+}
+
+/// Runs `skylight daylight` for the sensors of a room; its CSV.
+fn measured(room: &str, sensors: &[Vec<f64>], light: &[&str]) -> Vec<Vec<f64>> {
+    let shared = common::shared().expect("the folder");
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let grid = folder.path().join("grid.csv");
+    let lines: Vec<String> = sensors
+        .iter()
+        .map(|s| format!("{},{},{}", s[0], s[1], s[2]))
+        .collect();
+    std::fs::write(&grid, lines.join("\n")).expect("written");
+    let output = Command::new(env!("CARGO_BIN_EXE_skylight"))
+        .arg("daylight")
+        .arg(shared.join(format!("gi/{room}/{room}.obj")))
+        .arg("--grid")
+        .arg(&grid)
+        .args(light)
+        .args([
+            "--ground-albedo",
+            "0",
+            "--error",
+            "0.02",
+            "--csv",
+            "--quiet",
+        ])
+        .output()
+        .expect("it runs");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{errors}");
+    rows(&String::from_utf8_lossy(&output.stdout))
+}
+
+/// Sensors of a room under a light against the path tracer's: the mean of all within 1 %, of each row of six within 3 %, and errors
+/// as large as both programs say.
+fn check(room: &str, table: &str, light: &[&str]) {
+    let Some(shared) = common::shared() else {
+        return;
+    };
+    let path = shared.join(format!("gi/{room}/sensors_{table}.csv"));
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let truth = rows(&text);
+    assert_eq!(truth.len(), 72);
+    let ours = measured(room, &truth, light);
+    assert_eq!(ours.len(), truth.len());
+    let differences: Vec<f64> = ours
+        .iter()
+        .zip(&truth)
+        .map(|(o, t)| o[9] / t[3] - 1.0)
+        .collect();
+    let mean = |list: &[f64]| list.iter().sum::<f64>() / list.len() as f64;
+    let worst = differences
+        .chunks(6)
+        .map(|row| mean(row).abs())
+        .fold(0.0, f64::max);
+    let in_errors: Vec<f64> = ours
+        .iter()
+        .zip(&truth)
+        .map(|(o, t)| ((o[9] - t[3]) / o[10].hypot(t[4])).powi(2))
+        .collect();
+    let spread = mean(&in_errors).sqrt();
+    println!(
+        "{room}, {table}: mean {:+.4}, worst row {worst:.4}, spread {spread:.2} standard errors",
+        mean(&differences)
+    );
+    assert!(mean(&differences).abs() < 0.01);
+    assert!(worst < 0.03);
+    assert!((0.6..1.6).contains(&spread));
+}
+
+#[test]
+fn an_office_meets_the_path_tracer() {
+    check(
+        "office",
+        "clear_sky_and_sun",
+        &["--sun", "200,38", "--turbidity", "3"],
+    );
+    let overcast = [
+        "--sky",
+        "overcast",
+        "--sky-illuminance",
+        "10000",
+        "--sun",
+        "180,40",
+    ];
+    check("office", "overcast_10klx", &overcast);
+}
+
+#[test]
+fn an_office_under_an_overhang_meets_the_path_tracer() {
+    let overcast = [
+        "--sky",
+        "overcast",
+        "--sky-illuminance",
+        "10000",
+        "--sun",
+        "180,40",
+    ];
+    check("office_overhang", "overcast_10klx", &overcast);
+}
+
+#[test]
+fn no_light_comes_through_a_partition() {
+    if common::shared().is_none() {
+        return;
+    }
+    let sensors: Vec<Vec<f64>> = (0..6)
+        .map(|i| vec![0.5 + f64::from(i), 0.8, -7.0])
+        .collect();
+    let lux = measured("office_leak", &sensors, &["--sun", "200,38"]);
+    assert!(lux.iter().all(|row| row[9] == 0.0), "{lux:?}");
+}

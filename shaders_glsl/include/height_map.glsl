@@ -44,7 +44,7 @@ vec2 slice_direction(vec2 slice_n, float sine) {
 /// The sectors of both sides that a roof blocks: rays fan out from points under a roof.
 uvec2 roofed_sectors(Side plus, Side minus, float jitter, float dither) {
     vec3 from = (height.from_view * vec4(p + n * height.lift, 1.0)).xyz;
-    // If no pixel of a group is under a roof, at most one of the rays is computed.
+    // No rays are computed for groups of pixels that are all in the open.
     float top = highest(from);
     int rays = top > from.z + height.slack ? height.rays : 0;
     // Uniform in the sine of the angle to the normal, between the tangents: equal cosine weights.

@@ -345,17 +345,9 @@ impl Dome {
         self.means.swap(0, 1);
         let [[sky, rest], [old_sky, old_rest]] = &self.means;
         let surfaces = gathered.surfaces;
-        let albedo = surfaces.albedo.as_ref().unwrap_or(gathered.materials);
-        let pass = recorder
-            .pass("dome: gather", &self.gather)
-            .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample(
-                "normal_material",
-                &surfaces.normal_material,
-                Sampler::Nearest,
-            )
-            .sample("albedo", albedo, Sampler::Nearest)
-            .sample("materials", gathered.materials, Sampler::Nearest)
+        let pass = recorder.pass("dome: gather", &self.gather);
+        let pass = surfaces
+            .sampled_by(pass, gathered.materials)
             .sample("frame", gathered.frame, Sampler::Nearest)
             .sample("previous_sky", old_sky, Sampler::Nearest)
             .sample("previous_rest", old_rest, Sampler::Nearest)

@@ -117,22 +117,14 @@ impl SpecularSky {
     ) {
         self.means.swap(0, 1);
         let [[reflected, lobe], [old_reflected, old_lobe]] = &self.means;
-        let (surfaces, materials) = (gathered.surfaces, gathered.materials);
-        let albedo = surfaces.albedo.as_ref().unwrap_or(materials);
-        recorder
-            .pass("dome: specular", &self.gather)
-            .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample(
-                "normal_material",
-                &surfaces.normal_material,
-                Sampler::Nearest,
-            )
-            .sample("albedo", albedo, Sampler::Nearest)
+        let pass = recorder.pass("dome: specular", &self.gather);
+        gathered
+            .surfaces
+            .sampled_by(pass, gathered.materials)
             .sample("previous_reflected", old_reflected, Sampler::Nearest)
             .sample("previous_lobe", old_lobe, Sampler::Nearest)
             .sample("maps", maps, Sampler::Nearest)
             .sample("sky_radiance", gathered.sky_radiance, Sampler::Linear)
-            .sample("materials", materials, Sampler::Nearest)
             .uniform("view", &view.block())
             .uniform("dome", block)
             .push(&Push {

@@ -279,22 +279,13 @@ impl Lighting {
         light: &Light<'_>,
         view: &View,
     ) -> &Image {
-        // Without an albedo image the pipeline reads none, but the binding must be written.
-        let albedo = surfaces.albedo.as_ref().unwrap_or(materials);
-        recorder
-            .pass("lighting", &self.pipeline)
-            .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample(
-                "normal_material",
-                &surfaces.normal_material,
-                Sampler::Nearest,
-            )
-            .sample("albedo", albedo, Sampler::Nearest)
+        let pass = recorder.pass("lighting", &self.pipeline);
+        surfaces
+            .sampled_by(pass, materials)
             .sample("occlusion", occlusion, Sampler::Nearest)
             .sample("shadow_map", light.shadow_map, Sampler::Nearest)
             .sample("sky_irradiance", light.sky_irradiance, Sampler::Linear)
             .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
-            .sample("materials", materials, Sampler::Nearest)
             .uniform("view", &view.block())
             .uniform("sun", &self.sun_block(light, view))
             .uniform("cascades", &light.sun_views.block())

@@ -82,6 +82,17 @@ impl Surfaces {
             .chain(&self.albedo)
     }
 
+    /// Samples the images and the table of materials in a pass, texel by texel.
+    ///
+    /// Without an albedo image the pipeline reads none, but the binding must be written: the table takes its place.
+    pub fn sampled_by<'r>(&'r self, pass: Pass<'r>, materials: &'r Image) -> Pass<'r> {
+        let albedo = self.albedo.as_ref().unwrap_or(materials);
+        pass.sample("depth", &self.depth, Sampler::Nearest)
+            .sample("normal_material", &self.normal_material, Sampler::Nearest)
+            .sample("albedo", albedo, Sampler::Nearest)
+            .sample("materials", materials, Sampler::Nearest)
+    }
+
     /// Adds the images as attachments of a pass.
     fn attach<'r>(&'r self, pass: Pass<'r>, load: Load) -> Pass<'r> {
         let images = std::iter::once(&self.normal_material).chain(&self.albedo);

@@ -10,7 +10,8 @@
 //! 1. its field in [`Options`] below, with help text, default and parser, in the group with its help heading and the tables
 //!    of a scene file in which it may appear;
 //! 2. the code that uses the field;
-//! 3. if it has a type of its own: the names of an enum's variants in `choices.rs`, or its text form in `values.rs`.
+//! 3. if it has a type of its own: in `values.rs` an enum by `choice_enum!` or the text form of another type, or in `choices.rs`
+//!    the names of an enum that other modules own.
 
 mod choices;
 mod command_line;
@@ -31,7 +32,7 @@ pub use crate::gpu::Optional;
 pub use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
 pub use crate::passes::light::lighting::Show;
 pub use choices::{Choice, name};
-pub(crate) use choices::{choice, choices};
+pub(crate) use choices::{choice, choice_enum, choices};
 pub use given::OptionValues;
 pub use resolve::ResolveError;
 pub use sun_input::SunInput;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::builder::{ArgPredicate, PathBufValueParser, TypedValueParser};
 use clap::{Args, value_parser};
 
-use crate::options::{Direction, choice, choices};
+use crate::options::{Direction, choice, choice_enum};
 
 /// What to measure, and where to put it.
 #[derive(Debug, Clone, PartialEq, Args)]
@@ -37,32 +37,26 @@ pub struct BenchArgs {
     pub fail_above: Option<f64>,
 }
 
-/// What moves while whole frames are timed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Motion {
-    /// Nothing: every frame shows the same.
-    None,
-    /// The camera, every frame: nothing of the view can be reused.
-    #[default]
-    Camera,
-    /// Camera and sun, every frame: sky, irradiance and shadow map begin anew.
-    Sun,
+choice_enum! {
+    /// What moves while whole frames are timed.
+    #[derive(Default)]
+    pub enum Motion {
+        None = "none": "Nothing: every frame shows the same",
+        #[default]
+        Camera = "camera": "The camera, every frame: nothing of the view can be reused",
+        Sun = "sun": "Camera and sun, every frame: sky, irradiance and shadow map begin anew",
+    }
 }
 
-/// What grows from step to step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sweep {
-    /// Pixels of the picture, 640x360 to 3840x2160.
-    Resolution,
-    /// Triangles: those of the scene, cut into 4, 9, 16 .., or without one hills of 10 000 to 2 million; of a view of all and of
-    /// one that sees 5 %.
-    Triangles,
-    /// Irradiance samples of one pass, 64 to 4096.
-    Samples,
-    /// Texels of the shadow map, 256² to 4096².
-    Shadow,
-    /// Depth samples of a pixel's ambient occlusion.
-    Ssao,
+choice_enum! {
+    /// What grows from step to step.
+    pub enum Sweep {
+        Resolution = "resolution": "Pixels of the picture, 640x360 to 3840x2160",
+        Triangles = "triangles": "Triangles: those of the scene, cut into 4, 9, 16 .., or without one hills of 10 000 to 2 million; of a view of all and of one that sees 5 %",
+        Samples = "samples": "Irradiance samples of one pass, 64 to 4096",
+        Shadow = "shadow": "Texels of the shadow map, 256² to 4096²",
+        Ssao = "ssao": "Depth samples of a pixel's ambient occlusion",
+    }
 }
 
 /// What to tell of a daylight.
@@ -101,25 +95,23 @@ pub struct BakeArgs {
     pub output: PathBuf,
 }
 
-/// What a map holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Map {
-    /// Radiance of sky and ground without the sun's disc, cd/m².
-    Sky,
-    /// Irradiance E(n) of sky and ground without the sun, lux, by the direction of the normal.
-    Irradiance,
+choice_enum! {
+    /// What a map holds.
+    pub enum Map {
+        Sky = "sky": "Radiance of sky and ground without the sun's disc, cd/m²",
+        Irradiance = "irradiance": "Irradiance E(n) of sky and ground without the sun, lux, by the direction of the normal",
+    }
 }
 
-/// How the sphere is laid out.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Layout {
-    /// 4N x 2N: first row the zenith, first column north, azimuth clockwise to the right.
-    #[default]
-    Equirect,
-    /// 4N x 3N: -X +Z +X -Z in the middle row, +Y above and -Y below +Z; each face as Vulkan has it.
-    Cross,
-    /// Six files NAME_px .. NAME_nz, N x N, each as Vulkan has it.
-    Faces,
+choice_enum! {
+    /// How the sphere is laid out.
+    #[derive(Default)]
+    pub enum Layout {
+        #[default]
+        Equirect = "equirect": "4N x 2N: first row the zenith, first column north, azimuth clockwise to the right",
+        Cross = "cross": "4N x 3N: -X +Z +X -Z in the middle row, +Y above and -Y below +Z; each face as Vulkan has it",
+        Faces = "faces": "Six files NAME_px .. NAME_nz, N x N, each as Vulkan has it",
+    }
 }
 
 /// What to compare, and how.
@@ -138,30 +130,6 @@ pub struct CompareArgs {
     /// Write the map of FLIP, black (none) to white.
     #[arg(long, value_name = "FILE.png", value_parser = named(&["png"]))]
     pub diff: Option<PathBuf>,
-}
-
-choices! {
-    Motion {
-        None = "none": "Nothing: every frame shows the same",
-        Camera = "camera": "The camera, every frame: nothing of the view can be reused",
-        Sun = "sun": "Camera and sun, every frame: sky, irradiance and shadow map begin anew",
-    }
-    Sweep {
-        Resolution = "resolution": "Pixels of the picture, 640x360 to 3840x2160",
-        Triangles = "triangles": "Triangles: those of the scene, cut into 4, 9, 16 .., or without one hills of 10 000 to 2 million; of a view of all and of one that sees 5 %",
-        Samples = "samples": "Irradiance samples of one pass, 64 to 4096",
-        Shadow = "shadow": "Texels of the shadow map, 256² to 4096²",
-        Ssao = "ssao": "Depth samples of a pixel's ambient occlusion",
-    }
-    Map {
-        Sky = "sky": "Radiance of sky and ground without the sun's disc, cd/m²",
-        Irradiance = "irradiance": "Irradiance E(n) of sky and ground without the sun, lux, by the direction of the normal",
-    }
-    Layout {
-        Equirect = "equirect": "4N x 2N: first row the zenith, first column north, azimuth clockwise to the right",
-        Cross = "cross": "4N x 3N: -X +Z +X -Z in the middle row, +Y above and -Y below +Z; each face as Vulkan has it",
-        Faces = "faces": "Six files NAME_px .. NAME_nz, N x N, each as Vulkan has it",
-    }
 }
 
 /// The parser of a file name with one of these extensions; it need not be UTF-8.

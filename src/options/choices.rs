@@ -5,9 +5,8 @@ use std::fmt;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::{
-    AoResolution, ExposureMode, Filter, Fresnel, IrradianceMethod, Optional, Penumbra, Phong,
-    Preset, Quantity, Reflections, Show, SkyModel, SunPositionMethod, Switch, ToneCurve,
-    Visibility,
+    Filter, IrradianceMethod, Optional, Phong, Quantity, Reflections, Show, SkyModel,
+    SunPositionMethod, ToneCurve, Visibility,
 };
 
 /// An enum whose variants are values of an option.
@@ -62,22 +61,31 @@ macro_rules! choices {
 }
 pub(crate) use choices;
 
+/// Defines an enum that only the command line knows, with [`choices!`]: the help line of a variant is its documentation.
+macro_rules! choice_enum {
+    (
+        $(#[$attribute:meta])*
+        pub enum $type:ident {
+            $($(#[$variant_attribute:meta])* $variant:ident = $name:literal: $help:literal,)*
+        }
+    ) => {
+        $(#[$attribute])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum $type {
+            $(#[doc = concat!($help, ".")] $(#[$variant_attribute])* $variant,)*
+        }
+
+        crate::options::choices! {
+            $type { $($variant = $name: $help,)* }
+        }
+    };
+}
+pub(crate) use choice_enum;
+
 choices! {
-    AoResolution {
-        Auto = "auto": "Half from 720 rows on, full below",
-        Full = "full": "From every pixel, at every second of every second row",
-        Half = "half": "From every second pixel of every second row, at every fourth of every fourth",
-    }
-    ExposureMode {
-        Auto = "auto": "From the picture's luminances",
-    }
     Filter {
         Box = "box": "Evenly over the pixel",
         BlackmanHarris = "blackman-harris": "By a Blackman-Harris window 3 pixels wide: smooth, little ringing of fine patterns",
-    }
-    Fresnel {
-        Off = "off": "Not at all: the lecture's ρ_s",
-        Schlick = "schlick": "Schlick's approximation of Fresnel's equations",
     }
     IrradianceMethod {
         MonteCarlo = "monte-carlo": "Random cosine-weighted directions, as in the lecture",
@@ -90,16 +98,9 @@ choices! {
         GeometryShader = "geometry-shader": "The feature geometryShader; compute shaders write the cubes of sky and irradiance otherwise",
         PipelineStatistics = "pipeline-statistics": "The feature pipelineStatisticsQuery; the benchmark has no such columns otherwise",
     }
-    Penumbra {
-        Map = "map": "A texel of the map; the mean of several samples has the true ones",
-        Sun = "sun": "As the sun's disc makes them",
-    }
     Phong {
         Lecture = "lecture": "(r·l)^p of the sun, and the sky as in a perfect mirror",
         Normalized = "normalized": "Energy-conserving, ρ_s (p + 2)/(2π) (r·l)^p cos θ: of sun and sky alike",
-    }
-    Preset {
-        Lecture = "lecture": "As in the lecture: its sun, its sky, Monte Carlo, and its linear scale",
     }
     Quantity {
         Luminance = "luminance": "Of the light toward the eye, cd/m²",
@@ -133,10 +134,6 @@ choices! {
     SunPositionMethod {
         Spa = "spa": "NREL's Solar Position Algorithm (Reda & Andreas 2004): 0.0003°",
         Lecture = "lecture": "The lecture's formulas (Preetham et al. 1999, A.6), azimuth corrected: 0.3° typical, 1.2° worst",
-    }
-    Switch {
-        On = "on": "On",
-        Off = "off": "Off",
     }
     ToneCurve {
         Linear = "linear": "Clamp to 0..=1 (the lecture's, scale 1)",

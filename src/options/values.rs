@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use super::Choice;
+use super::{Choice, choice_enum};
 use crate::daylight::false_colour::Range;
 pub use crate::daylight::moment::When;
 pub use crate::daylight::place::Place;
@@ -36,61 +36,61 @@ pub struct Direction {
     pub elevation_deg: f64,
 }
 
-/// Values of `--exposure`, the alternative to `--ev100`.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum ExposureMode {
-    #[default]
-    /// From the log-average luminance of the picture.
-    Auto,
+choice_enum! {
+    /// Values of `--exposure`, the alternative to `--ev100`.
+    #[derive(Default)]
+    pub enum ExposureMode {
+        #[default]
+        Auto = "auto": "From the picture's luminances",
+    }
 }
 
-/// A set of defaults.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Preset {
-    /// The lecture's sun, sky, Monte Carlo integration and linear scale.
-    Lecture,
+choice_enum! {
+    /// A set of defaults.
+    pub enum Preset {
+        Lecture = "lecture": "As in the lecture: its sun, its sky, Monte Carlo, and its linear scale",
+    }
 }
 
-/// A switch whose default is not necessarily off.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Switch {
-    /// On.
-    #[default]
-    On,
-    /// Off.
-    Off,
+choice_enum! {
+    /// A switch whose default is not necessarily off.
+    #[derive(Default)]
+    pub enum Switch {
+        #[default]
+        On = "on": "On",
+        Off = "off": "Off",
+    }
 }
 
-/// How specular reflectance depends on the angle.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Fresnel {
-    /// It does not: the lecture's ρ_s.
-    #[default]
-    Off,
-    /// Schlick's approximation of Fresnel's equations.
-    Schlick,
+choice_enum! {
+    /// How specular reflectance depends on the angle.
+    #[derive(Default)]
+    pub enum Fresnel {
+        #[default]
+        Off = "off": "Not at all: the lecture's ρ_s",
+        Schlick = "schlick": "Schlick's approximation of Fresnel's equations",
+    }
 }
 
-/// Width of the sun's shadow edges in a single frame.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Penumbra {
-    /// One texel of the shadow map; accumulated samples converge to the true penumbra.
-    #[default]
-    Map,
-    /// The penumbra of the sun's disc.
-    Sun,
+choice_enum! {
+    /// Width of the sun's shadow edges in a single frame.
+    #[derive(Default)]
+    pub enum Penumbra {
+        #[default]
+        Map = "map": "A texel of the map; the mean of several samples has the true ones",
+        Sun = "sun": "As the sun's disc makes them",
+    }
 }
 
-/// Resolution of ambient occlusion.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum AoResolution {
-    /// Half from 720 rows on, full below.
-    #[default]
-    Auto,
-    /// Occluders at full resolution, occlusion at half resolution.
-    Full,
-    /// Occluders at half resolution, occlusion at quarter resolution.
-    Half,
+choice_enum! {
+    /// Resolution of ambient occlusion.
+    #[derive(Default)]
+    pub enum AoResolution {
+        #[default]
+        Auto = "auto": "Half from 720 rows on, full below",
+        Full = "full": "From every pixel, at every second of every second row",
+        Half = "half": "From every second pixel of every second row, at every fourth of every fourth",
+    }
 }
 
 impl AoResolution {

@@ -41,10 +41,10 @@ choice_enum! {
     /// What moves while whole frames are timed.
     #[derive(Default)]
     pub enum Motion {
-        None = "none": "Nothing: every frame shows the same",
+        None = "none": "Nothing: all frames are the same",
         #[default]
-        Camera = "camera": "The camera, every frame: nothing of the view can be reused",
-        Sun = "sun": "Camera and sun, every frame: sky, irradiance and shadow map begin anew",
+        Camera = "camera": "The camera, in every frame: nothing that depends on the view is reused",
+        Sun = "sun": "Camera and sun, in every frame: sky, irradiance and shadow map start over",
     }
 }
 
@@ -52,7 +52,7 @@ choice_enum! {
     /// What grows from step to step.
     pub enum Sweep {
         Resolution = "resolution": "Pixels of the picture, 640x360 to 3840x2160",
-        Triangles = "triangles": "Triangles: those of the scene, cut into 4, 9, 16 .., or without one hills of 10 000 to 2 million; of a view of all and of one that sees 5 %",
+        Triangles = "triangles": "Triangles: the scene's, subdivided by 4, 9, 16 .., or without a scene hills of 10 000 to 2 million; one view sees all of them, one 5 %",
         Samples = "samples": "Irradiance samples of one pass, 64 to 4096",
         Shadow = "shadow": "Texels of the shadow map, 256² to 4096²",
         Ssao = "ssao": "Depth samples of a pixel's ambient occlusion",
@@ -109,8 +109,8 @@ choice_enum! {
     pub enum Layout {
         #[default]
         Equirect = "equirect": "4N x 2N: first row the zenith, first column north, azimuth clockwise to the right",
-        Cross = "cross": "4N x 3N: -X +Z +X -Z in the middle row, +Y above and -Y below +Z; each face as Vulkan has it",
-        Faces = "faces": "Six files NAME_px .. NAME_nz, N x N, each as Vulkan has it",
+        Cross = "cross": "4N x 3N: -X +Z +X -Z in the middle row, +Y above and -Y below +Z; faces in Vulkan's orientation",
+        Faces = "faces": "Six files NAME_px .. NAME_nz, N x N, in Vulkan's orientation",
     }
 }
 

@@ -84,7 +84,7 @@ pub(crate) use choice_enum;
 
 choices! {
     Filter {
-        Box = "box": "Evenly over the pixel",
+        Box = "box": "Uniform over the pixel",
         BlackmanHarris = "blackman-harris": "By a Blackman-Harris window 3 pixels wide: smooth, little ringing of fine patterns",
     }
     IrradianceMethod {
@@ -99,8 +99,8 @@ choices! {
         PipelineStatistics = "pipeline-statistics": "The feature pipelineStatisticsQuery; the benchmark has no such columns otherwise",
     }
     Phong {
-        Lecture = "lecture": "(r·l)^p of the sun, and the sky as in a perfect mirror",
-        Normalized = "normalized": "Energy-conserving, ρ_s (p + 2)/(2π) (r·l)^p cos θ: of sun and sky alike",
+        Lecture = "lecture": "(r·l)^p for the sun, a perfect mirror for the sky",
+        Normalized = "normalized": "Energy-conserving, ρ_s (p + 2)/(2π) (r·l)^p cos θ, for sun and sky alike",
     }
     Quantity {
         Luminance = "luminance": "Of the light toward the eye, cd/m²",
@@ -137,11 +137,11 @@ choices! {
     }
     ToneCurve {
         Linear = "linear": "Clamp to 0..=1 (the lecture's, scale 1)",
-        Exponential = "exponential": "Ferschin's exponential per channel (the lecture's other one)",
-        ExponentialLuminance = "exponential-luminance": "The same on luminance, the colour kept",
+        Exponential = "exponential": "Ferschin's exponential per channel (the lecture's other curve)",
+        ExponentialLuminance = "exponential-luminance": "The same on luminance, which keeps the colour",
         Reinhard = "reinhard": "Reinhard et al. 2002, global operator with white at 4, on luminance",
         Agx = "agx": "AgX, base look",
-        Neutral = "neutral": "Khronos PBR Neutral: colours of surfaces stay as they are up to 0.8",
+        Neutral = "neutral": "Khronos PBR Neutral: colours up to 0.8 are unchanged",
         Aces = "aces": "ACES RRT + ODT, Hill's fit",
     }
     Visibility {

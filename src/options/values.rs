@@ -41,14 +41,14 @@ choice_enum! {
     #[derive(Default)]
     pub enum ExposureMode {
         #[default]
-        Auto = "auto": "From the picture's luminances",
+        Auto = "auto": "From the luminance of the picture",
     }
 }
 
 choice_enum! {
     /// A set of defaults.
     pub enum Preset {
-        Lecture = "lecture": "As in the lecture: its sun, its sky, Monte Carlo, and its linear scale",
+        Lecture = "lecture": "The lecture's sun, sky, Monte Carlo integration and linear scale",
     }
 }
 
@@ -67,7 +67,7 @@ choice_enum! {
     #[derive(Default)]
     pub enum Fresnel {
         #[default]
-        Off = "off": "Not at all: the lecture's ρ_s",
+        Off = "off": "No dependence on the angle: the lecture's ρ_s",
         Schlick = "schlick": "Schlick's approximation of Fresnel's equations",
     }
 }
@@ -77,8 +77,8 @@ choice_enum! {
     #[derive(Default)]
     pub enum Penumbra {
         #[default]
-        Map = "map": "A texel of the map; the mean of several samples has the true ones",
-        Sun = "sun": "As the sun's disc makes them",
+        Map = "map": "One texel of the shadow map; averaged samples converge to the true penumbra",
+        Sun = "sun": "The penumbra of the sun's disc",
     }
 }
 
@@ -88,8 +88,8 @@ choice_enum! {
     pub enum AoResolution {
         #[default]
         Auto = "auto": "Half from 720 rows on, full below",
-        Full = "full": "From every pixel, at every second of every second row",
-        Half = "half": "From every second pixel of every second row, at every fourth of every fourth",
+        Full = "full": "Occluders at full resolution, occlusion at half resolution",
+        Half = "half": "Occluders at half resolution, occlusion at a quarter",
     }
 }
 

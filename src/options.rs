@@ -35,6 +35,7 @@ pub use choices::{Choice, name};
 pub(crate) use choices::{choice, choice_enum, choices};
 pub use given::OptionValues;
 pub use resolve::ResolveError;
+pub(crate) use resolve::shortest;
 pub use sun_input::SunInput;
 pub use values::{
     AoResolution, Direction, ExposureMode, Fresnel, Penumbra, Place, Preset, Size, SolarTime,

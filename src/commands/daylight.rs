@@ -8,9 +8,9 @@ use super::job::Job;
 use super::progress;
 use crate::cli::DaylightArgs;
 use crate::error::Result;
-use crate::options::OptionValues;
+use crate::options::{OptionValues, shortest};
 use crate::output::print;
-use crate::sensors::{Lights, Precision, Reading, Sensor, Surfaces, measure, read_grid};
+use crate::sensors::{Accuracy, Lights, Reading, Sensor, TracedScene, measure, read_grid};
 
 /// Measures all sensors and prints them in the order of the file.
 ///
@@ -19,14 +19,14 @@ use crate::sensors::{Lights, Precision, Reading, Sensor, Surfaces, measure, read
 pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
     let sensors = read_grid(&args.grid)?;
     let job = Job::new(Some(&args.scene), options)?;
-    let precision = Precision {
+    let accuracy = Accuracy {
         relative_error: args.error,
         max_paths: args.max_paths,
         seed: job.settings.seed,
     };
-    let (surfaces, lights) = (Surfaces::new(&job.scene), Lights::new(&job.daylight));
+    let (scene, lights) = (TracedScene::new(&job.scene), Lights::new(&job.daylight));
     let bar = progress(sensors.len() as u64, "sensors", job.settings.quiet);
-    let readings = measure(&sensors, &surfaces, &lights, &precision, &|| bar.inc(1));
+    let readings = measure(&sensors, &scene, &lights, &accuracy, &|| bar.inc(1));
     bar.finish_and_clear();
     let rows: Vec<(Sensor, Reading)> = sensors.into_iter().zip(readings).collect();
     let imprecise = imprecise(&rows, args);
@@ -60,41 +60,44 @@ fn imprecise(rows: &[(Sensor, Reading)], args: &DaylightArgs) -> Option<String> 
     })
 }
 
+/// Columns of JSON and CSV: metres, unit vector, lux.
+fn columns(sensor: &Sensor, reading: &Reading) -> [(&'static str, f64); 11] {
+    let (p, n) = (sensor.position, sensor.normal);
+    let [x, y, z, nx, ny, nz] = [p.x, p.y, p.z, n.x, n.y, n.z].map(shortest);
+    [
+        ("x", x),
+        ("y", y),
+        ("z", z),
+        ("nx", nx),
+        ("ny", ny),
+        ("nz", nz),
+        ("sky_direct_lux", reading.sky_direct),
+        ("sun_direct_lux", reading.sun_direct),
+        ("reflected_lux", reading.reflected),
+        ("total_lux", reading.total()),
+        ("standard_error_lux", reading.standard_error),
+    ]
+}
+
 fn object(sensor: &Sensor, reading: &Reading) -> serde_json::Value {
-    let ([x, y, z], [nx, ny, nz]) = (sensor.position.to_array(), sensor.normal.to_array());
-    json!({
-        "x": x, "y": y, "z": z, "nx": nx, "ny": ny, "nz": nz,
-        "sky_direct_lux": reading.sky_direct,
-        "sun_direct_lux": reading.sun_direct,
-        "reflected_lux": reading.reflected,
-        "total_lux": reading.total(),
-        "standard_error_lux": reading.standard_error,
-    })
+    let columns = columns(sensor, reading).into_iter();
+    columns
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect()
 }
 
 fn csv(rows: &[(Sensor, Reading)]) -> String {
-    let head =
-        "x,y,z,nx,ny,nz,sky_direct_lux,sun_direct_lux,reflected_lux,total_lux,standard_error_lux\n";
-    rows.iter().fold(head.to_owned(), |mut text, (s, r)| {
-        let (p, n) = (s.position, s.normal);
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "{},{},{},{},{},{},{},{},{},{},{}",
-            p.x,
-            p.y,
-            p.z,
-            n.x,
-            n.y,
-            n.z,
-            r.sky_direct,
-            r.sun_direct,
-            r.reflected,
-            r.total(),
-            r.standard_error
-        );
-        text
-    })
+    let line = |cells: Vec<String>| cells.join(",") + "\n";
+    let names = columns(&Sensor::default(), &Reading::default());
+    let head = line(names.map(|(name, _)| name.to_owned()).to_vec());
+    let rows = rows.iter().map(|(sensor, reading)| {
+        line(
+            columns(sensor, reading)
+                .map(|(_, value)| value.to_string())
+                .to_vec(),
+        )
+    });
+    head + &rows.collect::<String>()
 }
 
 fn table(rows: &[(Sensor, Reading)]) -> String {

@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3, Vec3};
 
 use super::colour;
 use super::data::preetham_spectra as spectra;
@@ -29,6 +29,15 @@ pub const WATER_VAPOUR_CM: f64 = 2.0;
 
 /// Amount of ozone, cm (Preetham et al. 1999, A.1: 0.35 cm at normal temperature and pressure).
 pub const OZONE_CM: f64 = 0.35;
+
+/// Unit vector toward a point of the sun's disc, uniformly distributed for `xi` uniform in the unit square. `centre` is the unit vector toward
+/// its centre.
+pub fn on_disc(centre: Vec3, xi: DVec2) -> Vec3 {
+    let radius = (xi.x.sqrt() * SUN_ANGULAR_RADIUS) as f32;
+    let angle = (xi.y * std::f64::consts::TAU) as f32;
+    let (tangent, bitangent) = centre.any_orthonormal_pair();
+    (centre + radius * (angle.cos() * tangent + angle.sin() * bitangent)).normalize()
+}
 
 /// Kasten 1966 (Preetham et al. 1999, A.1): relative optical mass m of the air, 1 at the zenith, about 37 at the horizon.
 ///
@@ -213,6 +222,23 @@ pub fn lecture_sun_irradiance() -> f64 {
 mod tests {
     use super::*;
     use crate::daylight::colour::luminance;
+    use crate::daylight::sampling;
+
+    #[test]
+    fn the_disc_is_covered_and_not_left() {
+        let centre = Vec3::new(0.3, 0.5, -0.8).normalize();
+        let angles: Vec<f64> = (0..1000)
+            .map(|i| f64::from(on_disc(centre, sampling::r2(i)).cross(centre).length()).asin())
+            .collect();
+        let largest = angles.iter().copied().fold(0.0, f64::max);
+        assert!(largest <= SUN_ANGULAR_RADIUS * 1.001 && largest > SUN_ANGULAR_RADIUS * 0.97);
+        // Uniform over the disc: half of the points lie within 1/sqrt(2) of the radius.
+        let inner = angles
+            .iter()
+            .filter(|a| **a < SUN_ANGULAR_RADIUS / 2f64.sqrt())
+            .count();
+        assert!((450..550).contains(&inner), "{inner}");
+    }
 
     #[test]
     fn rayleigh_blue_is_lost_first() {

@@ -4,7 +4,7 @@ use glam::{DVec2, UVec2, Vec2, Vec3};
 
 use crate::daylight::sampling;
 use crate::daylight::sky::Daylight;
-use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
+use crate::daylight::sunlight::on_disc;
 use crate::passes::dome::gather::DomeSettings;
 use crate::passes::view::{View, Window};
 use crate::scene::Camera;
@@ -163,33 +163,9 @@ fn blackman_harris(xi: f64) -> f64 {
     (low + high - 1.0) * RADIUS
 }
 
-/// Unit vector toward a point of the sun's disc, uniformly distributed for `xi` uniform in the unit square.
-fn on_disc(centre: Vec3, xi: DVec2) -> Vec3 {
-    let radius = (xi.x.sqrt() * SUN_ANGULAR_RADIUS) as f32;
-    let angle = (xi.y * std::f64::consts::TAU) as f32;
-    let (tangent, bitangent) = centre.any_orthonormal_pair();
-    (centre + radius * (angle.cos() * tangent + angle.sin() * bitangent)).normalize()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_disc_is_covered_and_not_left() {
-        let centre = Vec3::new(0.3, 0.5, -0.8).normalize();
-        let angles: Vec<f64> = (0..1000)
-            .map(|i| f64::from(on_disc(centre, sampling::r2(i)).cross(centre).length()).asin())
-            .collect();
-        let largest = angles.iter().copied().fold(0.0, f64::max);
-        assert!(largest <= SUN_ANGULAR_RADIUS * 1.001 && largest > SUN_ANGULAR_RADIUS * 0.97);
-        // Uniform over the disc: half of the points lie within 1/sqrt(2) of the radius.
-        let inner = angles
-            .iter()
-            .filter(|a| **a < SUN_ANGULAR_RADIUS / 2f64.sqrt())
-            .count();
-        assert!((450..550).contains(&inner), "{inner}");
-    }
 
     #[test]
     fn the_window_is_even_and_has_its_own_spread() {

@@ -168,7 +168,7 @@ impl From<&[(&str, &str)]> for OptionValues {
 }
 
 /// The decimal number with the fewest digits that rounds to the same `f32`.
-fn shortest(value: f32) -> f64 {
+pub(crate) fn shortest(value: f32) -> f64 {
     value.to_string().parse().unwrap_or(value.into())
 }
 

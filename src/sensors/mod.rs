@@ -13,12 +13,12 @@ use glam::{DVec3, Vec3};
 
 pub use self::grid::{GridError, read_grid};
 pub use self::path::Lights;
-pub use self::surface::Surfaces;
+pub use self::surface::TracedScene;
 
 use crate::daylight::colour::luminance;
 
 /// A point and the side from which light is counted.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sensor {
     /// World space, metres.
     pub position: Vec3,
@@ -50,7 +50,7 @@ impl Reading {
 
 /// When a sensor has been measured well enough.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Precision {
+pub struct Accuracy {
     /// Standard error relative to the total.
     pub relative_error: f64,
     /// Most paths of a sensor.
@@ -69,9 +69,9 @@ const FIRST_ROUND: u32 = 64;
 /// same numbers, whatever the number of cores.
 pub fn measure(
     sensors: &[Sensor],
-    surfaces: &Surfaces,
+    scene: &TracedScene,
     lights: &Lights,
-    precision: &Precision,
+    accuracy: &Accuracy,
     progress: &(dyn Fn() + Sync),
 ) -> Vec<Reading> {
     let next = AtomicUsize::new(0);
@@ -82,7 +82,7 @@ pub fn measure(
             let Some(sensor) = sensors.get(at) else {
                 return done;
             };
-            done.push((at, read(sensor, at as u32, surfaces, lights, precision)));
+            done.push((at, read(sensor, at as u32, scene, lights, accuracy)));
             progress();
         }
     };
@@ -105,24 +105,24 @@ pub fn measure(
 fn read(
     sensor: &Sensor,
     number: u32,
-    surfaces: &Surfaces,
+    scene: &TracedScene,
     lights: &Lights,
-    precision: &Precision,
+    accuracy: &Accuracy,
 ) -> Reading {
     let mut sums = [[DVec3::ZERO; 3]; REPLICATES as usize];
     let (mut traced, mut wanted) = (0, FIRST_ROUND);
     loop {
         for (replicate, sum) in sums.iter_mut().enumerate() {
-            let seed = path::seed(precision.seed, number, replicate as u32);
+            let seed = path::seed(accuracy.seed, number, replicate as u32);
             for index in traced..wanted {
-                let parts = path::trace(sensor, surfaces, lights, index, seed);
+                let parts = path::trace(sensor, scene, lights, index, seed);
                 sum.iter_mut().zip(parts).for_each(|(s, p)| *s += p);
             }
         }
         traced = wanted;
         let reading = reading(&sums, traced);
-        let is_precise = reading.standard_error <= precision.relative_error * reading.total();
-        if is_precise || traced.saturating_mul(2 * REPLICATES) > precision.max_paths {
+        let is_accurate = reading.standard_error <= accuracy.relative_error * reading.total();
+        if is_accurate || traced.saturating_mul(2 * REPLICATES) > accuracy.max_paths {
             return reading;
         }
         wanted = 2 * traced;
@@ -194,13 +194,13 @@ mod tests {
             position: Vec3::new(0.0, 1.0, 0.0),
             normal,
         };
-        let precision = Precision {
+        let accuracy = Accuracy {
             relative_error: 2e-3,
             max_paths: 1 << 20,
             seed: 0,
         };
-        let (surfaces, lights) = (Surfaces::new(scene), Lights::new(&daylight));
-        measure(&[sensor], &surfaces, &lights, &precision, &|| ())[0]
+        let (scene, lights) = (TracedScene::new(scene), Lights::new(&daylight));
+        measure(&[sensor], &scene, &lights, &accuracy, &|| ())[0]
     }
 
     /// Illuminance of sun and sky on open ground, lux.

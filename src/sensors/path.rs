@@ -1,24 +1,24 @@
 //! One path: from a sensor over diffuse surfaces, with the light of sun and sky at every point of it.
 //!
 //! E(x) = E_sun(x) + E_sky(x) + Σ over bounces of the product of reflectances times E_sun + E_sky at each point (Kajiya 1986, "The
-//! rendering equation", for Lambert's surfaces: with directions of density cos θ/π the factor of a bounce is ρ_d).
+//! rendering equation", for Lambertian surfaces: with directions of density cos θ/π the factor of a bounce is ρ_d).
 
 use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 
 use super::Sensor;
-use super::surface::{Point, Surfaces, lifted};
+use super::surface::{Point, TracedScene, lifted};
 use crate::daylight::sampling::{cosine_hemisphere, rnd, shuffled_sobol, tea};
 use crate::daylight::sky::Daylight;
 use crate::daylight::sky_sampler::SkySampler;
-use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
+use crate::daylight::sunlight::on_disc;
 use crate::daylight::tangent_frame;
 
-/// Bounces after which a path goes on by chance only.
+/// Bounces after which Russian roulette ends paths.
 const SURE_BOUNCES: u32 = 3;
 
-/// Bounces after which a path ends: of surfaces that reflect 95 % less than a millionth of the light is left.
+/// Bounces after which a path ends: between surfaces that reflect 95 %, less than a millionth of the light is left.
 const MAX_BOUNCES: u32 = 256;
 
 /// Sun and sky of a moment.
@@ -66,7 +66,7 @@ impl Numbers {
 /// Irradiance estimated by path `index` of a replicate, linear RGB, lux: from the sky, from the sun, reflected.
 pub(super) fn trace(
     sensor: &Sensor,
-    surfaces: &Surfaces,
+    scene: &TracedScene,
     lights: &Lights,
     index: u32,
     seed: u32,
@@ -85,12 +85,12 @@ pub(super) fn trace(
     let [mut sky, mut sun, mut reflected] = [DVec3::ZERO; 3];
     let mut throughput = DVec3::ONE;
     for bounce in 0..MAX_BOUNCES {
-        let from_sun = sun_at(&point, surfaces, lights, numbers.pair());
-        let mut from_sky = sky_at(&point, surfaces, lights, numbers.pair());
+        let from_sun = sun_at(&point, scene, lights, numbers.pair());
+        let mut from_sky = sky_at(&point, scene, lights, numbers.pair());
         let mut from_ground = DVec3::ZERO;
         let local = cosine_hemisphere(numbers.pair());
         let direction = tangent_frame::to_world(local, point.normal.as_dvec3());
-        let next = surfaces.first(point.position, direction.as_vec3());
+        let next = scene.first(point.position, direction.as_vec3());
         if next.is_none() {
             if direction.y < 0.0 {
                 from_ground = PI * lights.daylight.ground_luminance;
@@ -119,27 +119,23 @@ pub(super) fn trace(
     [sky, sun, reflected]
 }
 
-/// The sun's irradiance at a point, from a point of its disc.
-fn sun_at(point: &Point, surfaces: &Surfaces, lights: &Lights, xi: DVec2) -> DVec3 {
-    let centre = lights.daylight.sun_direction;
-    let radius = xi.x.sqrt() * SUN_ANGULAR_RADIUS;
-    let (s, c) = (2.0 * PI * xi.y).sin_cos();
-    let offset = DVec3::new(radius * c, radius * s, 1.0).normalize();
-    let toward = tangent_frame::to_world(offset, centre);
+/// Irradiance of the sun at a point, sampled on its disc, linear RGB, lux.
+fn sun_at(point: &Point, scene: &TracedScene, lights: &Lights, xi: DVec2) -> DVec3 {
+    let toward = on_disc(lights.daylight.sun_direction.as_vec3(), xi).as_dvec3();
     let cosine = point.normal.as_dvec3().dot(toward);
     let is_dark = lights.daylight.sun_illuminance == DVec3::ZERO || toward.y <= 0.0;
-    if cosine <= 0.0 || is_dark || !surfaces.is_open(point.position, toward.as_vec3()) {
+    if cosine <= 0.0 || is_dark || !scene.is_open(point.position, toward.as_vec3()) {
         return DVec3::ZERO;
     }
     lights.daylight.sun_illuminance * cosine
 }
 
-/// The sky's irradiance at a point from a direction drawn by its luminance, weighted against directions drawn by the cosine
+/// Irradiance of the sky at a point, linear RGB, lux: a direction sampled by luminance, weighted against cosine-distributed ones
 /// (Veach and Guibas 1995, balance heuristic).
-fn sky_at(point: &Point, surfaces: &Surfaces, lights: &Lights, xi: DVec2) -> DVec3 {
+fn sky_at(point: &Point, scene: &TracedScene, lights: &Lights, xi: DVec2) -> DVec3 {
     let light = lights.sampler.light(lights.daylight, xi);
     let cosine = point.normal.as_dvec3().dot(light.direction);
-    if cosine <= 0.0 || !surfaces.is_open(point.position, light.direction.as_vec3()) {
+    if cosine <= 0.0 || !scene.is_open(point.position, light.direction.as_vec3()) {
         return DVec3::ZERO;
     }
     let density = lights.sampler.density(light.direction);

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec2, Vec3};
 use crate::scene::{Bvh, Encoding, Hit, Material, Ray, Scene, Texture};
 
 /// A scene as paths see it.
-pub struct Surfaces<'a> {
+pub struct TracedScene<'a> {
     scene: &'a Scene,
     bvh: Bvh,
     /// Number of the material of each triangle.
@@ -28,7 +28,7 @@ pub(super) struct Point {
 /// Offset of ray origins from their surface, relative to the largest coordinate: covers the rounding of `f32`.
 const OFFSET: f32 = 3e-5;
 
-impl<'a> Surfaces<'a> {
+impl<'a> TracedScene<'a> {
     /// Builds the hierarchy.
     pub fn new(scene: &'a Scene) -> Self {
         let mut material_of = vec![0; scene.triangles()];

@@ -79,6 +79,16 @@ fn check(room: &str, table: &str, light: &[&str]) {
     assert!((0.6..1.6).contains(&spread));
 }
 
+/// CIE overcast sky of 10 000 lux on open ground.
+const OVERCAST: [&str; 6] = [
+    "--sky",
+    "overcast",
+    "--sky-illuminance",
+    "10000",
+    "--sun",
+    "180,40",
+];
+
 #[test]
 fn an_office_meets_the_path_tracer() {
     check(
@@ -86,28 +96,12 @@ fn an_office_meets_the_path_tracer() {
         "clear_sky_and_sun",
         &["--sun", "200,38", "--turbidity", "3"],
     );
-    let overcast = [
-        "--sky",
-        "overcast",
-        "--sky-illuminance",
-        "10000",
-        "--sun",
-        "180,40",
-    ];
-    check("office", "overcast_10klx", &overcast);
+    check("office", "overcast_10klx", &OVERCAST);
 }
 
 #[test]
 fn an_office_under_an_overhang_meets_the_path_tracer() {
-    let overcast = [
-        "--sky",
-        "overcast",
-        "--sky-illuminance",
-        "10000",
-        "--sun",
-        "180,40",
-    ];
-    check("office_overhang", "overcast_10klx", &overcast);
+    check("office_overhang", "overcast_10klx", &OVERCAST);
 }
 
 #[test]

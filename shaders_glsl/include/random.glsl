@@ -1,3 +1,5 @@
+#ifndef RANDOM_GLSL
+#define RANDOM_GLSL
 // The lecture's rnd(t): a 24-bit linear congruential generator seeded by four rounds of the Tiny Encryption Algorithm
 // (Zafar, Olano and Curtis 2010, "GPU Random Numbers via the Tiny Encryption Algorithm").
 
@@ -17,3 +19,4 @@ float rnd(inout uint t) {
     t = 1664525u * t + 1013904223u;
     return float(t & 0x00ffffffu) / float(0x01000000u);
 }
+#endif

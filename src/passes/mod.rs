@@ -2,6 +2,7 @@
 //!
 //! Units on the device are kcd/m² and klx (half floats end at 65 504); files and the CPU use cd/m² and lux.
 
+pub mod bounces;
 pub mod dome;
 pub mod light;
 pub mod occlusion;

@@ -27,24 +27,30 @@ const MAX_DEPTH: usize = 48;
 
 /// A node.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Node {
-    min: Vec3,
-    max: Vec3,
-    /// Triangles of a leaf; none for an inner node.
-    first_triangle: u32,
-    triangle_count: u32,
+pub struct Node {
+    /// Lower corner of its box, metres.
+    pub min: Vec3,
+    /// Upper corner of its box, metres.
+    pub max: Vec3,
+    /// Position of the first triangle of a leaf in [`Bvh::triangles`].
+    pub first_triangle: u32,
+    /// Number of triangles of a leaf; 0 for an inner node.
+    pub triangle_count: u32,
     /// The node after the whole subtree. The first child of an inner node is the next node; its `skip` is the second child.
-    skip: u32,
+    pub skip: u32,
 }
 
 /// A triangle, prepared for intersection.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Triangle {
-    corner: Vec3,
-    edge1: Vec3,
-    edge2: Vec3,
+pub struct Triangle {
+    /// Its first corner, metres.
+    pub corner: Vec3,
+    /// From the first corner to the second, metres.
+    pub edge1: Vec3,
+    /// From the first corner to the third, metres.
+    pub edge2: Vec3,
     /// Its number in the scene.
-    number: u32,
+    pub number: u32,
 }
 
 /// A ray from `origin` along `direction`, which need not be of unit length.
@@ -94,9 +100,14 @@ impl Bvh {
         Self { nodes, triangles }
     }
 
-    /// Number of nodes.
-    pub fn node_count(&self) -> usize {
-        self.nodes.len()
+    /// Its nodes, depth-first.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// Its triangles, in the order of the leaves.
+    pub fn triangles(&self) -> &[Triangle] {
+        &self.triangles
     }
 
     /// The nearest hit between the distances `near` and `far`. Triangles are two-sided. `accept` can reject hits, for example those
@@ -476,7 +487,7 @@ mod tests {
         let one = cloud(1)[0];
         let many = vec![one; 1000];
         let bvh = Bvh::new(many);
-        assert!(bvh.node_count() < 2000);
+        assert!(bvh.nodes().len() < 2000);
         let towards = Ray {
             origin: one.centroid() - Vec3::Z,
             direction: Vec3::Z,

@@ -19,6 +19,7 @@ mod material;
 mod mesh;
 mod obj;
 mod progress;
+mod reflectance;
 mod scene_file;
 mod texture;
 
@@ -26,7 +27,7 @@ use serde::{Deserialize, Serialize};
 
 pub use bounds::Bounds;
 pub use bundled::{BUNDLED, bundled, bundled_name};
-pub use bvh::{Bvh, Hit, Ray};
+pub use bvh::{Bvh, Hit, Node, Ray, Triangle};
 pub use camera::{Camera, DEFAULT_FOV_DEG};
 pub use culling::bodies::{Bodies, Body};
 pub use culling::clusters::{Cluster, Clusters, Solid};
@@ -37,6 +38,7 @@ pub use hills::hills;
 pub use load::{LoadOptions, Loaded, load, load_with_progress};
 pub use material::Material;
 pub use progress::Progress;
+pub use reflectance::{Mean, Reflectances};
 pub use scene_file::{NamedCamera, NamedMoment, NamedOptions};
 pub use texture::{Encoding, Texture};
 

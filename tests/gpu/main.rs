@@ -20,6 +20,7 @@ mod irradiance;
 mod lighting;
 mod penumbra;
 mod probe;
+mod rays;
 mod reflections;
 mod shadow;
 mod sky;

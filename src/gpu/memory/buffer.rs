@@ -1,5 +1,6 @@
 //! Buffers.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use ash::vk;
@@ -9,7 +10,7 @@ use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 use crate::gpu::device::context::Context;
 use crate::gpu::device::fault::Call;
 use crate::gpu::error::{During, Result};
-use crate::gpu::record::access::BufferAccess;
+use crate::gpu::record::access::{self, BufferAccess, MemoryBarrier};
 
 /// Usage of a buffer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -68,11 +69,15 @@ impl BufferKind {
 }
 
 /// A buffer and its memory, freed on drop.
+///
+/// Like an image, it tracks its last access: only one thread at a time may record commands that use it.
 pub struct Buffer {
     context: Arc<Context>,
     raw: vk::Buffer,
     allocation: Option<Allocation>,
     size: u64,
+    /// The last access that a later one may have to wait for.
+    last_access: Cell<Option<BufferAccess>>,
 }
 
 impl Buffer {
@@ -93,6 +98,7 @@ impl Buffer {
             raw,
             allocation: None,
             size,
+            last_access: Cell::new(None),
         };
         context.name(raw, name);
         // SAFETY: `raw` was just created by this device.
@@ -148,6 +154,12 @@ impl Buffer {
         let properties = self.allocation.as_ref()?.memory_properties();
         let bytes = properties.contains(wanted).then(|| self.bytes_mut())?;
         (!bytes.is_empty()).then_some(bytes)
+    }
+
+    /// Tracks the next access and returns the barrier between the last one and it, if one is needed.
+    pub(in crate::gpu) fn next(&self, next: BufferAccess) -> Option<MemoryBarrier> {
+        let last = self.last_access.replace(Some(next))?;
+        access::buffer_barrier(last, next)
     }
 
     pub(in crate::gpu) fn raw(&self) -> vk::Buffer {

@@ -97,6 +97,7 @@ pub fn copy_texel(
 /// Records a copy of a region of all layers. The CPU can read it once the work is done.
 fn copy(recorder: &Recorder, image: &Image, target: &Buffer, region: vk::BufferImageCopy) {
     recorder.transition([(image, ImageAccess::CopySource)].into_iter());
+    recorder.order(target, BufferAccess::CopyTarget);
     let region = [region.image_subresource(vk::ImageSubresourceLayers {
         aspect_mask: image.aspect(),
         mip_level: 0,
@@ -113,7 +114,7 @@ fn copy(recorder: &Recorder, image: &Image, target: &Buffer, region: vk::BufferI
             &region,
         );
     }
-    recorder.buffer_barrier(BufferAccess::CopyTarget, BufferAccess::HostRead);
+    recorder.order(target, BufferAccess::HostRead);
 }
 
 /// Copies an image to the CPU. Begins, submits and waits, so the recorder must not be recording.

@@ -37,11 +37,12 @@ pub fn upload_buffer(
     let mut source = staging(recorder, bytes.len())?;
     source.bytes_mut()[..bytes.len()].copy_from_slice(bytes);
     let region = [vk::BufferCopy::default().size(bytes.len() as u64)];
+    recorder.order(&target, BufferAccess::CopyTarget);
     let raw = recorder.context.raw();
     // SAFETY: both buffers hold the bytes copied and live until `finish`.
     unsafe { raw.cmd_copy_buffer(recorder.command, source.raw(), target.raw(), &region) };
     if let Some(next) = kind.read_access() {
-        recorder.buffer_barrier(BufferAccess::CopyTarget, next);
+        recorder.order(&target, next);
     }
     recorder.keep(source);
     Ok(target)

@@ -15,7 +15,7 @@ pub enum ImageAccess {
     Sampled,
     /// A depth image that is sampled, and possibly depth-tested, but not written.
     SampledDepth,
-    /// Every texel is written by a compute shader.
+    /// Texels are written by a compute shader.
     StorageWrite,
     /// Source of a copy or blit.
     CopySource,
@@ -38,6 +38,8 @@ pub enum BufferAccess {
     Index,
     /// Read as a storage buffer by a shader.
     StorageRead,
+    /// Read and written as a storage buffer by a compute shader.
+    StorageWrite,
     /// Read by the CPU.
     HostRead,
 }
@@ -139,6 +141,11 @@ const fn buffer_row(of: BufferAccess) -> (Stage, Access, Access) {
         ),
         BufferAccess::Index => (Stage::INDEX_INPUT, Access::INDEX_READ, Access::NONE),
         BufferAccess::StorageRead => (STORAGE_READING, Access::SHADER_STORAGE_READ, Access::NONE),
+        BufferAccess::StorageWrite => (
+            Stage::COMPUTE_SHADER,
+            Access::SHADER_STORAGE_READ,
+            Access::SHADER_STORAGE_WRITE,
+        ),
         BufferAccess::HostRead => (Stage::HOST, Access::HOST_READ, Access::NONE),
     }
 }

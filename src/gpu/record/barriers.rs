@@ -3,8 +3,9 @@
 use arrayvec::ArrayVec;
 use ash::vk;
 
+use crate::gpu::memory::buffer::Buffer;
 use crate::gpu::memory::image::{Image, is_depth};
-use crate::gpu::record::access::{BufferAccess, ImageAccess, buffer_barrier};
+use crate::gpu::record::access::{BufferAccess, ImageAccess};
 use crate::gpu::record::recorder::Recorder;
 
 type Barriers = ArrayVec<vk::ImageMemoryBarrier2<'static>, 32>;
@@ -60,9 +61,9 @@ impl Recorder {
         self.image_barriers(&barriers.collect());
     }
 
-    /// Makes buffer writes visible to their next access.
-    pub(in crate::gpu) fn buffer_barrier(&self, previous: BufferAccess, next: BufferAccess) {
-        let Some(barrier) = buffer_barrier(previous, next) else {
+    /// Makes the next access of a buffer wait for the last one.
+    pub(in crate::gpu) fn order(&self, buffer: &Buffer, next: BufferAccess) {
+        let Some(barrier) = buffer.next(next) else {
             return;
         };
         let barriers = [vk::MemoryBarrier2::default()
@@ -71,6 +72,14 @@ impl Recorder {
             .dst_stage_mask(barrier.dst_stage)
             .dst_access_mask(barrier.dst_access)];
         self.barrier(&vk::DependencyInfo::default().memory_barriers(&barriers));
+    }
+
+    /// Sets every 32-bit word of a storage buffer.
+    pub fn fill(&mut self, buffer: &Buffer, word: u32) {
+        self.order(buffer, BufferAccess::CopyTarget);
+        let raw = self.context.raw();
+        // SAFETY: the buffer can be the target of copies; the command buffer is recording outside of a rendering.
+        unsafe { raw.cmd_fill_buffer(self.command, buffer.raw(), 0, vk::WHOLE_SIZE, word) };
     }
 
     fn image_barriers(&self, barriers: &Barriers) {

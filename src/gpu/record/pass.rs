@@ -9,7 +9,7 @@ use crate::gpu::memory::image::{Image, Sampler, is_depth};
 use crate::gpu::pipeline::Pipeline;
 use crate::gpu::pipeline::layout::{GpuStruct, check_layout};
 use crate::gpu::pipeline::shader::{Binding, BindingKind, Field};
-use crate::gpu::record::access::{self, ImageAccess};
+use crate::gpu::record::access::{self, BufferAccess, ImageAccess};
 use crate::gpu::record::draws::{Draws, Faces};
 use crate::gpu::record::recorder::Recorder;
 use crate::gpu::record::work::{Traffic, texels};
@@ -87,6 +87,7 @@ pub struct Pass<'r> {
     pub(in crate::gpu) changed: bool,
     pub(in crate::gpu) reads: ArrayVec<&'r Image, MAX_BINDINGS>,
     pub(in crate::gpu) stores: ArrayVec<&'r Image, MAX_COLORS>,
+    pub(in crate::gpu) buffers: ArrayVec<(&'r Buffer, BufferAccess), MAX_BINDINGS>,
     colors: ArrayVec<(&'r Image, Load), MAX_COLORS>,
     depth: Option<(&'r Image, Load)>,
     /// Push constants, and whether they changed since the last draw.
@@ -116,6 +117,7 @@ impl<'r> Pass<'r> {
             changed: true,
             reads: ArrayVec::new(),
             stores: ArrayVec::new(),
+            buffers: ArrayVec::new(),
             colors: ArrayVec::new(),
             depth: None,
             push: (ArrayVec::new(), false),
@@ -143,8 +145,17 @@ impl<'r> Pass<'r> {
         self
     }
 
-    /// Binds a storage buffer for reading. The barrier it needs was recorded with its upload.
-    pub fn storage(mut self, name: &str, buffer: &'r Buffer) -> Self {
+    /// Binds a storage buffer for reading.
+    pub fn storage(self, name: &str, buffer: &'r Buffer) -> Self {
+        self.bind_buffer(name, buffer, BufferAccess::StorageRead)
+    }
+
+    /// Binds a storage buffer that a compute shader reads and writes.
+    pub fn storage_mut(self, name: &str, buffer: &'r Buffer) -> Self {
+        self.bind_buffer(name, buffer, BufferAccess::StorageWrite)
+    }
+
+    fn bind_buffer(mut self, name: &str, buffer: &'r Buffer, access: BufferAccess) -> Self {
         let binding = self.declared(name, BindingKind::StorageBuffer);
         let info = vk::DescriptorBufferInfo {
             buffer: buffer.raw(),
@@ -153,6 +164,7 @@ impl<'r> Pass<'r> {
         };
         self.buffer_bytes += buffer.size();
         self.bind(binding, Resource::Buffer(info));
+        self.buffers.push((buffer, access));
         self
     }
 
@@ -215,6 +227,7 @@ impl<'r> Pass<'r> {
         self.recorder.label(self.name);
         let mark = self.recorder.begin_timing(self.name);
         self.recorder.transition(uses);
+        self.order_buffers();
         self.begin_rendering();
         record(&mut Draws { pass: &mut self });
         self.recorder.end_timing(&mark);
@@ -229,6 +242,13 @@ impl<'r> Pass<'r> {
         let traffic = self.traffic();
         self.recorder.end_work(&mark, self.drawn, || traffic);
         self.recorder.isolate(&mark);
+    }
+
+    /// Makes the pass wait for earlier accesses of its buffers.
+    pub(in crate::gpu) fn order_buffers(&self) {
+        for (buffer, access) in &self.buffers {
+            self.recorder.order(buffer, *access);
+        }
     }
 
     fn traffic(&self) -> Traffic {

@@ -1,0 +1,136 @@
+//! The bounding volume hierarchy of the scene on the device: two images of 32-bit words, see `include/bvh.glsl`.
+
+use std::thread;
+
+use glam::Vec3;
+
+use crate::gpu::{Format, Image, ImageDesc, Pass, Recorder, Result, Sampler, upload_texture};
+use crate::scene::{Bvh, Mean, Node, Reflectances, Scene, Triangle};
+
+/// Nodes and triangles in a row of their images; the rows are longer if there would be too many.
+const COLUMNS: usize = 1024;
+
+/// Bits of a triangle's flags: its opacity, and whether it is the last one of its leaf.
+const LAST: u32 = 0x100;
+
+/// The hierarchy in images.
+pub struct Tree {
+    nodes: Image,
+    triangles: Image,
+    node_columns: u32,
+    triangle_columns: u32,
+    node_count: u32,
+}
+
+impl Tree {
+    /// Uploads the hierarchy of all surfaces of a scene; `recorder` must be recording.
+    ///
+    /// # Errors
+    /// Fails when the device is out of memory or cannot hold images of that size.
+    pub fn new(recorder: &mut Recorder, scene: &Scene) -> Result<Self> {
+        let bvh = Bvh::of(scene, |_| true);
+        let most_rows = recorder.context().summary().max_image_edge as usize;
+        let (nodes, node_columns) = upload(
+            recorder,
+            "hierarchy: nodes",
+            bvh.nodes(),
+            most_rows,
+            |_, node| node_words(node),
+        )?;
+        let reflectances = Reflectances::new(scene);
+        let last = last_of_leaves(&bvh);
+        let (triangles, triangle_columns) = upload(
+            recorder,
+            "hierarchy: triangles",
+            bvh.triangles(),
+            most_rows,
+            |at, triangle| triangle_words(triangle, &reflectances.of(triangle.number), last[at]),
+        )?;
+        Ok(Self {
+            nodes,
+            triangles,
+            node_columns,
+            triangle_columns,
+            node_count: bvh.nodes().len() as u32,
+        })
+    }
+
+    /// Constants of pipelines that trace rays.
+    pub fn constants(&self) -> [(&'static str, u32); 3] {
+        [
+            ("NODE_COLUMNS", self.node_columns),
+            ("TRIANGLE_COLUMNS", self.triangle_columns),
+            ("NODE_COUNT", self.node_count),
+        ]
+    }
+
+    /// Binds the images to a pass.
+    pub fn bound_to<'r>(&'r self, pass: Pass<'r>) -> Pass<'r> {
+        pass.sample("bvh_nodes", &self.nodes, Sampler::Nearest)
+            .sample("bvh_triangles", &self.triangles, Sampler::Nearest)
+    }
+}
+
+/// Uploads elements of `N` texels each, in rows, and returns the number of elements in a row.
+fn upload<T: Sync, const N: usize>(
+    recorder: &mut Recorder,
+    name: &str,
+    elements: &[T],
+    most_rows: usize,
+    words: impl Fn(usize, &T) -> [[u32; 4]; N] + Sync,
+) -> Result<(Image, u32)> {
+    let columns = COLUMNS * elements.len().div_ceil(COLUMNS * most_rows).max(1);
+    let rows = elements.len().div_ceil(columns).max(1);
+    let mut table = vec![[[0u32; 4]; N]; rows * columns];
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    let share = elements.len().div_ceil(threads).max(1);
+    thread::scope(|scope| {
+        let chunks = table.chunks_mut(share).zip(elements.chunks(share));
+        for (number, (target, source)) in chunks.enumerate() {
+            let words = &words;
+            scope.spawn(move || {
+                for (i, (target, element)) in target.iter_mut().zip(source).enumerate() {
+                    *target = words(number * share + i, element);
+                }
+            });
+        }
+    });
+    let size = [(columns * N) as u32, rows as u32];
+    let desc = ImageDesc::flat(name, Format::R32G32B32A32_UINT, size);
+    let image = upload_texture(recorder, &desc, &[bytemuck::cast_slice(&table)])?;
+    Ok((image, columns as u32))
+}
+
+fn texel(v: Vec3, word: u32) -> [u32; 4] {
+    let [x, y, z] = v.to_array().map(f32::to_bits);
+    [x, y, z, word]
+}
+
+fn node_words(node: &Node) -> [[u32; 4]; 2] {
+    [
+        texel(node.min, node.first_triangle),
+        texel(node.max, node.skip),
+    ]
+}
+
+fn triangle_words(triangle: &Triangle, mean: &Mean, is_last: bool) -> [[u32; 4]; 3] {
+    let opacity = (mean.opacity.clamp(0.0, 1.0) * 255.0).round() as u32;
+    let flags = opacity | if is_last { LAST } else { 0 };
+    let [r, g, b] = mean.diffuse.map(|v| v.clamp(0.0, 1.0));
+    let bits = |v: f32, most: u32| (v * most as f32).round() as u32;
+    let albedo = bits(r, 2047) | bits(g, 2047) << 11 | bits(b, 1023) << 22;
+    [
+        texel(triangle.corner, albedo),
+        texel(triangle.edge1, 0),
+        texel(triangle.edge2, flags),
+    ]
+}
+
+/// For each triangle, whether it is the last one of its leaf.
+fn last_of_leaves(bvh: &Bvh) -> Vec<bool> {
+    let mut last = vec![false; bvh.triangles().len()];
+    for leaf in bvh.nodes().iter().filter(|node| node.triangle_count > 0) {
+        last[(leaf.first_triangle + leaf.triangle_count - 1) as usize] = true;
+    }
+    last
+}

@@ -1,0 +1,155 @@
+//! Mean reflectance and opacity of triangles, for rays that do not look up textures.
+
+use glam::Vec2;
+
+use crate::scene::{Material, Scene, Texture};
+
+/// Divisions of the sides of a textured triangle: the square of this is the number of lookups.
+const LOOKUPS: u32 = 8;
+
+/// Means over a triangle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mean {
+    /// Diffuse reflectance ρ_d of what is there, linear RGB, 0..1.
+    pub diffuse: [f32; 3],
+    /// Fraction of the area that is there: below 1 for cut-outs.
+    pub opacity: f32,
+}
+
+/// Means of the triangles of a scene.
+pub struct Reflectances<'a> {
+    scene: &'a Scene,
+    /// Material of each triangle.
+    material_of: Vec<u32>,
+    /// Mip levels of each texture that maps ρ_d, the finest first.
+    levels: Vec<Vec<Texture>>,
+}
+
+impl<'a> Reflectances<'a> {
+    /// Prepares the textures.
+    pub fn new(scene: &'a Scene) -> Self {
+        let mut material_of = vec![0; scene.triangles()];
+        for part in &scene.parts {
+            let first = part.first_index as usize / 3;
+            let count = part.index_count as usize / 3;
+            material_of[first..first + count].fill(part.material);
+        }
+        let is_used = |number: usize| {
+            let mut materials = scene.materials.iter();
+            materials.any(|m| m.diffuse_texture == Some(number))
+        };
+        let levels = scene.textures.iter().enumerate().map(|(number, texture)| {
+            if !is_used(number) {
+                return Vec::new();
+            }
+            let mut levels = texture.mip_levels();
+            levels.insert(0, texture.clone());
+            levels
+        });
+        Self {
+            levels: levels.collect(),
+            material_of,
+            scene,
+        }
+    }
+
+    /// Means of a triangle.
+    pub fn of(&self, triangle: u32) -> Mean {
+        let material = &self.scene.materials[self.material_of[triangle as usize] as usize];
+        let corners = [0, 1, 2].map(|i| self.scene.indices[3 * triangle as usize + i] as usize);
+        let is_plain = material.diffuse_texture.is_none() && self.scene.colours.is_empty();
+        if is_plain {
+            return Mean {
+                diffuse: material.diffuse,
+                opacity: 1.0,
+            };
+        }
+        let texture = material
+            .diffuse_texture
+            .map(|number| self.level(number, material, corners));
+        let mut sum = [0.0; 3];
+        let (mut solid, mut count) = (0.0, 0.0);
+        for weights in barycentric_points() {
+            let map = texture.map_or([1.0; 4], |t| nearest(t, self.uv(corners, weights)));
+            let colour = self.colour(corners, weights);
+            let alpha = material.dissolve * map[3] * colour[3];
+            count += 1.0;
+            if material.alpha_cutoff.is_some_and(|cutoff| alpha < cutoff) {
+                continue;
+            }
+            solid += 1.0;
+            for i in 0..3 {
+                sum[i] += material.diffuse[i] * map[i] * colour[i];
+            }
+        }
+        Mean {
+            diffuse: sum.map(|s| if solid > 0.0 { s / solid } else { 0.0 }),
+            opacity: solid / count,
+        }
+    }
+
+    /// The mip level whose texels are about as many as the lookups of a triangle. Cut-outs need the finest: their edges are sharp.
+    fn level(&self, number: usize, material: &Material, corners: [usize; 3]) -> &Texture {
+        let levels = &self.levels[number];
+        if material.alpha_cutoff.is_some() {
+            return &levels[0];
+        }
+        let [a, b, c] = corners.map(|v| Vec2::from(self.scene.texcoords[v]));
+        let size = Vec2::new(levels[0].width as f32, levels[0].height as f32);
+        let texels = 0.5 * ((b - a) * size).perp_dot((c - a) * size).abs();
+        let of_lookup = texels / (LOOKUPS * LOOKUPS) as f32;
+        let level = (0.5 * of_lookup.max(1.0).log2()).round() as usize;
+        &levels[level.min(levels.len() - 1)]
+    }
+
+    fn uv(&self, [a, b, c]: [usize; 3], [wa, wb, wc]: [f32; 3]) -> Vec2 {
+        let uv = |v: usize| Vec2::from(self.scene.texcoords[v]);
+        wa * uv(a) + wb * uv(b) + wc * uv(c)
+    }
+
+    fn colour(&self, [a, b, c]: [usize; 3], [wa, wb, wc]: [f32; 3]) -> [f32; 4] {
+        if self.scene.colours.is_empty() {
+            return [1.0; 4];
+        }
+        let share = |v: usize, i: usize| f32::from(self.scene.colours[v][i]) / f32::from(u16::MAX);
+        std::array::from_fn(|i| wa * share(a, i) + wb * share(b, i) + wc * share(c, i))
+    }
+}
+
+/// Centres of the equal triangles into which parallels to the sides divide a triangle.
+fn barycentric_points() -> impl Iterator<Item = [f32; 3]> {
+    let n = LOOKUPS as f32;
+    let point = move |i: u32, j: u32, third: f32| {
+        let (u, v) = ((i as f32 + third) / n, (j as f32 + third) / n);
+        [1.0 - u - v, u, v]
+    };
+    (0..LOOKUPS).flat_map(move |i| {
+        let upright = (0..LOOKUPS - i).map(move |j| point(i, j, 1.0 / 3.0));
+        let inverted = (0..(LOOKUPS - i).saturating_sub(1)).map(move |j| point(i, j, 2.0 / 3.0));
+        upright.chain(inverted)
+    })
+}
+
+/// The texel at texture coordinates, which repeat.
+fn nearest(texture: &Texture, uv: Vec2) -> [f32; 4] {
+    let at = |v: f32, n: u32| ((v - v.floor()) * n as f32) as u32;
+    let x = at(uv.x, texture.width).min(texture.width - 1);
+    let y = at(uv.y, texture.height).min(texture.height - 1);
+    texture.linear(x, y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_points_are_spread_evenly() {
+        let points: Vec<_> = barycentric_points().collect();
+        assert_eq!(points.len(), (LOOKUPS * LOOKUPS) as usize);
+        for i in 0..3 {
+            let mean = points.iter().map(|p| p[i]).sum::<f32>() / points.len() as f32;
+            assert!((mean - 1.0 / 3.0).abs() < 1e-5, "{mean}");
+        }
+        assert!(points.iter().flatten().all(|w| *w > 0.0));
+    }
+}

@@ -13,6 +13,8 @@ pub use self::settings::FrameSettings;
 
 use crate::daylight::sky::Daylight;
 use crate::gpu::{Context, Image, Recorder, Result};
+use crate::passes::bounces::cells::{Cells, Surroundings};
+use crate::passes::bounces::tree::Tree;
 use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{Light, Show};
 use crate::passes::light::probe::{Probe, Reading};
@@ -30,11 +32,17 @@ use crate::scene::{Camera, Scene};
 use self::average::{Average, Lit};
 use self::sample::Sample;
 
+/// Rounds of the cells before the first frame of an average.
+const FIRST_ROUNDS: u32 = 32;
+
 /// A scene and the passes that draw it.
 pub struct Frame {
     context: Arc<Context>,
     settings: FrameSettings,
     geometry: Geometry,
+    tree: Tree,
+    /// Light on surfaces that rays meet, if any is shown.
+    cells: Option<Cells>,
     sky_cube: SkyCube,
     irradiance: Irradiance,
     gbuffer: Gbuffer,
@@ -91,13 +99,16 @@ impl Frame {
             let tone_map = scope.spawn(move || asked.tone_map(device));
             let exposure = scope.spawn(move || Exposure::new(device));
             let geometry = Geometry::new(recorder, scene)?;
+            let tree = Tree::new(recorder, scene)?;
             let settings = asked.for_scene(device, &geometry);
             let lighting = scope.spawn(move || settings.lighting(device));
             let background = scope.spawn(move || settings.background(device));
             Ok(Self {
                 height_map: HeightMap::new(device, &geometry)?,
                 gbuffer: settings.gbuffer(device, &geometry)?,
-                average: Average::new(device, &geometry, &settings)?,
+                average: Average::new(device, &geometry, &tree, &settings)?,
+                cells: settings.cells(device, &tree, &geometry)?,
+                tree,
                 irradiance: Irradiance::new(recorder, settings.irradiance)?,
                 preview: Lit {
                     shadow: settings.shadow(device, &geometry)?,
@@ -156,7 +167,12 @@ impl Frame {
         let shadow = remade(is_new_shadow, || new.shadow(device, geometry))?;
         let lighting = remade(is_lit, || new.lighting(device))?;
         let background = remade(new.lighting != old.lighting, || new.background(device))?;
-        let average = remade(is_new_average, || Average::new(device, geometry, &new))?;
+        let average = remade(is_new_average, || {
+            Average::new(device, geometry, &self.tree, &new)
+        })?;
+        let cells = remade(new.cells_need() != old.cells_need(), || {
+            new.cells(device, &self.tree, geometry)
+        })?;
         let tone_map = remade(is_resized || new.tone != old.tone, || new.tone_map(device))?;
 
         // From here on nothing fails.
@@ -168,6 +184,7 @@ impl Frame {
         replace(&mut self.preview.lighting, lighting);
         replace(&mut self.background, background);
         replace(&mut self.average, average);
+        replace(&mut self.cells, cells);
         replace(&mut self.tone_map, tone_map);
         self.settings = new;
         self.drawn = None;
@@ -213,6 +230,16 @@ impl Frame {
                 self.ssao.record(rec, surfaces, &view, above, sample.phase)
             }
         };
+        if let Some(cells) = self.cells.as_mut().filter(|_| resolve.gathers()) {
+            let around = Surroundings {
+                tree: &self.tree,
+                view: &view,
+                daylight,
+                sky_radiance: sky.radiance,
+            };
+            let rounds = if index == Some(0) { FIRST_ROUNDS } else { 1 };
+            cells.record(rec, &around, settings.bounces.after_one(), rounds);
+        }
         let light = Light {
             daylight,
             sun_direction: sample.sun_direction,
@@ -225,7 +252,8 @@ impl Frame {
         let frame = lighting.record(rec, surfaces, materials, occlusion, &light, &view);
         self.background
             .record(rec, &surfaces.depth, &light, &view, frame);
-        let radiance = resolve.record(rec, geometry, frame, surfaces, &light, &view);
+        let scene = (geometry, &self.tree, self.cells.as_ref());
+        let radiance = resolve.record(rec, scene, frame, surfaces, &light, &view);
         let average = self.exposure.record(rec, radiance);
         self.tone_map.record(rec, radiance, average);
         self.drawn = Some(Drawn { index, view });

@@ -29,6 +29,7 @@ pub use crate::daylight::false_colour::{Quantity, Range};
 pub use crate::daylight::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCurve};
 pub use crate::frame::{Filter, Visibility};
 pub use crate::gpu::Optional;
+pub use crate::passes::bounces::cells::Bounces;
 pub use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
 pub use crate::passes::light::lighting::Show;
 pub use choices::{Choice, name};
@@ -236,6 +237,9 @@ options! {
         }
 
         "Light" ["light"] {
+            /// How often surfaces reflect light onto others: all, or a number; 0 is the light of sun and sky alone.
+            #[arg(value_name = "N", value_parser = values::bounces, allow_hyphen_values = true, default_value_t)]
+            bounces: Bounces,
             /// Radius of ambient occlusion, metres; 0 turns it off.
             #[arg(value_name = "METRES", value_parser = values::ao_radius, allow_hyphen_values = true,
                   default_value_t = SsaoSettings::default().radius.into())]

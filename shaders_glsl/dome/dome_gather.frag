@@ -18,7 +18,7 @@ layout(location = 1) out vec4 rest;
 // Variant: ILLUMINANCE
 #ifdef ILLUMINANCE
 // Illuminance of the surface, klx. x: from the sky; y: from the unoccluded sky, same directions; z: from the unoccluded sky,
-// irradiance cube; w: from the sun.
+// irradiance cube; w: from the sun and other surfaces.
 layout(location = 2) out vec4 illuminance;
 layout(set = 0, binding = 11) uniform sampler2D previous_illuminance;
 #endif
@@ -31,6 +31,9 @@ layout(constant_id = 2) const bool SKY = true;
 layout(constant_id = 3) const int DIRECTIONS = 4;
 // As in lighting.frag.
 layout(constant_id = 4) const bool ALBEDO_IMAGE = true;
+// Whether there is light from other surfaces, and whether it is shown.
+layout(constant_id = 5) const bool BOUNCES = false;
+layout(constant_id = 6) const bool SHOW_BOUNCES = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform usampler2D normal_material;
@@ -41,6 +44,7 @@ layout(set = 0, binding = 5) uniform sampler2D previous_rest;
 layout(set = 0, binding = 7) uniform samplerCube sky_irradiance; // E of sky and ground, klx
 layout(set = 0, binding = 8, scalar) uniform View { VIEW_BLOCK } view;
 layout(set = 0, binding = 10) uniform sampler2D materials; // see materials.glsl
+layout(set = 0, binding = 12) uniform sampler2D bounced;    // with BOUNCES: irradiance from other surfaces, klx; else any
 
 layout(push_constant, scalar) uniform Push {
     vec3 ground; // radiance below the horizon, kcd/m^2
@@ -62,9 +66,9 @@ vec4 light_of_directions(vec3 world, vec3 n, vec3 face) {
     return vec4(visible, whole);
 }
 
-void gather(vec2 uv, float d) {
+/// Adds the light of the sky at a surface; `reflected`: the fraction of irradiance that is shown.
+void gather(vec2 uv, float d, uvec3 own, vec3 reflected) {
     vec3 ray = view_ray(uv, view.ray_scale, view.ray_offset);
-    uvec3 own = textureLod(normal_material, uv, 0.0).xyz;
     vec3 n = normal_unpack(own.x);
     vec3 world = view.eye + view.world_from_view * (ray * (view.near / d));
     sky = light_of_directions(world, n, view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale));
@@ -81,8 +85,6 @@ void gather(vec2 uv, float d) {
         rest.a = 1.0;
         return;
     }
-    vec3 reflected = vec3(1.0);
-    if (!SHOW_IRRADIANCE) reflected = pixel_albedo(ALBEDO_IMAGE, albedo, materials, own.y, uv).rgb / PI;
     sky *= vec4(reflected, luminance(reflected));
     rest.a = luminance(open) * luminance(reflected);
 }
@@ -93,11 +95,21 @@ void main() {
     sky = vec4(0.0);
     vec4 lit = textureLod(frame, uv, 0.0);
     rest = vec4(lit.rgb, 0.0);
+    if (d > 0.0) {
+        uvec3 own = textureLod(normal_material, uv, 0.0).xyz;
+        vec3 reflected = vec3(1.0);
+        if (!SHOW_IRRADIANCE) reflected = pixel_albedo(ALBEDO_IMAGE, albedo, materials, own.y, uv).rgb / PI;
 #ifdef ILLUMINANCE
-    illuminance = vec4(0.0, 0.0, 0.0, lit.a);
-    if (d > 0.0) gather(uv, d);
+        illuminance = vec4(0.0, 0.0, 0.0, lit.a);
+        gather(uv, d, own, reflected);
+        if (BOUNCES) illuminance.w += luminance(textureLod(bounced, uv, 0.0).rgb);
 #else
-    if (SKY && d > 0.0) gather(uv, d);
+        if (SKY) gather(uv, d, own, reflected);
+#endif
+        if (SHOW_BOUNCES) rest.rgb += reflected * textureLod(bounced, uv, 0.0).rgb;
+    }
+#ifdef ILLUMINANCE
+    else illuminance = vec4(0.0, 0.0, 0.0, lit.a);
 #endif
     if (push.share >= 1.0) return;
     sky = mix(textureLod(previous_sky, uv, 0.0), sky, push.share);

@@ -171,6 +171,7 @@ impl Job {
             sampling: self.sampling(),
             irradiance: self.irradiance_settings(),
             shadow_resolution: s.shadow_size,
+            bounces: s.bounces,
             ..FrameSettings::default()
         };
         if s.preset == Some(Preset::Lecture) {

@@ -4,6 +4,9 @@ use std::sync::Arc;
 
 use super::{FrameSettings, Visibility};
 use crate::gpu::{Context, Image, Recorder, Result};
+use crate::passes::bounces::cells::Cells;
+use crate::passes::bounces::gather::Gather;
+use crate::passes::bounces::tree::Tree;
 use crate::passes::dome::gather::{Dome, Gathered};
 use crate::passes::light::lighting::{Light, Lighting};
 use crate::passes::picture::accumulate::Accumulate;
@@ -33,6 +36,8 @@ pub(super) enum Average {
 pub(super) struct Converging {
     /// Hard shadows, and all light except diffuse sky light.
     lit: Lit,
+    /// Light from other surfaces, if it is shown.
+    gather: Option<Gather>,
     /// Diffuse sky light, and the means.
     dome: Dome,
     /// Cross-fade from the preview to the means.
@@ -47,6 +52,7 @@ impl Average {
     pub fn new(
         context: &Arc<Context>,
         geometry: &Geometry,
+        tree: &Tree,
         settings: &FrameSettings,
     ) -> Result<Self> {
         let size = settings.size.to_array();
@@ -59,12 +65,17 @@ impl Average {
         }
         let (sampling, lighting) = (&settings.sampling, settings.lighting);
         let fades = sampling.visibility == Visibility::Progressive;
+        let bounces = settings.gathered();
         Ok(Self::Dome(Box::new(Converging {
             lit: Lit {
                 shadow: Shadow::perspective(context, geometry, settings.shadow_resolution)?,
                 lighting: Lighting::converging(context, size, lighting)?,
             },
-            dome: Dome::new(context, geometry, size, sampling.dome, lighting)?,
+            gather: bounces
+                .is_any()
+                .then(|| Gather::new(context, tree, size))
+                .transpose()?,
+            dome: Dome::new(context, geometry, size, sampling.dome, lighting, bounces)?,
             fade: fades
                 .then(|| Fade::new(context, size, settings.samples))
                 .transpose()?,
@@ -75,7 +86,13 @@ impl Average {
     /// Whether the new settings need a new average.
     pub fn is_changed(old: &FrameSettings, new: &FrameSettings) -> bool {
         let of = |s: &FrameSettings| {
-            let of_dome = (s.samples, s.sampling, s.lighting, s.shadow_resolution);
+            let of_dome = (
+                s.samples,
+                s.sampling,
+                s.lighting,
+                s.shadow_resolution,
+                s.gathered(),
+            );
             (s.size, s.takes_mean(), s.converges().then_some(of_dome))
         };
         of(old) != of(new)
@@ -91,13 +108,23 @@ impl Average {
             (Self::Dome(converging), Some(index)) => {
                 let Converging {
                     lit,
+                    gather,
                     dome,
                     fade,
                     is_previewed,
                 } = &mut **converging;
                 let from = (preview.lighting.image(), std::mem::take(is_previewed));
                 let fade = fade.as_mut().map(|fade| (fade, from));
-                (lit, Resolve::Dome { dome, fade, index })
+                let gather = gather.as_ref();
+                (
+                    lit,
+                    Resolve::Dome {
+                        gather,
+                        dome,
+                        fade,
+                        index,
+                    },
+                )
             }
             (Self::Dome(converging), None) => {
                 converging.is_previewed = true;
@@ -126,6 +153,7 @@ pub(super) enum Resolve<'a> {
     Mean(&'a mut Accumulate, u32),
     /// The frame is added to the means of the dome; the picture cross-fades from a preview.
     Dome {
+        gather: Option<&'a Gather>,
         dome: &'a mut Dome,
         /// The cross-fade, the preview, and whether the previous frame was a preview.
         fade: Option<(&'a mut Fade, (&'a Image, bool))>,
@@ -139,11 +167,22 @@ impl<'a> Resolve<'a> {
         matches!(self, Self::Dome { .. })
     }
 
+    /// Whether rays gather the light of other surfaces.
+    pub fn gathers(&self) -> bool {
+        matches!(
+            self,
+            Self::Dome {
+                gather: Some(_),
+                ..
+            }
+        )
+    }
+
     /// Records the resolve and returns the picture after this frame.
     pub fn record(
         self,
         rec: &mut Recorder,
-        geometry: &Geometry,
+        (geometry, tree, cells): (&Geometry, &Tree, Option<&Cells>),
         frame: &'a Image,
         surfaces: &Surfaces,
         light: &Light<'_>,
@@ -152,13 +191,22 @@ impl<'a> Resolve<'a> {
         match self {
             Self::None => frame,
             Self::Mean(mean, index) => mean.record(rec, frame, index),
-            Self::Dome { dome, fade, index } => {
+            Self::Dome {
+                gather,
+                dome,
+                fade,
+                index,
+            } => {
+                let bounced = gather.zip(cells).map(|(gather, cells)| {
+                    gather.record(rec, (tree, cells), surfaces, light.daylight, view, index)
+                });
                 let gathered = Gathered {
                     surfaces,
                     materials: geometry.materials(),
                     frame,
                     sky_irradiance: light.sky_irradiance,
                     sky_radiance: light.sky_radiance,
+                    bounced,
                 };
                 let picture = dome.record(rec, geometry, &gathered, light.daylight, view, index);
                 match fade {

@@ -8,6 +8,8 @@ use super::{Sampling, Visibility};
 use crate::daylight::exposure::KEY;
 use crate::daylight::tone_curve::{REINHARD_WHITE, ToneCurve};
 use crate::gpu::{Context, Result};
+use crate::passes::bounces::cells::{Bounces, Cells};
+use crate::passes::bounces::tree::Tree;
 use crate::passes::dome::specular::Mirrors;
 use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{Lighting, LightingSettings, Precision, Shadows, Show};
@@ -36,6 +38,8 @@ pub struct FrameSettings {
     pub shadow_resolution: u32,
     /// Ambient occlusion.
     pub ssao: SsaoSettings,
+    /// How often light is reflected between surfaces.
+    pub bounces: Bounces,
     /// Lighting.
     pub lighting: LightingSettings,
     /// Tone mapping and exposure.
@@ -54,6 +58,7 @@ impl Default for FrameSettings {
             irradiance: IrradianceSettings::default(),
             shadow_resolution: 2048,
             ssao,
+            bounces: Bounces::All,
             lighting: LightingSettings {
                 show,
                 precision: Precision::Half,
@@ -102,6 +107,33 @@ impl FrameSettings {
     /// Whether the mean of the frames converges to the true visibility of the sky ([`crate::passes::dome::gather::Dome`]).
     pub(super) fn converges(&self) -> bool {
         self.sampling.visibility != Visibility::Ssao
+    }
+
+    /// The bounces that rays gather in converging frames: those of the settings if the quantity shown has them.
+    pub(super) fn gathered(&self) -> Bounces {
+        let is_shown = self.lighting.show.has_bounces() || self.sampling.dome.illuminance;
+        if self.converges() && is_shown {
+            self.bounces
+        } else {
+            Bounces::UpTo(0)
+        }
+    }
+
+    /// The seed of the cells; `None` if no light is looked up in them.
+    pub(super) fn cells_need(&self) -> Option<u32> {
+        self.gathered().is_any().then_some(self.sampling.dome.seed)
+    }
+
+    /// The cells, if any light is looked up in them.
+    pub(super) fn cells(
+        &self,
+        context: &Arc<Context>,
+        tree: &Tree,
+        geometry: &Geometry,
+    ) -> Result<Option<Cells>> {
+        let seed = self.cells_need();
+        seed.map(|seed| Cells::new(context, tree, geometry.bounds(), seed))
+            .transpose()
     }
 
     /// The settings that the shadow map of single frames depends on.

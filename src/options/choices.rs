@@ -114,6 +114,7 @@ choices! {
         Beauty = "beauty": "The whole picture, cd/m²",
         Sun = "sun": "ρ_d/π (n·l) V E_sun, cd/m²",
         Sky = "sky": "ρ_d/π A E_sky(n), cd/m²",
+        Bounces = "bounces": "ρ_d/π E_bounce, the light that other surfaces reflect, cd/m²",
         SunSpecular = "sun-specular": "ρ_s (r·l)^p V E_sun, cd/m²",
         SkySpecular = "sky-specular": "ρ_s L_sky(r), cd/m²",
         Background = "background": "Sky, ground and the sun's disc where no surface is, cd/m²",
@@ -168,6 +169,6 @@ mod tests {
         check::<ToneCurve>();
         check::<IrradianceMethod>();
         assert_eq!(name(Visibility::Progressive), "dome");
-        assert_eq!(Show::VALUES.len(), 13);
+        assert_eq!(Show::VALUES.len(), 14);
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use super::{Choice, choice_enum};
+use super::{Bounces, Choice, choice_enum};
 use crate::daylight::false_colour::Range;
 pub use crate::daylight::moment::When;
 pub use crate::daylight::place::Place;
@@ -183,6 +183,16 @@ impl Written for Range {
     }
 }
 
+/// In the form that the parser of `--bounces` reads.
+impl fmt::Display for Bounces {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::All => f.write_str("all"),
+            Self::UpTo(count) => write!(f, "{count}"),
+        }
+    }
+}
+
 /// Types whose parser reads their [`fmt::Display`] form.
 macro_rules! written_as_displayed {
     ($($type:ty)*) => {
@@ -194,7 +204,7 @@ macro_rules! written_as_displayed {
     };
 }
 
-written_as_displayed! { u32 f64 String Size Direction SolarTime }
+written_as_displayed! { u32 f64 String Size Direction SolarTime Bounces }
 
 /// A finite number.
 pub(super) fn number(text: &str) -> Result<f64, String> {
@@ -302,6 +312,20 @@ pub(super) fn solar(text: &str) -> Result<SolarTime, String> {
         day: day as u32,
         hours,
     })
+}
+
+/// Most bounces that can be asked for by number: paths have as many segments.
+const MOST_BOUNCES: u32 = 64;
+
+/// Parses `all` or a number of bounces.
+pub(super) fn bounces(text: &str) -> Result<Bounces, String> {
+    if text == "all" {
+        return Ok(Bounces::All);
+    }
+    match text.parse() {
+        Ok(count) if count <= MOST_BOUNCES => Ok(Bounces::UpTo(count)),
+        _ => Err(format!("use all, or a number from 0 to {MOST_BOUNCES}")),
+    }
 }
 
 /// `1280x720`.

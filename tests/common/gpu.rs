@@ -9,6 +9,7 @@ use skylight::daylight::sky::{Conditions, Daylight, SkyModel};
 use skylight::daylight::tone_curve::ToneCurve;
 use skylight::frame::{Frame, FrameSettings};
 use skylight::gpu::{Context, ContextOptions, Image, Recorder, Timing, read_back};
+use skylight::passes::bounces::cells::Bounces;
 use skylight::passes::light::lighting::{Precision, Show};
 use skylight::passes::occlusion::ssao::SsaoSettings;
 use skylight::passes::picture::tone_map::Scale;
@@ -201,6 +202,7 @@ pub fn settings(width: u32, height: u32) -> FrameSettings {
     let mut set = FrameSettings {
         size: UVec2::new(width, height),
         shadow_resolution: 1024,
+        bounces: Bounces::UpTo(0),
         ..FrameSettings::default()
     };
     set.lighting.precision = Precision::Float;

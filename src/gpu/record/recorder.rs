@@ -16,7 +16,7 @@ use crate::gpu::record::timings::{PassTime, Queries, Stopwatch, Timing, Timings}
 use crate::gpu::record::work::{PassWork, Traffic, WorkLog};
 
 /// Size of the buffer for the uniform blocks of one frame, bytes.
-const UNIFORM_BYTES: u64 = 1 << 16;
+const UNIFORM_BYTES: u64 = 1 << 18;
 
 /// A command buffer and the resources it needs between `begin` and `finish`.
 pub struct Recorder {

@@ -20,6 +20,7 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
+use crate::passes::bounces::cells::Bounces;
 use crate::passes::dome::specular::SpecularSky;
 use crate::passes::light::lighting::{LightingSettings, Show};
 use crate::passes::sun_shadow::fit::ShadowView;
@@ -120,6 +121,8 @@ pub struct Gathered<'a> {
     pub sky_irradiance: &'a Image,
     /// Radiance L of sky and ground, kcd/m².
     pub sky_radiance: &'a Image,
+    /// Irradiance from other surfaces, klx; `None` without bounces.
+    pub bounced: Option<&'a Image>,
 }
 
 /// Depth bias of the comparison, texels. Within half a texel of a concave edge, the texel's centre may lie on the other face, up to
@@ -174,6 +177,7 @@ impl Dome {
         size: [u32; 2],
         settings: DomeSettings,
         lighting: LightingSettings,
+        bounces: Bounces,
     ) -> Result<Self> {
         let show = lighting.show;
         let specular = SpecularSky::new(context, size, settings, lighting)?;
@@ -185,7 +189,7 @@ impl Dome {
         Ok(Self {
             settings,
             casters: Casters::new(context, geometry, 0.0)?,
-            gather: gather_pipeline(context, geometry, settings, show)?,
+            gather: gather_pipeline(context, geometry, settings, show, bounces)?,
             resolve: fullscreen(
                 context,
                 "dome: resolve",
@@ -345,6 +349,8 @@ impl Dome {
         self.means.swap(0, 1);
         let [[sky, rest], [old_sky, old_rest]] = &self.means;
         let surfaces = gathered.surfaces;
+        // Without bounces any image will do: the binding must be written.
+        let bounced = gathered.bounced.unwrap_or(gathered.frame);
         let pass = recorder.pass("dome: gather", &self.gather);
         let pass = surfaces
             .sampled_by(pass, gathered.materials)
@@ -353,6 +359,7 @@ impl Dome {
             .sample("previous_rest", old_rest, Sampler::Nearest)
             .sample("maps", &self.maps, Sampler::Nearest)
             .sample("sky_irradiance", gathered.sky_irradiance, Sampler::Linear)
+            .sample("bounced", bounced, Sampler::Nearest)
             .uniform("view", &view.block())
             .uniform("dome", block)
             .push(push)
@@ -389,6 +396,7 @@ fn gather_pipeline(
     geometry: &Geometry,
     settings: DomeSettings,
     show: Show,
+    bounces: Bounces,
 ) -> Result<Pipeline> {
     let (shader, targets) = if settings.illuminance {
         (&shaders::DOME_GATHER_FRAG_ILLUMINANCE, 3)
@@ -407,6 +415,11 @@ fn gather_pipeline(
             ("SKY", shows_sky(show).into()),
             ("DIRECTIONS", settings.directions),
             ("ALBEDO_IMAGE", geometry.has_albedo().into()),
+            ("BOUNCES", bounces.is_any().into()),
+            (
+                "SHOW_BOUNCES",
+                (bounces.is_any() && show.has_bounces()).into(),
+            ),
             ("MATERIAL_COLUMNS", MATERIAL_COLUMNS),
         ],
     )

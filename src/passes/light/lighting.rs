@@ -46,6 +46,8 @@ pub enum Show {
     Sun,
     /// ρ_d/π A E_sky(n), cd/m².
     Sky,
+    /// ρ_d/π E_bounce, the light that other surfaces reflect, cd/m².
+    Bounces,
     /// ρ_s (r·l)^p V E_sun, cd/m².
     SunSpecular,
     /// ρ_s L_sky(r), cd/m².
@@ -70,9 +72,10 @@ pub enum Show {
 
 impl Show {
     /// The terms of the picture: they sum to [`Show::Beauty`].
-    pub const ADDENDS: [Self; 5] = [
+    pub const ADDENDS: [Self; 6] = [
         Self::Sun,
         Self::Sky,
+        Self::Bounces,
         Self::SunSpecular,
         Self::SkySpecular,
         Self::Background,
@@ -94,6 +97,14 @@ impl Show {
             Self::Visibility | Self::Occlusion | Self::Albedo | Self::Normal | Self::Depth => 1.0,
             _ => 1000.0,
         }
+    }
+
+    /// Whether the light that other surfaces reflect is part of it.
+    pub fn has_bounces(self) -> bool {
+        matches!(
+            self,
+            Self::Beauty | Self::Luminance | Self::Bounces | Self::Irradiance
+        )
     }
 
     /// Whether the values shown are a `quantity`.

@@ -1,0 +1,99 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "scene_light.glsl"
+#include "surface_hit.glsl"
+#include "cells.glsl"
+#include "cell_table.glsl"
+
+// Adds a path to each cell: from one of its points over diffuse surfaces, with the light of sun and sky at each, ending in the cells.
+// Reads the published cells and writes the sums, so the outcome does not depend on the order of the invocations.
+
+layout(local_size_x = 64) in;
+
+PRINTS;
+LIVE;
+PLACES;
+SUMS;
+
+layout(set = 0, binding = 7) uniform samplerCube sky_radiance; // L of sky and ground, kcd/m^2, without the disc
+
+layout(push_constant, scalar) uniform Push {
+    uint segments;     // of a path at most; 0: no bounces
+    uint ends_in_cell; // whether a path takes the bounces of the cell at its end: all bounces instead of as many as segments
+    uint first;        // of the live cells to update
+    uint count;        // of cells to update
+    float most;        // paths that the old means count for: few after a change of the light
+    vec3 sky_change;   // factor on the old means of the sky
+    vec3 bounce_change; // factor on the old means of the bounces
+} push;
+
+// Paths after which a cell is not updated any more.
+const uint ENOUGH = 4096u;
+
+/// Irradiance of the bounces along a path that starts with a ray from a point, klx.
+vec3 path_light(Surface surface, inout uint state) {
+    vec3 light = vec3(0.0), throughput = vec3(1.0);
+    for (uint segment = 1u; segment <= push.segments; ++segment) {
+        light += throughput * PI * surface.emission;
+        throughput *= surface.albedo;
+        vec3 sun = sun_irradiance_at(surface.position, surface.normal, vec2(rnd(state), rnd(state)));
+        Cached here = cached(surface.position, surface.normal);
+        light += throughput * (sun + here.sky);
+        bool is_last = segment == push.segments;
+        // Russian roulette between the cell and another segment: dark surfaces add little.
+        if (push.ends_in_cell != 0u && here.is_found) {
+            float reflected = max(surface.albedo.r, max(surface.albedo.g, surface.albedo.b));
+            if (is_last || rnd(state) >= reflected) return light + throughput * here.bounce;
+        }
+        if (is_last) break;
+        vec3 toward = cosine_direction(surface.normal, vec2(rnd(state), rnd(state)));
+        Hit hit = closest(surface.position, toward, FAR);
+        if (hit.distance == FAR) {
+            // The sky's share is in the cell, if there is one.
+            if (!here.is_found) light += throughput * PI * textureLod(sky_radiance, toward, 0.0).rgb;
+            break;
+        }
+        surface = surface_of(hit, surface.position, toward);
+    }
+    return light;
+}
+
+/// Whether something stands between the anchor and the neighbouring cells.
+bool is_edged(Point anchor, float edge) {
+    vec3 n = normal_unpack(anchor.normal);
+    mat3 frame = frame_from_normal(n);
+    vec3 from = anchor.position + n * (SIGHT * edge);
+    for (int i = 0; i < 8; ++i) {
+        float angle = float(i) * (0.25 * PI);
+        if (any_hit(from, frame * vec3(cos(angle), sin(angle), 0.0), 2.0 * edge)) return true;
+    }
+    return false;
+}
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= push.count || index >= live_count) return;
+    uint slot = live[(push.first + index) % live_count];
+    uint print = prints[slot];
+    Sum sum = sums[slot];
+    uint number = uint(min(sum.sky.a, push.most));
+    if ((print & ANCHORED) == 0u || number >= ENOUGH) return;
+    uint state = tea(print & ~FLAGS, tea(scene.seed, number ^ scene.frame << 16));
+    if (number == 0u) {
+        Point anchor = points[slot * POINTS];
+        if (is_edged(anchor, cell_edge(cell_level(distance(anchor.position, scene.eye))))) atomicOr(prints[slot], EDGED);
+    }
+    Point point = points[slot * POINTS + state % POINTS];
+    vec3 n = normal_unpack(point.normal);
+    vec3 toward = cosine_direction(n, scrambled_sobol(number, tea(print & ~FLAGS, scene.seed)));
+    Hit hit = closest(point.position, toward, FAR);
+    vec3 sky = vec3(0.0), bounce = vec3(0.0);
+    if (hit.distance == FAR) sky = PI * textureLod(sky_radiance, toward, 0.0).rgb;
+    else if (push.segments > 0u) bounce = path_light(surface_of(hit, point.position, toward), state);
+    // Later paths end in better cells: the weights of their light grow with the cube of their number.
+    float k = float(number) + 1.0;
+    sum.sky.rgb = mix(sum.sky.rgb * push.sky_change, sky, 1.0 / k);
+    sum.bounce.rgb = mix(sum.bounce.rgb * push.bounce_change, bounce, 4.0 * k / ((k + 1.0) * (k + 1.0)));
+    sums[slot] = Sum(vec4(sum.sky.rgb, k), vec4(sum.bounce.rgb, k));
+}

@@ -1,0 +1,62 @@
+// Cells: a cache of irradiance in world space. A cell is a cube of space together with a dominant direction of normals and a level
+// of size; it holds the irradiance of the sky and of the bounces on the surfaces in it. This file says which cell a point belongs
+// to. Needs `scene`, bvh.glsl.
+#include "cell_flags.glsl"
+
+// Most cells at one place, each for the surfaces that the anchors of the ones before do not see.
+const uint SIBLINGS = 4u;
+// Levels that a lookup tries beyond its own.
+const int COARSER = 4;
+// Height above the surface at which points must see each other to share a cell, in edges of the cell.
+const float SIGHT = 0.15;
+
+/// What identifies a cell: its bucket, and its print among the cells there.
+struct Key {
+    uint bucket;
+    uint print;
+};
+
+/// Level of the cells at a distance from the eye (metres): the edge doubles with each.
+int cell_level(float distance) {
+    return max(int(floor(log2(max(distance / scene.near, 1e-6)))) + 1, 0);
+}
+
+float cell_edge(int level) {
+    return scene.cell * exp2(float(level));
+}
+
+/// Axis of the largest component of a normal: 0 to 2; 3 more if it is negative.
+uint dominant(vec3 n) {
+    vec3 a = abs(n);
+    uint axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
+    return axis + (n[axis] < 0.0 ? 3u : 0u);
+}
+
+/// Position in the grid of a level, in edges. The shift along the normal keeps surfaces out of the borders, the other one walls at
+/// round coordinates.
+vec3 in_grid(vec3 p, vec3 n, float edge) {
+    return p / edge + 0.37 * n + vec3(0.1547, 0.3719, 0.2331);
+}
+
+uint mixed(uint h) {
+    h ^= h >> 16;
+    h *= 0x7feb352du;
+    h ^= h >> 15;
+    h *= 0x846ca68bu;
+    return h ^ (h >> 16);
+}
+
+Key cell_key(ivec3 at, uint side, int level, uint sibling) {
+    uint h = mixed(uint(at.x) * 0x9e3779b1u ^ mixed(uint(at.y) * 0x85ebca77u ^ mixed(uint(at.z) * 0xc2b2ae3du ^ (side | uint(level) << 3 | sibling << 9))));
+    // Not a function of h alone, so that cells of one bucket differ in it.
+    uint print = mixed(h + uint(at.x) * 0x27d4eb2fu + uint(at.y) * 0x165667b1u + uint(at.z) * 0xd3a2646du);
+    return Key((h & (BUCKETS - 1u)) * BUCKET, (print | (FLAGS + 1u)) & ~FLAGS);
+}
+
+/// Whether two points of surfaces see each other, a little above them.
+bool is_seen(vec3 anchor, vec3 p, vec3 n, float edge) {
+    vec3 from = p + n * (SIGHT * edge), to = anchor + n * (SIGHT * edge);
+    vec3 way = to - from;
+    float distance = length(way);
+    return distance < 1e-5 || !any_hit(from, way / distance, distance);
+}

@@ -1,0 +1,47 @@
+// The surface that a ray hits, and the light of the sun there. Needs `scene` (see scene_light.glsl).
+#include "bvh.glsl"
+
+struct Surface {
+    vec3 position;   // world, metres, lifted off the surface
+    vec3 normal;     // of the face, unit, on the side that was hit
+    vec3 albedo;     // rho_d, mean over the triangle
+    vec3 emission;   // radiance, kcd/m^2
+};
+
+// Offset of ray origins from their surface, relative to the largest coordinate: covers the rounding of float32.
+const float LIFT = 3e-5;
+
+vec3 lifted(vec3 position, vec3 normal) {
+    vec3 size = abs(position);
+    return position + LIFT * (1.0 + max(size.x, max(size.y, size.z))) * normal;
+}
+
+/// Reflectance from 10 + 11 + 11 bits.
+vec3 albedo_unpack(uint word) {
+    return vec3(word & 0x7ffu, (word >> 11) & 0x7ffu, word >> 22) / vec3(2047.0, 2047.0, 1023.0);
+}
+
+/// Radiance from three mantissas of 9 bits and their exponent (as in VK_FORMAT_E5B9G9R9_UFLOAT_PACK32), kcd/m^2.
+vec3 emission_unpack(uint word) {
+    return vec3(word & 0x1ffu, (word >> 9) & 0x1ffu, (word >> 18) & 0x1ffu) * exp2(float(word >> 27) - 24.0);
+}
+
+Surface surface_of(Hit hit, vec3 origin, vec3 toward) {
+    ivec2 at = triangle_texel(hit.triangle);
+    uint albedo = texelFetch(bvh_triangles, at, 0).w;
+    uvec4 second = texelFetch(bvh_triangles, at + ivec2(1, 0), 0);
+    vec3 edge2 = uintBitsToFloat(texelFetch(bvh_triangles, at + ivec2(2, 0), 0).xyz);
+    vec3 face = normalize(cross(uintBitsToFloat(second.xyz), edge2));
+    if (dot(face, toward) > 0.0) face = -face;
+    return Surface(lifted(origin + hit.distance * toward, face), face, albedo_unpack(albedo), emission_unpack(second.w));
+}
+
+/// Irradiance of the sun at a point, klx, for a point xi in [0, 1)^2 of its disc.
+vec3 sun_irradiance_at(vec3 position, vec3 normal, vec2 xi) {
+    if (scene.sun_illuminance == vec3(0.0)) return vec3(0.0);
+    float radius = scene.sun_tan_radius * sqrt(xi.x), phi = 2.0 * PI * xi.y;
+    vec3 toward = normalize(frame_from_normal(scene.sun_direction) * vec3(radius * cos(phi), radius * sin(phi), 1.0));
+    float cosine = dot(normal, toward);
+    if (cosine <= 0.0 || toward.y <= 0.0 || any_hit(position, toward, FAR)) return vec3(0.0);
+    return scene.sun_illuminance * cosine;
+}

@@ -1,0 +1,363 @@
+//! A cache of irradiance in world space: cells, created where light paths from the eye meet surfaces, each with the irradiance of the
+//! sky and of the bounces on the surfaces in it.
+//!
+//! A round has four passes. *Seed* traces paths from the eye and claims cells in a hash table; *place* gives them the points from
+//! which they look at the scene; *update* adds a path to each cell, which ends in the cells as the last round left them; *publish*
+//! copies the table to images for lookups. Random numbers depend on the cell, and contests for places are won by the smallest hash:
+//! the same seed gives the same light, in whatever order the device runs.
+//!
+//! Hashed irradiance caches: Gautron 2020, "Real-time ray-traced ambient occlusion of complex scenes using spatial hashing"; the
+//! weights of the running mean are this program's own (see `cells_update.comp`).
+
+use std::sync::Arc;
+
+use glam::{DVec3, Vec3};
+
+use crate::daylight::sky::Daylight;
+use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
+use crate::gpu::{
+    Buffer, BufferKind, Context, Depth, Format, Image, ImageDesc, Pass, Pipeline, PipelineDesc,
+    Recorder, Result, Sampler, Shader, shaders,
+};
+use crate::gpu_struct;
+use crate::passes::bounces::tree::Tree;
+use crate::passes::kilo;
+use crate::passes::view::View;
+use crate::scene::Bounds;
+
+/// Slots of the hash table, as in `include/cell_flags.glsl`.
+const SLOTS: u32 = 1 << 17;
+/// Slots in a row of the published images, as in `include/cell_flags.glsl`.
+const SLOT_COLUMNS: u32 = 512;
+/// Points of a cell and of a path, as in `include/cell_table.glsl`.
+const POINTS: u32 = 3;
+const PATH_POINTS: u32 = 4;
+/// Sizes of the structs there, bytes.
+const POINT_BYTES: u32 = 16;
+const CANDIDATE_BYTES: u32 = 28;
+const SUM_BYTES: u32 = 32;
+
+/// Paths from the eye in a round.
+const PATHS: u32 = 1 << 14;
+
+/// Edge of the smallest cells, metres, in scenes larger than a room.
+const CELL: f32 = 0.25;
+/// Smallest number of cells along the diagonal of a scene.
+const CELLS_ACROSS: f32 = 128.0;
+/// Distance from the eye within which cells are smallest, in their edges; they double with every doubling of the distance.
+const NEAR_CELLS: f32 = 48.0;
+
+/// Segments of a path before it ends in a cell.
+const SEGMENTS: u32 = 4;
+
+/// Paths that the old mean of a cell counts for after a change of the light.
+const AFTER_CHANGE: f32 = 4.0;
+
+/// How often light is reflected from surface to surface before it reaches the one in view.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Bounces {
+    /// Without limit.
+    #[default]
+    All,
+    /// At most this often; 0: not at all.
+    UpTo(u32),
+}
+
+impl Bounces {
+    /// Whether there are any.
+    pub fn is_any(self) -> bool {
+        self != Self::UpTo(0)
+    }
+
+    /// The bounces left after one.
+    #[must_use]
+    pub fn after_one(self) -> Self {
+        match self {
+            Self::All => Self::All,
+            Self::UpTo(count) => Self::UpTo(count.saturating_sub(1)),
+        }
+    }
+}
+
+gpu_struct! {
+    /// The light of a moment and the grid of cells, see `include/scene_light.glsl`.
+    pub struct SceneBlock: scene of CELLS_SEED_COMP, CELLS_UPDATE_COMP, BOUNCES_GATHER_FRAG {
+        eye: Vec3,
+        cell: f32,
+        near: f32,
+        sun_direction: Vec3,
+        sun_illuminance: Vec3,
+        sun_tan_radius: f32,
+        seed: u32,
+        frame: u32,
+    }
+}
+
+gpu_struct! {
+    /// Number of paths.
+    pub struct SeedPush: push of CELLS_SEED_COMP {
+        paths: u32,
+    }
+}
+
+gpu_struct! {
+    /// Number of candidates.
+    pub struct PlacePush: push of CELLS_PLACE_COMP {
+        candidates: u32,
+    }
+}
+
+gpu_struct! {
+    /// What an update does.
+    pub struct UpdatePush: push of CELLS_UPDATE_COMP {
+        segments: u32,
+        ends_in_cell: u32,
+        first: u32,
+        count: u32,
+        most: f32,
+        sky_change: Vec3,
+        bounce_change: Vec3,
+    }
+}
+
+/// The light that the cells hold.
+#[derive(Clone, PartialEq)]
+struct Held {
+    daylight: Daylight,
+    bounces: Bounces,
+}
+
+/// The passes of the cells, their table and their published images.
+pub struct Cells {
+    seed: u32,
+    cell: f32,
+    claim: Pipeline,
+    place: Pipeline,
+    update: Pipeline,
+    publish: Pipeline,
+    prints: Buffer,
+    live: Buffer,
+    points: Buffer,
+    contests: Buffer,
+    candidates: Buffer,
+    sums: Buffer,
+    cells: Image,
+    sky: Image,
+    bounce: Image,
+    held: Option<Held>,
+    /// Rounds so far.
+    round: u32,
+}
+
+/// What a round needs to know about the scene and its light.
+#[derive(Clone, Copy)]
+pub struct Surroundings<'a> {
+    /// The hierarchy of the scene.
+    pub tree: &'a Tree,
+    /// The view, of which the whole picture counts.
+    pub view: &'a View,
+    /// Sun and sky.
+    pub daylight: &'a Daylight,
+    /// Radiance L of sky and ground, kcd/m².
+    pub sky_radiance: &'a Image,
+}
+
+impl Cells {
+    /// Creates the passes for a scene.
+    ///
+    /// # Errors
+    /// Fails when the device cannot create the resources.
+    pub fn new(context: &Arc<Context>, tree: &Tree, bounds: &Bounds, seed: u32) -> Result<Self> {
+        let traces = tree.constants();
+        let pipeline = |name, shader: &'static Shader, constants: &[(&str, u32)]| {
+            let desc = PipelineDesc {
+                name,
+                stages: &[shader],
+                vertex: &[],
+                colors: &[],
+                depth: Depth::Off,
+                constants,
+            };
+            Pipeline::new(context, &desc)
+        };
+        let buffer = |name, words: u32| {
+            Buffer::new(context, name, BufferKind::Storage, 4 * u64::from(words))
+        };
+        let size = [SLOT_COLUMNS, SLOTS / SLOT_COLUMNS];
+        let image =
+            |name, format| Image::new(context, &ImageDesc::flat(name, format, size).stored());
+        Ok(Self {
+            seed,
+            cell: CELL.min(bounds.extent().length() / CELLS_ACROSS).max(1e-6),
+            claim: pipeline("cells: seed", &shaders::CELLS_SEED_COMP, &traces)?,
+            place: pipeline("cells: place", &shaders::CELLS_PLACE_COMP, &[])?,
+            update: pipeline("cells: update", &shaders::CELLS_UPDATE_COMP, &traces)?,
+            publish: pipeline("cells: publish", &shaders::CELLS_PUBLISH_COMP, &[])?,
+            prints: buffer("prints of cells", SLOTS)?,
+            live: buffer("live cells", SLOTS + 1)?,
+            points: buffer("points of cells", SLOTS * POINTS * POINT_BYTES / 4)?,
+            contests: buffer("contests of cells", SLOTS * POINTS)?,
+            candidates: buffer(
+                "candidates of cells",
+                PATHS * PATH_POINTS * CANDIDATE_BYTES / 4,
+            )?,
+            sums: buffer("sums of cells", SLOTS * SUM_BYTES / 4)?,
+            cells: image("cells", Format::R32G32B32A32_UINT)?,
+            sky: image("sky irradiance of cells", Format::R16G16B16A16_SFLOAT)?,
+            bounce: image("bounced irradiance of cells", Format::R16G16B16A16_SFLOAT)?,
+            held: None,
+            round: 0,
+        })
+    }
+
+    /// Empties the table.
+    fn clear(&mut self, recorder: &mut Recorder) {
+        for buffer in [&self.prints, &self.live, &self.sums] {
+            recorder.fill(buffer, 0);
+        }
+        recorder.fill(&self.contests, u32::MAX);
+        for image in [&self.cells, &self.sky, &self.bounce] {
+            recorder.clear(image, [0.0; 4]);
+        }
+        self.round = 0;
+    }
+
+    /// Records rounds: creates cells in view and beyond, and adds a path to each. Light that has changed starts from the old one.
+    pub fn record(
+        &mut self,
+        recorder: &mut Recorder,
+        around: &Surroundings<'_>,
+        bounces: Bounces,
+        rounds: u32,
+    ) {
+        let held = Held {
+            daylight: around.daylight.clone(),
+            bounces,
+        };
+        if self.held.as_ref().is_none_or(|old| old.bounces != bounces) {
+            self.clear(recorder);
+            self.held = None;
+        }
+        for _ in 0..rounds {
+            let update = update_push(self.held.as_ref(), &held);
+            self.held = Some(held.clone());
+            self.seed(recorder, around);
+            self.update(recorder, around, &update);
+            self.publish(recorder);
+            self.round += 1;
+        }
+    }
+
+    /// The shader's block.
+    pub(in crate::passes) fn block(&self, view: &View, daylight: &Daylight) -> SceneBlock {
+        SceneBlock {
+            eye: view.camera.eye,
+            cell: self.cell,
+            near: self.cell * NEAR_CELLS,
+            sun_direction: daylight.sun_direction.as_vec3(),
+            sun_illuminance: kilo(daylight.sun_illuminance),
+            sun_tan_radius: SUN_ANGULAR_RADIUS.tan() as f32,
+            seed: self.seed,
+            frame: self.round,
+        }
+    }
+
+    /// Binds the published cells to a pass that looks them up.
+    pub(in crate::passes) fn bound_to<'r>(&'r self, pass: Pass<'r>) -> Pass<'r> {
+        pass.sample("cells", &self.cells, Sampler::Nearest)
+            .sample("cell_sky", &self.sky, Sampler::Nearest)
+            .sample("cell_bounce", &self.bounce, Sampler::Nearest)
+    }
+
+    fn seed(&self, recorder: &mut Recorder, around: &Surroundings<'_>) {
+        let view = around.view.whole();
+        let pass = recorder.pass("cells: seed", &self.claim);
+        around
+            .tree
+            .bound_to(pass)
+            .uniform("view", &view.block())
+            .uniform("scene", &self.block(&view, around.daylight))
+            .storage_mut("Prints", &self.prints)
+            .storage_mut("Live", &self.live)
+            .storage_mut("Places", &self.points)
+            .storage_mut("Contests", &self.contests)
+            .storage_mut("Candidates", &self.candidates)
+            .push(&SeedPush { paths: PATHS })
+            .dispatch_over([PATHS, 1, 1]);
+        let candidates = PATHS * PATH_POINTS;
+        recorder
+            .pass("cells: place", &self.place)
+            .storage_mut("Prints", &self.prints)
+            .storage_mut("Places", &self.points)
+            .storage_mut("Contests", &self.contests)
+            .storage_mut("Candidates", &self.candidates)
+            .push(&PlacePush { candidates })
+            .dispatch_over([candidates, 1, 1]);
+    }
+
+    fn update(&self, recorder: &mut Recorder, around: &Surroundings<'_>, push: &UpdatePush) {
+        let pass = recorder.pass("cells: update", &self.update);
+        let pass = around.tree.bound_to(pass);
+        self.bound_to(pass)
+            .uniform("scene", &self.block(around.view, around.daylight))
+            .sample("sky_radiance", around.sky_radiance, Sampler::Linear)
+            .storage_mut("Prints", &self.prints)
+            .storage_mut("Live", &self.live)
+            .storage_mut("Places", &self.points)
+            .storage_mut("Sums", &self.sums)
+            .push(push)
+            .dispatch_over([self.most_live(), 1, 1]);
+    }
+
+    fn publish(&self, recorder: &mut Recorder) {
+        recorder
+            .pass("cells: publish", &self.publish)
+            .storage_mut("Prints", &self.prints)
+            .storage_mut("Live", &self.live)
+            .storage_mut("Places", &self.points)
+            .storage_mut("Contests", &self.contests)
+            .storage_mut("Sums", &self.sums)
+            .store("cells", &self.cells)
+            .store("cell_sky", &self.sky)
+            .store("cell_bounce", &self.bounce)
+            .dispatch_over([self.most_live(), 1, 1]);
+    }
+
+    /// Largest possible number of live cells.
+    fn most_live(&self) -> u32 {
+        SLOTS.min((self.round + 1).saturating_mul(PATHS * PATH_POINTS))
+    }
+}
+
+/// The update that brings cells from the light that they hold to a new one.
+fn update_push(old: Option<&Held>, new: &Held) -> UpdatePush {
+    let (segments, ends_in_cell) = match new.bounces {
+        Bounces::All => (SEGMENTS, 1),
+        Bounces::UpTo(count) => (count, 0),
+    };
+    let change = old.filter(|old| old.daylight != new.daylight);
+    let factor = |of: fn(&Daylight) -> DVec3| {
+        change.map_or(Vec3::ONE, |old| ratio(of(&new.daylight), of(&old.daylight)))
+    };
+    UpdatePush {
+        segments,
+        ends_in_cell,
+        first: 0,
+        count: SLOTS,
+        most: if change.is_some() {
+            AFTER_CHANGE
+        } else {
+            f32::MAX
+        },
+        sky_change: factor(|day| day.sky_irradiance_up),
+        bounce_change: factor(|day| {
+            day.sky_irradiance_up + day.sun_illuminance * day.sun_direction.y.max(0.0)
+        }),
+    }
+}
+
+/// Quotient of two lights, component by component; 1 where the old one is black.
+fn ratio(new: DVec3, old: DVec3) -> Vec3 {
+    let quotient = |i: usize| if old[i] > 0.0 { new[i] / old[i] } else { 1.0 };
+    DVec3::new(quotient(0), quotient(1), quotient(2)).as_vec3()
+}

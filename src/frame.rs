@@ -1,5 +1,6 @@
 //! The frame owns the passes and records them in the order of the diagram on the first page of these docs.
 
+mod ambient;
 mod average;
 mod sample;
 mod settings;
@@ -18,7 +19,6 @@ use crate::passes::bounces::tree::Tree;
 use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{Light, Show};
 use crate::passes::light::probe::{Probe, Reading};
-use crate::passes::occlusion::height_map::HeightMap;
 use crate::passes::occlusion::ssao::Ssao;
 use crate::passes::picture::exposure::Exposure;
 use crate::passes::picture::tone_map::{ToneMap, ToneSettings};
@@ -29,6 +29,7 @@ use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::view::{View, Window};
 use crate::scene::{Camera, Scene};
 
+use self::ambient::{AmbientNeed, AmbientPasses};
 use self::average::{Average, Lit};
 use self::sample::Sample;
 
@@ -58,8 +59,7 @@ pub struct Frame {
     sky_cube: SkyCube,
     irradiance: Irradiance,
     gbuffer: Gbuffer,
-    height_map: HeightMap,
-    ssao: Ssao,
+    ambient: AmbientPasses,
     /// Shadow map and lighting of previews and of frames that the dome does not light.
     preview: Lit,
     background: Background,
@@ -107,7 +107,6 @@ impl Frame {
         // Pipeline creation is slow, so other threads do it while the scene is uploaded.
         thread::scope(|scope| {
             let sky_cube = scope.spawn(move || SkyCube::new(device, asked.sky_edge));
-            let ssao = scope.spawn(move || asked.ssao(device));
             let tone_map = scope.spawn(move || asked.tone_map(device));
             let exposure = scope.spawn(move || Exposure::new(device));
             let geometry = Geometry::new(recorder, scene)?;
@@ -116,7 +115,7 @@ impl Frame {
             let lighting = scope.spawn(move || settings.lighting(device));
             let background = scope.spawn(move || settings.background(device));
             Ok(Self {
-                height_map: HeightMap::new(device, &geometry)?,
+                ambient: AmbientPasses::new(device, &geometry, &tree, &settings)?,
                 gbuffer: settings.gbuffer(device, &geometry)?,
                 average: Average::new(device, &geometry, &tree, &settings)?,
                 cells: settings.cells(device, &tree, &geometry)?,
@@ -127,7 +126,6 @@ impl Frame {
                     lighting: joined(lighting)?,
                 },
                 sky_cube: joined(sky_cube)?,
-                ssao: joined(ssao)?,
                 background: joined(background)?,
                 exposure: joined(exposure)?,
                 tone_map: joined(tone_map)?,
@@ -175,7 +173,10 @@ impl Frame {
         let sky_edge = new.sky_edge;
         let sky_cube = remade(sky_edge != old.sky_edge, || SkyCube::new(device, sky_edge))?;
         let gbuffer = remade(is_new_gbuffer, || new.gbuffer(device, geometry))?;
-        let ssao = remade(is_resized || new.ssao != old.ssao, || new.ssao(device))?;
+        let is_new_ambient = is_resized || AmbientNeed::of(&new) != AmbientNeed::of(old);
+        let ambient = remade(is_new_ambient, || {
+            AmbientPasses::new(device, geometry, &self.tree, &new)
+        })?;
         let shadow = remade(is_new_shadow, || new.shadow(device, geometry))?;
         let lighting = remade(is_lit, || new.lighting(device))?;
         let background = remade(new.lighting != old.lighting, || new.background(device))?;
@@ -191,7 +192,7 @@ impl Frame {
         replace(&mut self.sky_cube, sky_cube);
         replace(&mut self.irradiance, irradiance);
         replace(&mut self.gbuffer, gbuffer);
-        replace(&mut self.ssao, ssao);
+        replace(&mut self.ambient, ambient);
         replace(&mut self.preview.shadow, shadow);
         replace(&mut self.preview.lighting, lighting);
         replace(&mut self.background, background);
@@ -233,16 +234,12 @@ impl Frame {
         let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
         let (sun_views, shadow_map) = shadow.record(rec, geometry);
         let surfaces = self.gbuffer.record(rec, geometry, &view);
-        let occlusion = match self.tiling.occlusion(index) {
-            Some(of_picture) => of_picture,
-            // Bound but not read.
-            None if resolve.is_dome() => self.ssao.image(),
-            None => {
-                let above = self.height_map.record(rec, geometry, settings.ssao.radius);
-                self.ssao.record(rec, surfaces, &view, above, sample.phase)
-            }
-        };
-        if let Some(cells) = self.cells.as_mut().filter(|_| resolve.gathers()) {
+        let is_dome = resolve.is_dome();
+        if let Some(cells) = self
+            .cells
+            .as_mut()
+            .filter(|_| resolve.gathers() || !is_dome)
+        {
             let around = Surroundings {
                 tree: &self.tree,
                 view: &view,
@@ -254,9 +251,25 @@ impl Frame {
             if is_new {
                 cells.restart();
             }
-            let rounds = rounds(index, is_new);
-            cells.record(rec, &around, settings.bounces.after_one(), rounds);
+            let bounces = settings.cell_bounces(is_dome);
+            cells.record(rec, &around, bounces, rounds(index, is_new));
         }
+        let ambient = match (&mut self.ambient, &self.cells) {
+            (AmbientPasses::Cells(pass), Some(cells)) if !is_dome => {
+                pass.record(rec, (&self.tree, cells), surfaces, daylight, &view)
+            }
+            (AmbientPasses::Screen(screen), _) if !is_dome => match self.tiling.occlusion(index) {
+                Some(of_picture) => of_picture,
+                None => {
+                    let above = screen.heights.record(rec, geometry, settings.ssao.radius);
+                    screen
+                        .ssao
+                        .record(rec, surfaces, &view, above, sample.phase)
+                }
+            },
+            // Bound but not read.
+            _ => &surfaces.normal_material,
+        };
         let light = Light {
             daylight,
             sun_direction: sample.sun_direction,
@@ -266,7 +279,7 @@ impl Frame {
             sky_radiance: sky.radiance,
         };
         let materials = geometry.materials();
-        let frame = lighting.record(rec, surfaces, materials, occlusion, &light, &view);
+        let frame = lighting.record(rec, surfaces, materials, ambient, &light, &view);
         self.background
             .record(rec, &surfaces.depth, &light, &view, frame);
         let scene = (geometry, &self.tree, self.cells.as_ref());
@@ -310,13 +323,17 @@ impl Frame {
         self.tiling.tile = Some(tile);
     }
 
-    /// Takes the ambient occlusion image of the newest frame. No frame may be in flight.
+    /// Takes the ambient occlusion image of the newest frame, if there is one. No frame may be in flight.
     ///
     /// # Errors
     /// Fails when the device is out of memory.
-    pub fn take_occlusion(&mut self) -> Result<Image> {
-        let next = self.settings.ssao(&self.context)?;
-        Ok(std::mem::replace(&mut self.ssao, next).into_image())
+    pub fn take_occlusion(&mut self) -> Result<Option<Image>> {
+        let AmbientPasses::Screen(screen) = &mut self.ambient else {
+            return Ok(None);
+        };
+        let size = self.settings.size.to_array();
+        let next = Ssao::new(&self.context, size, self.settings.ssao)?;
+        Ok(Some(std::mem::replace(&mut screen.ssao, next).into_image()))
     }
 
     /// Uses the ambient occlusion of the whole picture for tiles from now on, one image per sample.

@@ -31,7 +31,7 @@ pub use crate::frame::{Filter, Visibility};
 pub use crate::gpu::Optional;
 pub use crate::passes::bounces::cells::Bounces;
 pub use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
-pub use crate::passes::light::lighting::Show;
+pub use crate::passes::light::lighting::{Ambient, Show};
 pub use choices::{Choice, name};
 pub(crate) use choices::{choice, choice_enum, choices};
 pub use given::OptionValues;
@@ -156,8 +156,8 @@ options! {
             /// an estimate from the samples, for instance 0.01 (render only).
             #[arg(value_name = "R", value_parser = values::noise, allow_hyphen_values = true)]
             noise: Option<f64>,
-            /// What hides the sky: ambient occlusion of the screen, or shadow maps from directions of the sky, which converge to the
-            /// truth with the samples. From 16 samples on the default is dome.
+            /// What hides the sky: in single frames what --ambient says, or shadow maps from directions of the sky, which converge to
+            /// the truth with the samples. From 16 samples on the default is dome. Given as ssao, so is --ambient.
             #[arg(value_name = "HOW", value_parser = choice::<Visibility>(), default_value_t)]
             visibility: Visibility,
             /// Spread of the samples in a pixel.
@@ -240,6 +240,10 @@ options! {
             /// How often surfaces reflect light onto others: all, or a number; 0 is the light of sun and sky alone.
             #[arg(value_name = "N", value_parser = values::bounces, allow_hyphen_values = true, default_value_t)]
             bounces: Bounces,
+            /// Where single frames have the light of the sky and of other surfaces from.
+            #[arg(value_name = "SOURCE", value_parser = choice::<Ambient>(), default_value_t,
+                  default_value_if("visibility", name(Visibility::Ssao), name(Ambient::Ssao)))]
+            ambient: Ambient,
             /// Radius of ambient occlusion, metres; 0 turns it off.
             #[arg(value_name = "METRES", value_parser = values::ao_radius, allow_hyphen_values = true,
                   default_value_t = SsaoSettings::default().radius.into())]

@@ -54,7 +54,8 @@ void main() {
         vec3 ray = view_ray((vec2(pixel) + 0.5) / vec2(size), view.ray_scale, view.ray_offset);
         uvec3 own = texelFetch(normal_material, pixel, 0).xyz;
         float distance = view.near / d;
-        result = half_size_pack(gathered(pixel, ray, distance, own, normal_unpack(own.x)), distance, own.x);
+        Ambient light = Ambient(vec3(0.0), gathered(pixel, ray, distance, own, normal_unpack(own.x)));
+        result = half_size_pack(light, distance, own.x);
     }
     imageStore(bounced, ivec3(texel, 0), result);
 }

@@ -3,6 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "cell_flags.glsl"
 #include "cell_table.glsl"
+#include "shared_exponent.glsl"
 
 // Copies the live cells to the images that lookups read, and opens the contests for their points again.
 
@@ -15,8 +16,7 @@ CONTESTS;
 SUMS;
 
 layout(set = 0, binding = 8, rgba32ui) uniform writeonly uimage2DArray cells;
-layout(set = 0, binding = 9, rgba16f) uniform writeonly image2DArray cell_sky;
-layout(set = 0, binding = 10, rgba16f) uniform writeonly image2DArray cell_bounce;
+layout(set = 0, binding = 9, rgba32f) uniform writeonly image2DArray anchors;
 
 void main() {
     uint index = gl_GlobalInvocationID.x;
@@ -24,9 +24,7 @@ void main() {
     uint slot = live[index];
     ivec3 texel = ivec3(slot_texel(slot), 0);
     Sum sum = sums[slot];
-    imageStore(cells, texel, uvec4(prints[slot], floatBitsToUint(points[slot * POINTS].position)));
-    // The half floats of the images end at 65 504.
-    imageStore(cell_sky, texel, min(sum.sky, 65504.0));
-    imageStore(cell_bounce, texel, min(sum.bounce, 65504.0));
+    imageStore(cells, texel, uvec4(prints[slot], shared_exponent_pack(sum.sky.rgb), shared_exponent_pack(sum.bounce.rgb), uint(sum.sky.a)));
+    imageStore(anchors, texel, vec4(points[slot * POINTS].position, 0.0));
     for (uint i = 1u; i < POINTS; ++i) contests[slot * POINTS + i] = 0xffffffffu;
 }

@@ -108,7 +108,7 @@ void main() {
         if (SKY) gather(uv, d, own, reflected);
 #endif
         if (BOUNCES) {
-            vec3 bounce = half_size_at(bounced, ivec2(gl_FragCoord.xy), push.chosen, view.near / d, normal_unpack(own.x));
+            vec3 bounce = half_size_at(bounced, ivec2(gl_FragCoord.xy), push.chosen, view.near / d, normal_unpack(own.x)).bounce;
 #ifdef ILLUMINANCE
             illuminance.w += luminance(bounce);
 #endif

@@ -1,5 +1,6 @@
 // The surface that a ray hits, and the light of the sun there. Needs `scene` (see scene_light.glsl).
 #include "bvh.glsl"
+#include "shared_exponent.glsl"
 
 struct Surface {
     vec3 position;   // world, metres, lifted off the surface
@@ -21,18 +22,13 @@ vec3 albedo_unpack(uint word) {
     return vec3(word & 0x7ffu, (word >> 11) & 0x7ffu, word >> 22) / vec3(2047.0, 2047.0, 1023.0);
 }
 
-/// Radiance from three mantissas of 9 bits and their exponent (as in VK_FORMAT_E5B9G9R9_UFLOAT_PACK32), kcd/m^2.
-vec3 emission_unpack(uint word) {
-    return vec3(word & 0x1ffu, (word >> 9) & 0x1ffu, (word >> 18) & 0x1ffu) * exp2(float(word >> 27) - 24.0);
-}
-
 Surface surface_of(Hit hit, vec3 origin, vec3 toward) {
     uint albedo = triangle_texel(hit.triangle, 0u).w;
     uvec4 second = triangle_texel(hit.triangle, 1u);
     vec3 edge2 = uintBitsToFloat(triangle_texel(hit.triangle, 2u).xyz);
     vec3 face = normalize(cross(uintBitsToFloat(second.xyz), edge2));
     if (dot(face, toward) > 0.0) face = -face;
-    return Surface(lifted(origin + hit.distance * toward, face), face, albedo_unpack(albedo), emission_unpack(second.w));
+    return Surface(lifted(origin + hit.distance * toward, face), face, albedo_unpack(albedo), shared_exponent_unpack(second.w));
 }
 
 /// Irradiance of the sun at a point, klx, for a point xi in [0, 1)^2 of its disc.

@@ -6,6 +6,7 @@
 #include "materials.glsl"
 #include "occlusion.glsl"
 #include "octahedral.glsl"
+#include "half_size.glsl"
 #include "phong.glsl"
 #include "face.glsl"
 
@@ -40,13 +41,16 @@ layout(constant_id = 14) const bool ALBEDO_IMAGE = true;
 layout(constant_id = 15) const int CASCADES = 1;
 // Penumbrae of physical width, from the sun's angular radius.
 layout(constant_id = 16) const bool PCSS = false;
+// The light of the sky and of other surfaces is in the cells; otherwise it is A E_sky.
+layout(constant_id = 21) const bool CELLS = false;
+layout(constant_id = 22) const bool BOUNCES = true;
 // Energy-conserving specular lobe for both sun and sky.
 layout(constant_id = 17) const bool NORMALIZED = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform usampler2D normal_material;
 layout(set = 0, binding = 2) uniform sampler2D albedo;      // with ALBEDO_IMAGE; else any
-layout(set = 0, binding = 3) uniform usampler2D occlusion;
+layout(set = 0, binding = 3) uniform usampler2D ambient; // see occlusion.glsl; with CELLS, half_size.glsl
 layout(set = 0, binding = 4) uniform sampler2D shadow_map; // reversed: 1 is nearest the sun
 layout(set = 0, binding = 5) uniform samplerCube sky_irradiance; // E, klx
 layout(set = 0, binding = 6) uniform samplerCube sky_radiance;   // L, kcd/m^2, without the disc
@@ -93,9 +97,17 @@ void main() {
         if (PLANE_SHADOW) V = plane_visibility(world, n, view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale));
         else V = sun_visibility(world, n, n_dot_l);
     }
-    float A = AMBIENT ? ambient_occlusion(occlusion, OCCLUSION_DOWNSCALE, pixel + sun.occlusion_from, distance) : 0.0;
+    float A = 0.0;
+    Ambient light = Ambient(vec3(0.0), vec3(0.0));
+    if (AMBIENT && CELLS) {
+        light = half_size_at(ambient, pixel, ivec2(0), distance, n);
+        if (SHOW_OCCLUSION) A = luminance(light.sky) / max(luminance(textureLod(sky_irradiance, n, 0.0).rgb), 1e-9);
+    } else if (AMBIENT) {
+        A = ambient_occlusion(ambient, OCCLUSION_DOWNSCALE, pixel + sun.occlusion_from, distance);
+        light.sky = A * textureLod(sky_irradiance, n, 0.0).rgb;
+    }
     vec3 sun_irradiance = max(n_dot_l, 0.0) * V * sun.illuminance;
-    vec3 irradiance = AMBIENT ? A * textureLod(sky_irradiance, n, 0.0).rgb : vec3(0.0);
+    vec3 irradiance = light.sky + light.bounce;
 
     float illuminance = luminance(sun_irradiance + irradiance);
     if (SHOW_VISIBILITY) { radiance = vec4(vec3(V), illuminance); return; }
@@ -107,7 +119,8 @@ void main() {
 
     vec3 sum = vec3(0.0);
     if (SUN) sum += surface.rgb / PI * sun_irradiance;
-    if (SKY) sum += surface.rgb / PI * irradiance;
+    if (SKY) sum += surface.rgb / PI * light.sky;
+    if (BOUNCES) sum += surface.rgb / PI * light.bounce;
     if (SUN_SPECULAR || SKY_SPECULAR) {
         vec4 m = material_specular(materials, word);
         vec3 rho_s = m.rgb * (surface.a * sun.specular_scale);

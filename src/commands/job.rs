@@ -178,6 +178,7 @@ impl Job {
             set.sky_edge = LECTURE_SKY_EDGE;
         }
         set.lighting.precision = precision;
+        set.lighting.ambient = s.ambient;
         set.lighting.specular_scale = s.specular as f32;
         if s.limb_darkening {
             set.lighting.limb_darkening = LIMB_DARKENING as f32;

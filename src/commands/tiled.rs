@@ -22,7 +22,7 @@ use crate::frame::{Frame, FrameSettings, Visibility};
 use crate::gpu::{Context, Image, Pixels, Recorder, Timing, read_back};
 use crate::options::OptionsError;
 use crate::output::{Encoding, LayerKind, PngRows, write_exr_rows};
-use crate::passes::light::lighting::{Precision, Show};
+use crate::passes::light::lighting::{Ambient, Precision, Show};
 use crate::passes::picture::tone_map::Scale;
 
 /// Draws a job's image in tiles.
@@ -60,7 +60,9 @@ impl<'j> Tiled<'j> {
             let what = "--noise is judged on whole pictures, not in tiles; say how many --samples, or choose a smaller --size";
             return Err(OptionsError(what.to_owned()).into());
         }
-        let occludes = job.settings.visibility == Visibility::Ssao && job.settings.ao_radius > 0.0;
+        let occludes = job.settings.visibility == Visibility::Ssao
+            && job.settings.ambient == Ambient::Ssao
+            && job.settings.ao_radius > 0.0;
         let (size, coarser, window) = plan.overview(occludes);
         let settings = FrameSettings {
             size,
@@ -105,7 +107,7 @@ impl<'j> Tiled<'j> {
             for index in 0..self.job.settings.samples {
                 self.draw_sample(index)?;
                 if occludes && occlusion.len() < MAX_OCCLUSION_IMAGES {
-                    occlusion.push(self.frame.take_occlusion()?);
+                    occlusion.extend(self.frame.take_occlusion()?);
                 }
             }
         }

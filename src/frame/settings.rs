@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
+use super::ambient::AmbientNeed;
 use super::{Sampling, Visibility};
 use crate::daylight::exposure::KEY;
 use crate::daylight::tone_curve::{REINHARD_WHITE, ToneCurve};
@@ -12,8 +13,10 @@ use crate::passes::bounces::cells::{Bounces, Cells};
 use crate::passes::bounces::tree::Tree;
 use crate::passes::dome::specular::Mirrors;
 use crate::passes::light::background::Background;
-use crate::passes::light::lighting::{Lighting, LightingSettings, Precision, Shadows, Show};
-use crate::passes::occlusion::ssao::{Ssao, SsaoSettings};
+use crate::passes::light::lighting::{
+    Ambient, Lighting, LightingSettings, Precision, Shadows, Show,
+};
+use crate::passes::occlusion::ssao::SsaoSettings;
 use crate::passes::picture::tone_map::{Scale, ToneMap, ToneSettings};
 use crate::passes::sky::irradiance::IrradianceSettings;
 use crate::passes::sun_shadow::cascades;
@@ -62,6 +65,7 @@ impl Default for FrameSettings {
             lighting: LightingSettings {
                 show,
                 precision: Precision::Half,
+                ambient: Ambient::default(),
                 specular_scale: 1.0,
                 limb_darkening: 0.0,
                 has_albedo: true,
@@ -119,9 +123,19 @@ impl FrameSettings {
         }
     }
 
+    /// The bounces of the cells: one less where rays are the first one.
+    pub(super) fn cell_bounces(&self, is_gathered: bool) -> Bounces {
+        if is_gathered {
+            self.bounces.after_one()
+        } else {
+            self.bounces
+        }
+    }
+
     /// The seed of the cells; `None` if no light is looked up in them.
     pub(super) fn cells_need(&self) -> Option<u32> {
-        self.gathered().is_any().then_some(self.sampling.dome.seed)
+        let is_needed = self.gathered().is_any() || AmbientNeed::of(self) == AmbientNeed::Cells;
+        is_needed.then_some(self.sampling.dome.seed)
     }
 
     /// The cells, if any light is looked up in them.
@@ -150,11 +164,6 @@ impl FrameSettings {
     /// The G-buffer.
     pub(super) fn gbuffer(&self, context: &Arc<Context>, geometry: &Geometry) -> Result<Gbuffer> {
         Gbuffer::new(context, geometry, self.size.to_array(), self.converges())
-    }
-
-    /// Ambient occlusion.
-    pub(super) fn ssao(&self, context: &Arc<Context>) -> Result<Ssao> {
-        Ssao::new(context, self.size.to_array(), self.ssao)
     }
 
     /// Lighting of single frames.

@@ -5,7 +5,7 @@ use std::fmt;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::{
-    Filter, IrradianceMethod, Optional, Phong, Quantity, Reflections, Show, SkyModel,
+    Ambient, Filter, IrradianceMethod, Optional, Phong, Quantity, Reflections, Show, SkyModel,
     SunPositionMethod, ToneCurve, Visibility,
 };
 
@@ -83,6 +83,10 @@ macro_rules! choice_enum {
 pub(crate) use choice_enum;
 
 choices! {
+    Ambient {
+        Cells = "cells": "Cells of irradiance in the scene: the true visibility of the sky, and bounces",
+        Ssao = "ssao": "Screen-space ambient occlusion of the open sky, no bounces: the lecture's A",
+    }
     Filter {
         Box = "box": "Uniform over the pixel",
         BlackmanHarris = "blackman-harris": "By a Blackman-Harris window 3 pixels wide: smooth, little ringing of fine patterns",

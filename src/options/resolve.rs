@@ -15,7 +15,7 @@ use crate::scene::{
 const DOME_SAMPLES: u32 = 16;
 
 /// The values of `--preset lecture`: the defaults of the course.
-const LECTURE: [(&str, &str); 16] = [
+const LECTURE: [(&str, &str); 18] = [
     ("place", "45,0"),
     ("solar", "200,10"),
     ("sun-position", "lecture"),
@@ -30,6 +30,8 @@ const LECTURE: [(&str, &str); 16] = [
     ("irradiance", "monte-carlo"),
     ("irradiance-samples", "2000"),
     ("irradiance-error", "0"),
+    ("ambient", "ssao"),
+    ("bounces", "0"),
     ("ao-resolution", "half"),
     ("shadow-size", "4096"),
 ];

@@ -10,7 +10,7 @@ use skylight::daylight::tone_curve::ToneCurve;
 use skylight::frame::{Frame, FrameSettings};
 use skylight::gpu::{Context, ContextOptions, Image, Recorder, Timing, read_back};
 use skylight::passes::bounces::cells::Bounces;
-use skylight::passes::light::lighting::{Precision, Show};
+use skylight::passes::light::lighting::{Ambient, Precision, Show};
 use skylight::passes::occlusion::ssao::SsaoSettings;
 use skylight::passes::picture::tone_map::Scale;
 use skylight::scene::{Bounds, Camera, Material, Part, Scene};
@@ -206,6 +206,7 @@ pub fn settings(width: u32, height: u32) -> FrameSettings {
         ..FrameSettings::default()
     };
     set.lighting.precision = Precision::Float;
+    set.lighting.ambient = Ambient::Ssao;
     set.tone.curve = ToneCurve::Linear;
     set.tone.scale = Scale::Fixed(1e-4);
     set.tone.depth_scale = 10.0;

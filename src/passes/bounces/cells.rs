@@ -81,7 +81,7 @@ impl Bounces {
 
 gpu_struct! {
     /// The light of a moment and the grid of cells, see `include/scene_light.glsl`.
-    pub struct SceneBlock: scene of CELLS_SEED_COMP, CELLS_UPDATE_COMP, BOUNCES_GATHER_COMP {
+    pub struct SceneBlock: scene of CELLS_SEED_COMP, CELLS_UPDATE_COMP, BOUNCES_GATHER_COMP, CELLS_AMBIENT_COMP {
         eye: Vec3,
         cell: f32,
         near: f32,
@@ -142,8 +142,7 @@ pub struct Cells {
     candidates: Buffer,
     sums: Buffer,
     cells: Image,
-    sky: Image,
-    bounce: Image,
+    anchors: Image,
     held: Option<Held>,
     /// Rounds so far.
     round: u32,
@@ -203,8 +202,7 @@ impl Cells {
             )?,
             sums: buffer("sums of cells", SLOTS * SUM_BYTES / 4)?,
             cells: image("cells", Format::R32G32B32A32_UINT)?,
-            sky: image("sky irradiance of cells", Format::R16G16B16A16_SFLOAT)?,
-            bounce: image("bounced irradiance of cells", Format::R16G16B16A16_SFLOAT)?,
+            anchors: image("anchors of cells", Format::R32G32B32A32_SFLOAT)?,
             held: None,
             round: 0,
         })
@@ -221,7 +219,7 @@ impl Cells {
             recorder.fill(buffer, 0);
         }
         recorder.fill(&self.contests, u32::MAX);
-        for image in [&self.cells, &self.sky, &self.bounce] {
+        for image in [&self.cells, &self.anchors] {
             recorder.clear(image, [0.0; 4]);
         }
         self.round = 0;
@@ -267,16 +265,18 @@ impl Cells {
         }
     }
 
-    /// The published cells: their table, irradiance of the sky, irradiance of the bounces (klx), see `include/cells.glsl`.
-    pub fn images(&self) -> [&Image; 3] {
-        [&self.cells, &self.sky, &self.bounce]
+    /// The published cells, see `include/cells.glsl`.
+    pub fn image(&self) -> &Image {
+        &self.cells
     }
 
     /// Binds the published cells to a pass that looks them up.
     pub(in crate::passes) fn bound_to<'r>(&'r self, pass: Pass<'r>) -> Pass<'r> {
-        pass.sample("cells", &self.cells, Sampler::Nearest)
-            .sample("cell_sky", &self.sky, Sampler::Nearest)
-            .sample("cell_bounce", &self.bounce, Sampler::Nearest)
+        pass.sample("cells", &self.cells, Sampler::Nearest).sample(
+            "anchors",
+            &self.anchors,
+            Sampler::Nearest,
+        )
     }
 
     fn seed(&self, recorder: &mut Recorder, around: &Surroundings<'_>) {
@@ -328,8 +328,7 @@ impl Cells {
             .storage_mut("Contests", &self.contests)
             .storage_mut("Sums", &self.sums)
             .store("cells", &self.cells)
-            .store("cell_sky", &self.sky)
-            .store("cell_bounce", &self.bounce)
+            .store("anchors", &self.anchors)
             .dispatch_over([self.most_live(), 1, 1]);
     }
 

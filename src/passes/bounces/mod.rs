@@ -1,5 +1,6 @@
 //! Light that surfaces reflect onto each other: rays through the scene, and a cache of irradiance in cells of space.
 
+pub mod ambient;
 pub mod cells;
 pub mod gather;
 pub mod trace;

@@ -115,13 +115,14 @@ impl Show {
         }
     }
 
-    fn constants(self, specular: bool) -> [(&'static str, u32); 10] {
+    fn constants(self, specular: bool) -> [(&'static str, u32); 11] {
         let whole = matches!(self, Self::Beauty | Self::Luminance);
         let on = |shown: Self| u32::from(self == shown);
         let addend = |shown: Self| u32::from(whole || self == shown);
         [
             ("SUN", addend(Self::Sun)),
             ("SKY", addend(Self::Sky)),
+            ("BOUNCES", addend(Self::Bounces)),
             (
                 "SUN_SPECULAR",
                 u32::from(specular) & addend(Self::SunSpecular),
@@ -166,6 +167,16 @@ impl Precision {
     }
 }
 
+/// Where single frames have the light of the sky and of other surfaces from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Ambient {
+    /// Cells of irradiance in world space: the true visibility of the sky, and bounces.
+    #[default]
+    Cells,
+    /// Screen-space ambient occlusion of the unoccluded sky, without bounces: the lecture's A.
+    Ssao,
+}
+
 /// Settings of the lighting.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LightingSettings {
@@ -177,6 +188,8 @@ pub struct LightingSettings {
     pub specular_scale: f32,
     /// Limb darkening of the sun's disc, u of I = I₀ (1 − u (1 − cos θ)); 0: a uniform disc.
     pub limb_darkening: f32,
+    /// Source of the light of the sky and of other surfaces in single frames.
+    pub ambient: Ambient,
     /// Pixels per texel of A, along each axis: [`crate::passes::occlusion::ssao::SsaoSettings::pixels_per_texel`].
     pub occlusion_downscale: u32,
     /// Whether ρ_d is stored per pixel. Set by [`crate::frame::Frame`]; false for scenes without maps.
@@ -256,6 +269,7 @@ impl Lighting {
         constants.push(("FRESNEL", settings.fresnel.into()));
         constants.push(("ALBEDO_IMAGE", settings.has_albedo.into()));
         constants.push(("AMBIENT", (!is_converging).into()));
+        constants.push(("CELLS", (settings.ambient == Ambient::Cells).into()));
         constants.push(("PLANE_SHADOW", is_converging.into()));
         constants.push(("CASCADES", settings.shadows.cascades.max(1)));
         constants.push(("PCSS", settings.shadows.penumbrae.into()));
@@ -286,14 +300,14 @@ impl Lighting {
         recorder: &mut Recorder,
         surfaces: &Surfaces,
         materials: &Image,
-        occlusion: &Image,
+        ambient: &Image,
         light: &Light<'_>,
         view: &View,
     ) -> &Image {
         let pass = recorder.pass("lighting", &self.pipeline);
         surfaces
             .sampled_by(pass, materials)
-            .sample("occlusion", occlusion, Sampler::Nearest)
+            .sample("ambient", ambient, Sampler::Nearest)
             .sample("shadow_map", light.shadow_map, Sampler::Nearest)
             .sample("sky_irradiance", light.sky_irradiance, Sampler::Linear)
             .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
@@ -334,7 +348,7 @@ mod tests {
     #[test]
     fn each_addend_is_in_the_picture_once() {
         let beauty = Show::Beauty.constants(true);
-        for (i, addend) in Show::ADDENDS.iter().take(4).enumerate() {
+        for (i, addend) in Show::ADDENDS.iter().take(5).enumerate() {
             let constants = addend.constants(true);
             assert_eq!(beauty[i].1, 1);
             assert_eq!(constants[i].1, 1, "{addend:?}");

@@ -4,11 +4,16 @@
 //! depth-first with skip links, so that occlusion rays need no stack (Smits 1998, "Efficiency issues for ray tracing"). Triangle
 //! intersection: Möller and Trumbore 1997. All in `f32`.
 
+mod stored;
+
 use std::thread;
 
+use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use crate::scene::{Bounds, Scene};
+
+pub use stored::FlatBvh;
 
 /// Most triangles of a leaf.
 const LEAF_TRIANGLES: usize = 4;
@@ -26,7 +31,8 @@ const PARALLEL_TRIANGLES: usize = 1 << 14;
 const MAX_DEPTH: usize = 48;
 
 /// A node.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub struct Node {
     /// Lower corner of its box, metres.
     pub min: Vec3,

@@ -1,7 +1,7 @@
 //! A hierarchy as the cache stores it: nodes, and the numbers of the triangles in the order of the leaves. The triangles themselves
 //! follow from the scene.
 
-use super::{Bvh, MAX_DEPTH, Node, triangle};
+use super::{Bvh, LEAF_TRIANGLES, MAX_DEPTH, Node, triangle};
 use crate::scene::Scene;
 
 /// A hierarchy as arrays of plain numbers.
@@ -74,7 +74,9 @@ fn is_tree(nodes: &[Node], triangles: usize) -> bool {
             });
             continue;
         }
-        if node.first_triangle as usize != count || skip != at + 1 {
+        // Only the depth makes a leaf larger.
+        let is_large = node.triangle_count as usize > LEAF_TRIANGLES && open.len() < MAX_DEPTH;
+        if is_large || node.first_triangle as usize != count || skip != at + 1 {
             return false;
         }
         count += node.triangle_count as usize;
@@ -162,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tree_deeper_than_the_stack_is_refused() {
+    fn a_tree_deeper_than_the_stack_or_with_large_leaves_is_refused() {
         // Each inner node has a leaf and the next inner node.
         let chain = |depth: u32| {
             let leaf = |at: u32, first: u32| Node {
@@ -182,6 +184,9 @@ mod tests {
             nodes
         };
         assert!(is_tree(&chain(MAX_DEPTH as u32), MAX_DEPTH + 1));
+        let mut large = chain(1);
+        large[2].triangle_count = LEAF_TRIANGLES as u32 + 1;
+        assert!(!is_tree(&large, LEAF_TRIANGLES + 2));
         assert!(!is_tree(&chain(MAX_DEPTH as u32 + 1), MAX_DEPTH + 2));
     }
 }

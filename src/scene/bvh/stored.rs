@@ -38,11 +38,11 @@ impl Bvh {
 /// Whether each number below `count` occurs once.
 fn is_permutation(order: &[u32], count: usize) -> bool {
     let mut seen = vec![false; count];
-    let mut is_new = |n: &u32| {
+    let is_new = |n: &u32| {
         let place = seen.get_mut(*n as usize);
         place.is_some_and(|seen| !std::mem::replace(seen, true))
     };
-    order.len() == count && order.iter().all(|n| is_new(n))
+    order.len() == count && order.iter().all(is_new)
 }
 
 /// An inner node whose subtree has not ended yet.

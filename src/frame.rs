@@ -33,7 +33,19 @@ use self::average::{Average, Lit};
 use self::sample::Sample;
 
 /// Rounds of the cells before the first frame of an average.
-const FIRST_ROUNDS: u32 = 32;
+const FIRST_ROUNDS: u32 = 16;
+
+/// Frames of an average after which a round follows.
+const FRAMES_OF_ROUND: u32 = 4;
+
+/// Rounds of the cells in frame number `index` of an average. `is_new`: the cells are empty.
+fn rounds(index: Option<u32>, is_new: bool) -> u32 {
+    match index {
+        _ if is_new => FIRST_ROUNDS,
+        Some(index) => u32::from(index % FRAMES_OF_ROUND == 0),
+        None => 1,
+    }
+}
 
 /// A scene and the passes that draw it.
 pub struct Frame {
@@ -237,7 +249,12 @@ impl Frame {
                 daylight,
                 sky_radiance: sky.radiance,
             };
-            let rounds = if index == Some(0) { FIRST_ROUNDS } else { 1 };
+            // The same seed gives the same picture, so an average that does not follow a preview starts with new cells.
+            let is_new = index == Some(0) && self.drawn.is_none_or(|drawn| drawn.index.is_some());
+            if is_new {
+                cells.restart();
+            }
+            let rounds = rounds(index, is_new);
             cells.record(rec, &around, settings.bounces.after_one(), rounds);
         }
         let light = Light {
@@ -386,6 +403,11 @@ impl Frame {
     /// The sky cube.
     pub fn sky_cube(&self) -> &SkyCube {
         &self.sky_cube
+    }
+
+    /// The cells, if any light is looked up in them.
+    pub fn cells(&self) -> Option<&Cells> {
+        self.cells.as_ref()
     }
 
     /// The irradiance cube.

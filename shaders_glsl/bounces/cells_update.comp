@@ -41,10 +41,10 @@ vec3 path_light(Surface surface, inout uint state) {
         Cached here = cached(surface.position, surface.normal);
         light += throughput * (sun + here.sky);
         bool is_last = segment == push.segments;
-        // Russian roulette between the cell and another segment: dark surfaces add little.
+        // Russian roulette between the cell and another segment: bounces between dark surfaces converge at once.
         if (push.ends_in_cell != 0u && here.is_found) {
             float reflected = max(surface.albedo.r, max(surface.albedo.g, surface.albedo.b));
-            if (is_last || rnd(state) >= reflected) return light + throughput * here.bounce;
+            if (is_last || rnd(state) >= reflected * reflected) return light + throughput * here.bounce;
         }
         if (is_last) break;
         vec3 toward = cosine_direction(surface.normal, vec2(rnd(state), rnd(state)));

@@ -6,6 +6,7 @@
 #include "dome.glsl"
 #include "materials.glsl"
 #include "octahedral.glsl"
+#include "half_size.glsl"
 
 // Sky light by shadow maps from sampled directions: E = 1/n sum V (n.w) L/p, and the same without V. Both are averaged over
 // the frames, as is all other light; their quotient is the light-weighted A.
@@ -44,11 +45,12 @@ layout(set = 0, binding = 5) uniform sampler2D previous_rest;
 layout(set = 0, binding = 7) uniform samplerCube sky_irradiance; // E of sky and ground, klx
 layout(set = 0, binding = 8, scalar) uniform View { VIEW_BLOCK } view;
 layout(set = 0, binding = 10) uniform sampler2D materials; // see materials.glsl
-layout(set = 0, binding = 12) uniform sampler2D bounced;    // with BOUNCES: irradiance from other surfaces, klx; else any
+layout(set = 0, binding = 12) uniform usampler2D bounced; // with BOUNCES: irradiance from other surfaces, see half_size.glsl; else any
 
 layout(push_constant, scalar) uniform Push {
     vec3 ground; // radiance below the horizon, kcd/m^2
     float share; // of this frame in the means, 0..1
+    ivec2 chosen; // pixel of each square of two by two that has a texel of `bounced`
 } push;
 
 /// The light of this frame's directions on a face; rgb: with V; a: its luminance without V. Without V the ground's part has a
@@ -102,11 +104,16 @@ void main() {
 #ifdef ILLUMINANCE
         illuminance = vec4(0.0, 0.0, 0.0, lit.a);
         gather(uv, d, own, reflected);
-        if (BOUNCES) illuminance.w += luminance(textureLod(bounced, uv, 0.0).rgb);
 #else
         if (SKY) gather(uv, d, own, reflected);
 #endif
-        if (SHOW_BOUNCES) rest.rgb += reflected * textureLod(bounced, uv, 0.0).rgb;
+        if (BOUNCES) {
+            vec3 bounce = half_size_at(bounced, ivec2(gl_FragCoord.xy), push.chosen, view.near / d, normal_unpack(own.x));
+#ifdef ILLUMINANCE
+            illuminance.w += luminance(bounce);
+#endif
+            if (SHOW_BOUNCES) rest.rgb += reflected * bounce;
+        }
     }
 #ifdef ILLUMINANCE
     else illuminance = vec4(0.0, 0.0, 0.0, lit.a);

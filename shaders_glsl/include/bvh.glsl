@@ -1,11 +1,14 @@
-// Rays through the scene: a bounding volume hierarchy in two images of 32-bit words, read texel by texel. `scene::bvh` is the CPU
-// counterpart and builds it; both give the same hits. On a software device fetches from images cost half of those from buffers.
+// Rays through the scene: a bounding volume hierarchy in two images of 32-bit words, read texel by texel. On a software device
+// fetches from images cost half of those from buffers, so nodes are wide and small. `passes/bounces/tree.rs` makes the images from
+// `scene::bvh`, whose rays hit the same triangles on the CPU.
 //
-// A node is two texels: lower corner, first triangle of a leaf; upper corner, the node after its subtree. The first child of an
-// inner node is the next node, the second child the one after the first child's subtree; the node after a leaf is the next one.
-// A triangle is three texels: corner, reflectance; first edge, emission; second edge, flags. See `passes/bounces/tree.rs`.
-
+// A node is three texels with the boxes of up to four children, in steps of a grid of its own: origin of the grid, exponents of its
+// steps and numbers of triangles of the children; lower and upper corners of the children, four bytes a word; first child, first
+// triangle. A child without triangles is a node; those and the triangles follow each other in the order of the children. The box of
+// a child that does not exist is inside out.
+// A triangle is three texels: corner, reflectance; first edge, emission; second edge, opacity.
 #include "random.glsl"
+#include "texel.glsl"
 
 layout(set = 0, binding = 20) uniform usampler2D bvh_nodes;
 layout(set = 0, binding = 21) uniform usampler2D bvh_triangles;
@@ -13,50 +16,86 @@ layout(set = 0, binding = 21) uniform usampler2D bvh_triangles;
 // Nodes and triangles in a row of their images, set by every pipeline that traces rays.
 layout(constant_id = 31) const uint NODE_COLUMNS = 1u;
 layout(constant_id = 32) const uint TRIANGLE_COLUMNS = 1u;
-// Most nodes that a ray visits: the number of nodes, so that no loop is endless.
-layout(constant_id = 33) const uint NODE_COUNT = 1u;
+// Most steps of a ray: nodes and leaves, so that no loop is endless.
+layout(constant_id = 33) const uint MOST_STEPS = 1u;
 
-// Flags of a triangle: opacity times 255, whether it is the last one of its leaf.
+// Opacity times 255.
 const uint OPACITY = 0xffu;
-const uint LAST = 0x100u;
-// Depth of the tree, as in `scene::bvh`.
-const int STACK = 48;
-// Covers the rounding errors of the slab test (Ize 2013, "Robust BVH Ray Traversal").
-const float ROUNDING = 1.0 + 4.0 * 1.1920929e-7;
+// Most children that wait, as `tree.rs` checks.
+const int STACK = 64;
 const float FAR = 1e30;
+// Smallest magnitude of a component of a direction: its inverse must be finite.
+const float TINY = 1e-20;
 
 struct Hit {
-    float distance; // FAR: nothing was hit
-    uint triangle;  // position in the image
+    float distance;    // FAR: nothing was hit
+    uint triangle;     // position in the image
     vec2 barycentrics; // weights of the second and third corner
 };
 
-ivec2 node_texel(uint node) {
-    return ivec2(2u * (node % NODE_COLUMNS), node / NODE_COLUMNS);
+/// The texels of a node and of a triangle.
+
+uvec4 node_texel(uint node, uint i) {
+    return texel_at(bvh_nodes, vec2(3u * (node % NODE_COLUMNS) + i, node / NODE_COLUMNS));
 }
 
-ivec2 triangle_texel(uint triangle) {
-    return ivec2(3u * (triangle % TRIANGLE_COLUMNS), triangle / TRIANGLE_COLUMNS);
+uvec4 triangle_texel(uint triangle, uint i) {
+    return texel_at(bvh_triangles, vec2(3u * (triangle % TRIANGLE_COLUMNS) + i, triangle / TRIANGLE_COLUMNS));
 }
 
-struct Node {
-    uvec4 lower;
-    uvec4 upper;
-};
-
-Node node_at(uint node) {
-    ivec2 at = node_texel(node);
-    return Node(texelFetch(bvh_nodes, at, 0), texelFetch(bvh_nodes, at + ivec2(1, 0), 0));
+vec3 inverse_of(vec3 toward) {
+    vec3 size = max(abs(toward), TINY);
+    return vec3(toward.x < 0.0 ? -1.0 : 1.0, toward.y < 0.0 ? -1.0 : 1.0, toward.z < 0.0 ? -1.0 : 1.0) / size;
 }
 
-/// Where a ray enters a node's box; FAR if it does not before `far`.
-float node_entry(Node node, vec3 origin, vec3 inverse, float far) {
-    vec3 a = (uintBitsToFloat(node.lower.xyz) - origin) * inverse;
-    vec3 b = (uintBitsToFloat(node.upper.xyz) - origin) * inverse;
-    vec3 low = min(a, b), high = max(a, b);
-    float enter = max(max(low.x, low.y), max(low.z, 0.0));
-    float leave = min(min(high.x, high.y), min(high.z, far));
-    return enter <= leave * ROUNDING ? enter : FAR;
+vec4 bytes(uint word) {
+    return vec4(word & 0xffu, (word >> 8) & 0xffu, (word >> 16) & 0xffu, word >> 24);
+}
+
+float power_of_two(uint exponent) {
+    return uintBitsToFloat((exponent & 0xffu) << 23);
+}
+
+// A child as a word: number of its triangles, 0 to 3, in the two highest bits; node or first triangle.
+const uint KIND = 30u;
+const uint NUMBER = (1u << KIND) - 1u;
+
+/// Where a ray enters the boxes of a node's children; FAR for those that it misses before `far`.
+vec4 children_of(uint node, vec3 origin, vec3 inverse, float far, out uvec4 children) {
+    uvec4 a = node_texel(node, 0u), b = node_texel(node, 1u), c = node_texel(node, 2u);
+    vec3 steps = vec3(power_of_two(a.w), power_of_two(a.w >> 8), power_of_two(a.w >> 16)) * inverse;
+    vec3 start = (uintBitsToFloat(a.xyz) - origin) * inverse;
+    uvec3 low = b.xyz, high = uvec3(b.w, c.xy);
+    bvec3 is_reversed = lessThan(inverse, vec3(0.0));
+    uvec3 near = mix(low, high, is_reversed), away = mix(high, low, is_reversed);
+    vec4 enter = max(max(bytes(near.x) * steps.x + start.x, bytes(near.y) * steps.y + start.y), max(bytes(near.z) * steps.z + start.z, 0.0));
+    vec4 leave = min(min(bytes(away.x) * steps.x + start.x, bytes(away.y) * steps.y + start.y), min(bytes(away.z) * steps.z + start.z, far));
+    uvec4 counts = (uvec4(a.w >> 24) >> uvec4(0u, 2u, 4u, 6u)) & 3u;
+    uvec4 nodes = uvec4(equal(counts, uvec4(0u)));
+    uvec4 before_nodes = uvec4(0u, nodes.x, nodes.x + nodes.y, nodes.x + nodes.y + nodes.z);
+    uvec4 before = uvec4(0u, counts.x, counts.x + counts.y, counts.x + counts.y + counts.z);
+    children = (counts << KIND) | mix(c.w + before, c.z + before_nodes, equal(counts, uvec4(0u)));
+    return mix(vec4(FAR), enter, lessThanEqual(enter, leave));
+}
+
+/// Puts the nearer of two children first.
+void order(inout float entry_a, inout float entry_b, inout uint a, inout uint b) {
+    bool swaps = entry_b < entry_a;
+    float entry = swaps ? entry_b : entry_a;
+    uint child = swaps ? b : a;
+    entry_b = swaps ? entry_a : entry_b;
+    b = swaps ? a : b;
+    entry_a = entry;
+    a = child;
+}
+
+/// Sorts children, the nearest first.
+void order_all(inout vec4 e, inout uvec4 c) {
+    order(e.x, e.y, c.x, c.y);
+    order(e.z, e.w, c.z, c.w);
+    order(e.x, e.z, c.x, c.z);
+    order(e.y, e.w, c.y, c.w);
+    order(e.y, e.z, c.y, c.z);
 }
 
 /// Whether a hit is on a surface and not in a hole of a cut-out: by chance, in proportion to the triangle's opacity.
@@ -66,13 +105,11 @@ bool is_solid(uint opacity, uint triangle, vec2 barycentrics) {
 }
 
 /// Intersects a triangle from both sides (Moller and Trumbore 1997); distance FAR if it is missed before `far`.
-Hit triangle_hit(uint triangle, vec3 origin, vec3 toward, float far, out bool is_last) {
-    ivec2 at = triangle_texel(triangle);
-    vec3 corner = uintBitsToFloat(texelFetch(bvh_triangles, at, 0).xyz);
-    vec3 edge1 = uintBitsToFloat(texelFetch(bvh_triangles, at + ivec2(1, 0), 0).xyz);
-    uvec4 third = texelFetch(bvh_triangles, at + ivec2(2, 0), 0);
+Hit triangle_hit(uint triangle, vec3 origin, vec3 toward, float far) {
+    vec3 corner = uintBitsToFloat(triangle_texel(triangle, 0u).xyz);
+    vec3 edge1 = uintBitsToFloat(triangle_texel(triangle, 1u).xyz);
+    uvec4 third = triangle_texel(triangle, 2u);
     vec3 edge2 = uintBitsToFloat(third.xyz);
-    is_last = (third.w & LAST) != 0u;
     vec3 p = cross(toward, edge2);
     float inverse = 1.0 / dot(edge1, p);
     vec3 s = origin - corner;
@@ -89,42 +126,33 @@ Hit triangle_hit(uint triangle, vec3 origin, vec3 toward, float far, out bool is
 
 /// The nearest hit from `origin` along `toward`, before the distance `far`.
 Hit closest(vec3 origin, vec3 toward, float far) {
-    vec3 inverse = 1.0 / toward;
+    vec3 inverse = inverse_of(toward);
     Hit best = Hit(far, 0u, vec2(0.0));
-    uint stack[STACK];
+    uint waiting[STACK];
+    float entries[STACK];
     int depth = 0;
-    uint at = 0u;
-    Node node = node_at(at);
-    bool is_entered = node_entry(node, origin, inverse, far) != FAR;
-    for (uint visited = 0u; is_entered && visited < NODE_COUNT; ++visited) {
-        if (node.upper.w == at + 1u) {
-            bool is_last = false;
-            for (uint triangle = node.lower.w; !is_last; ++triangle) {
-                Hit hit = triangle_hit(triangle, origin, toward, best.distance, is_last);
-                if (hit.distance < best.distance) best = hit;
+    uint child = 0u;
+    for (uint i = 0u; i < MOST_STEPS; ++i) {
+        uint count = child >> KIND, first = child & NUMBER;
+        if (count == 0u) {
+            uvec4 c;
+            vec4 e = children_of(first, origin, inverse, best.distance, c);
+            order_all(e, c);
+            if (e.w < FAR) { waiting[depth] = c.w; entries[depth++] = e.w; }
+            if (e.z < FAR) { waiting[depth] = c.z; entries[depth++] = e.z; }
+            if (e.y < FAR) { waiting[depth] = c.y; entries[depth++] = e.y; }
+            if (e.x < FAR) {
+                child = c.x;
+                continue;
             }
-            if (depth == 0) break;
-            at = stack[--depth];
-            node = node_at(at);
-            continue;
         }
-        // The nearer child is next, the farther one waits.
-        uint first = at + 1u;
-        Node left = node_at(first);
-        uint second = left.upper.w;
-        Node right = node_at(second);
-        float near_left = node_entry(left, origin, inverse, best.distance);
-        float near_right = node_entry(right, origin, inverse, best.distance);
-        bool is_left = near_left <= near_right;
-        if (min(near_left, near_right) == FAR) {
-            if (depth == 0) break;
-            at = stack[--depth];
-            node = node_at(at);
-            continue;
+        for (uint k = 0u; k < count; ++k) {
+            Hit hit = triangle_hit(first + k, origin, toward, best.distance);
+            if (hit.distance < best.distance) best = hit;
         }
-        if (max(near_left, near_right) != FAR) stack[depth++] = is_left ? second : first;
-        at = is_left ? first : second;
-        if (is_left) node = left; else node = right;
+        while (depth > 0 && entries[depth - 1] >= best.distance) --depth;
+        if (depth == 0) break;
+        child = waiting[--depth];
     }
     if (best.distance >= far) best.distance = FAR;
     return best;
@@ -132,21 +160,29 @@ Hit closest(vec3 origin, vec3 toward, float far) {
 
 /// Whether anything is hit from `origin` along `toward`, before the distance `far`.
 bool any_hit(vec3 origin, vec3 toward, float far) {
-    vec3 inverse = 1.0 / toward;
-    uint at = 0u;
-    for (uint visited = 0u; visited < NODE_COUNT && at < NODE_COUNT; ++visited) {
-        Node node = node_at(at);
-        bool is_leaf = node.upper.w == at + 1u;
-        if (node_entry(node, origin, inverse, far) == FAR) {
-            at = node.upper.w;
-            continue;
+    vec3 inverse = inverse_of(toward);
+    uint waiting[STACK];
+    int depth = 0;
+    uint child = 0u;
+    for (uint i = 0u; i < MOST_STEPS; ++i) {
+        uint count = child >> KIND, first = child & NUMBER;
+        if (count == 0u) {
+            uvec4 c;
+            vec4 e = children_of(first, origin, inverse, far, c);
+            order_all(e, c);
+            if (e.w < FAR) waiting[depth++] = c.w;
+            if (e.z < FAR) waiting[depth++] = c.z;
+            if (e.y < FAR) waiting[depth++] = c.y;
+            if (e.x < FAR) {
+                child = c.x;
+                continue;
+            }
         }
-        ++at;
-        if (!is_leaf) continue;
-        bool is_last = false;
-        for (uint triangle = node.lower.w; !is_last; ++triangle) {
-            if (triangle_hit(triangle, origin, toward, far, is_last).distance < far) return true;
+        for (uint k = 0u; k < count; ++k) {
+            if (triangle_hit(first + k, origin, toward, far).distance < far) return true;
         }
+        if (depth == 0) return false;
+        child = waiting[--depth];
     }
     return false;
 }

@@ -9,7 +9,7 @@ layout(set = 0, binding = 25) uniform sampler2D cell_bounce; // rgb: irradiance 
 /// The published slot of a cell, or NONE. `texel` receives its texel of `cells`.
 uint find_cell(Key key, out uvec4 texel) {
     for (uint i = 0u; i < BUCKET; ++i) {
-        texel = texelFetch(cells, slot_texel(key.bucket + i), 0);
+        texel = texel_at(cells, vec2(slot_texel(key.bucket + i)));
         if ((texel.x & ~FLAGS) == key.print) return key.bucket + i;
     }
     return NONE;
@@ -31,9 +31,9 @@ Cached cached_at(vec3 p, vec3 n, int level) {
         uint slot = find_cell(cell_key(at, side, level, sibling), texel);
         if (slot == NONE) break;
         if ((texel.x & MIXED) != 0u && !is_seen(uintBitsToFloat(texel.yzw), p, n, edge)) continue;
-        vec4 sky = texelFetch(cell_sky, slot_texel(slot), 0);
+        vec4 sky = texel_at(cell_sky, vec2(slot_texel(slot)));
         if (sky.a == 0.0) break;
-        return Cached(sky.rgb, texelFetch(cell_bounce, slot_texel(slot), 0).rgb, true);
+        return Cached(sky.rgb, texel_at(cell_bounce, vec2(slot_texel(slot))).rgb, true);
     }
     return Cached(vec3(0.0), vec3(0.0), false);
 }

@@ -27,10 +27,9 @@ vec3 emission_unpack(uint word) {
 }
 
 Surface surface_of(Hit hit, vec3 origin, vec3 toward) {
-    ivec2 at = triangle_texel(hit.triangle);
-    uint albedo = texelFetch(bvh_triangles, at, 0).w;
-    uvec4 second = texelFetch(bvh_triangles, at + ivec2(1, 0), 0);
-    vec3 edge2 = uintBitsToFloat(texelFetch(bvh_triangles, at + ivec2(2, 0), 0).xyz);
+    uint albedo = triangle_texel(hit.triangle, 0u).w;
+    uvec4 second = triangle_texel(hit.triangle, 1u);
+    vec3 edge2 = uintBitsToFloat(triangle_texel(hit.triangle, 2u).xyz);
     vec3 face = normalize(cross(uintBitsToFloat(second.xyz), edge2));
     if (dot(face, toward) > 0.0) face = -face;
     return Surface(lifted(origin + hit.distance * toward, face), face, albedo_unpack(albedo), emission_unpack(second.w));

@@ -6,7 +6,7 @@
 // Variant: DETAILED
 // Variant: DETAILED ALBEDO
 #include "gbuffer.glsl"
-#include "face.glsl"
+#include "face_of_fragment.glsl"
 #include "materials.glsl"
 #include "octahedral.glsl"
 

@@ -115,7 +115,7 @@ impl Average {
                 } = &mut **converging;
                 let from = (preview.lighting.image(), std::mem::take(is_previewed));
                 let fade = fade.as_mut().map(|fade| (fade, from));
-                let gather = gather.as_ref();
+                let gather = gather.as_mut();
                 (
                     lit,
                     Resolve::Dome {
@@ -153,7 +153,7 @@ pub(super) enum Resolve<'a> {
     Mean(&'a mut Accumulate, u32),
     /// The frame is added to the means of the dome; the picture cross-fades from a preview.
     Dome {
-        gather: Option<&'a Gather>,
+        gather: Option<&'a mut Gather>,
         dome: &'a mut Dome,
         /// The cross-fade, the preview, and whether the previous frame was a preview.
         fade: Option<(&'a mut Fade, (&'a Image, bool))>,

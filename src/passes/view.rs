@@ -8,7 +8,7 @@ use crate::scene::Camera;
 gpu_struct! {
     /// `VIEW_BLOCK` of `include/view.glsl`.
     pub struct ViewBlock: view of
-        SSAO_FRAG, LIGHTING_FRAG, BACKGROUND_FRAG, DOME_GATHER_FRAG, DOME_SPECULAR_FRAG, CELLS_SEED_COMP, BOUNCES_GATHER_FRAG
+        SSAO_FRAG, LIGHTING_FRAG, BACKGROUND_FRAG, DOME_GATHER_FRAG, DOME_SPECULAR_FRAG, CELLS_SEED_COMP, BOUNCES_GATHER_COMP
     {
         world_from_view: Mat3,
         eye: Vec3,

@@ -16,7 +16,7 @@ use crate::scene::{Bounds, Scene};
 pub use stored::FlatBvh;
 
 /// Most triangles of a leaf.
-const LEAF_TRIANGLES: usize = 4;
+pub const LEAF_TRIANGLES: usize = 3;
 
 /// Bins of centroids along each axis; a node is split at one of their borders.
 const BINS: usize = 16;
@@ -27,8 +27,8 @@ const NODE_COST: f32 = 1.0;
 /// Subtrees with more triangles are built on a thread of their own.
 const PARALLEL_TRIANGLES: usize = 1 << 14;
 
-/// Largest depth of the tree. Deeper subtrees become leaves with more triangles.
-const MAX_DEPTH: usize = 48;
+/// Largest depth of the tree: where the heuristic would exceed it, nodes are halved instead.
+const MAX_DEPTH: usize = 40;
 
 /// Covers the rounding errors of the slab test, so that triangles in a side of a box are not missed (Ize 2013, "Robust BVH ray
 /// traversal").
@@ -272,9 +272,12 @@ fn build(triangles: &mut [Triangle], first: u32, depth: usize) -> Vec<Node> {
     let bounds = triangles
         .iter()
         .fold(Bounds::EMPTY, |all, t| all.union(t.bounds()));
-    let split = (depth < MAX_DEPTH)
-        .then(|| split(triangles, &bounds))
-        .flatten();
+    let halvings = triangles.len().div_ceil(LEAF_TRIANGLES).next_power_of_two();
+    let split = if depth + halvings.ilog2() as usize >= MAX_DEPTH {
+        (triangles.len() > LEAF_TRIANGLES).then_some(triangles.len() / 2)
+    } else {
+        split(triangles, &bounds)
+    };
     let mut node = Node {
         min: bounds.min,
         max: bounds.max,

@@ -49,7 +49,7 @@ fn differences(device: &mut Device, scene: &Scene) -> (f64, f64) {
         let [distance, triangle, ..] = closest[i];
         let is_same = match expected {
             Some(hit) => {
-                let number = (distance < FAR).then(|| bvh.triangles()[triangle as usize].number);
+                let number = (distance < FAR).then(|| tree.numbers()[triangle as usize]);
                 // At a shared edge both triangles are right.
                 number == Some(hit.triangle)
                     || (distance - hit.distance).abs() < 1e-4 * (1.0 + hit.distance)

@@ -38,14 +38,14 @@ const CANDIDATE_BYTES: u32 = 28;
 const SUM_BYTES: u32 = 32;
 
 /// Paths from the eye in a round.
-const PATHS: u32 = 1 << 14;
+const PATHS: u32 = 1 << 12;
 
 /// Edge of the smallest cells, metres, in scenes larger than a room.
 const CELL: f32 = 0.25;
 /// Smallest number of cells along the diagonal of a scene.
 const CELLS_ACROSS: f32 = 128.0;
 /// Distance from the eye within which cells are smallest, in their edges; they double with every doubling of the distance.
-const NEAR_CELLS: f32 = 48.0;
+const NEAR_CELLS: f32 = 24.0;
 
 /// Segments of a path before it ends in a cell.
 const SEGMENTS: u32 = 4;
@@ -81,7 +81,7 @@ impl Bounces {
 
 gpu_struct! {
     /// The light of a moment and the grid of cells, see `include/scene_light.glsl`.
-    pub struct SceneBlock: scene of CELLS_SEED_COMP, CELLS_UPDATE_COMP, BOUNCES_GATHER_FRAG {
+    pub struct SceneBlock: scene of CELLS_SEED_COMP, CELLS_UPDATE_COMP, BOUNCES_GATHER_COMP {
         eye: Vec3,
         cell: f32,
         near: f32,
@@ -210,6 +210,11 @@ impl Cells {
         })
     }
 
+    /// Forgets all cells: the next round starts anew, with the same random numbers.
+    pub fn restart(&mut self) {
+        self.held = None;
+    }
+
     /// Empties the table.
     fn clear(&mut self, recorder: &mut Recorder) {
         for buffer in [&self.prints, &self.live, &self.sums] {
@@ -260,6 +265,11 @@ impl Cells {
             seed: self.seed,
             frame: self.round,
         }
+    }
+
+    /// The published cells: their table, irradiance of the sky, irradiance of the bounces (klx), see `include/cells.glsl`.
+    pub fn images(&self) -> [&Image; 3] {
+        [&self.cells, &self.sky, &self.bounce]
     }
 
     /// Binds the published cells to a pass that looks them up.

@@ -1,4 +1,4 @@
-//! Bounced light of converging frames: a ray from each pixel, lit where it ends by the sun and the cells.
+//! Bounced light of converging frames: rays from the pixels, lit where they end by the sun and the cells.
 
 use std::sync::Arc;
 
@@ -6,30 +6,47 @@ use glam::IVec2;
 
 use crate::daylight::sky::Daylight;
 use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
+    Context, Depth, Format, Image, ImageDesc, Pipeline, PipelineDesc, Recorder, Result, Sampler,
+    shaders,
 };
 use crate::gpu_struct;
 use crate::passes::bounces::cells::Cells;
 use crate::passes::bounces::tree::Tree;
-use crate::passes::fullscreen_at;
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::view::View;
 
 gpu_struct! {
     /// Number of the frame and position of the picture.
-    pub struct Push: push of BOUNCES_GATHER_FRAG {
+    pub struct Push: push of BOUNCES_GATHER_COMP {
         index: u32,
         origin: IVec2,
+        chosen: IVec2,
     }
 }
 
-/// Irradiance in klx: half floats, because it is the light of a single ray.
-const FORMAT: Format = Format::R16G16B16A16_SFLOAT;
+/// Irradiance at half the size of the picture, see `include/half_size.glsl`.
+#[derive(Clone, Copy)]
+pub struct HalfSize<'a> {
+    /// One texel for each square of two by two pixels.
+    pub image: &'a Image,
+    /// The pixel of each square that has the texel.
+    pub chosen: IVec2,
+}
+
+/// The size of an image of a texel per square of two by two pixels.
+pub(in crate::passes) fn half_size(size: [u32; 2]) -> [u32; 2] {
+    size.map(|edge| edge.div_ceil(2))
+}
+
+/// The format of such an image.
+pub(in crate::passes) const HALF_SIZE: Format = Format::R32G32B32A32_UINT;
 
 /// The gathering pass and its image.
 pub struct Gather {
     pipeline: Pipeline,
     bounced: Image,
+    /// The last frame that traced rays.
+    traced: Option<u32>,
 }
 
 impl Gather {
@@ -38,33 +55,45 @@ impl Gather {
     /// # Errors
     /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, tree: &Tree, size: [u32; 2]) -> Result<Self> {
+        let desc = ImageDesc::flat("bounced irradiance", HALF_SIZE, half_size(size));
         Ok(Self {
-            pipeline: fullscreen_at(
+            pipeline: Pipeline::new(
                 context,
-                "bounces: gather",
-                &shaders::BOUNCES_GATHER_FRAG,
-                &[FORMAT],
-                Depth::Surface(Format::D32_SFLOAT),
-                &tree.constants(),
+                &PipelineDesc {
+                    name: "bounces: gather",
+                    stages: &[&shaders::BOUNCES_GATHER_COMP],
+                    vertex: &[],
+                    colors: &[],
+                    depth: Depth::Off,
+                    constants: &tree.constants(),
+                },
             )?,
-            bounced: Image::new(
-                context,
-                &ImageDesc::flat("bounced irradiance", FORMAT, size),
-            )?,
+            bounced: Image::new(context, &desc.stored())?,
+            traced: None,
         })
     }
 
-    /// Traces a ray per pixel for frame number `index` of an average and returns the irradiance of the light that it brings, klx.
+    /// Traces a ray per square of pixels for frame number `index` of an average, or for the one before, and returns the irradiance
+    /// of the light that they bring, klx.
     pub fn record(
-        &self,
+        &mut self,
         recorder: &mut Recorder,
         (tree, cells): (&Tree, &Cells),
         surfaces: &Surfaces,
         daylight: &Daylight,
         view: &View,
         index: u32,
-    ) -> &Image {
+    ) -> HalfSize<'_> {
         let origin = view.window.map_or(IVec2::ZERO, |w| w.origin.as_ivec2());
+        let of_pair = index - index % FRAMES_OF_RAYS;
+        let chosen = chosen(of_pair / FRAMES_OF_RAYS);
+        if of_pair < index && self.traced == Some(of_pair) {
+            return HalfSize {
+                image: &self.bounced,
+                chosen,
+            };
+        }
+        self.traced = Some(of_pair);
         let pass = recorder.pass("bounces: gather", &self.pipeline);
         let pass = cells.bound_to(tree.bound_to(pass));
         pass.sample("depth", &surfaces.depth, Sampler::Nearest)
@@ -75,10 +104,25 @@ impl Gather {
             )
             .uniform("view", &view.block())
             .uniform("scene", &cells.block(view, daylight))
-            .push(&Push { index, origin })
-            .color(&self.bounced, Load::Clear([0.0; 4]))
-            .depth_test(&surfaces.depth)
-            .draw();
-        &self.bounced
+            .push(&Push {
+                index: of_pair / FRAMES_OF_RAYS,
+                origin,
+                chosen,
+            })
+            .store("bounced", &self.bounced)
+            .dispatch();
+        HalfSize {
+            image: &self.bounced,
+            chosen,
+        }
     }
+}
+
+/// Frames that share rays: a frame costs about as much as its rays, and bounced light varies less than the rest.
+const FRAMES_OF_RAYS: u32 = 2;
+
+/// The pixel of each square that set number `index` of rays is for: each in turn, first along a diagonal.
+fn chosen(index: u32) -> IVec2 {
+    let turn = [IVec2::ZERO, IVec2::ONE, IVec2::X, IVec2::Y];
+    turn[index as usize % turn.len()]
 }

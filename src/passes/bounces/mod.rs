@@ -4,3 +4,4 @@ pub mod cells;
 pub mod gather;
 pub mod trace;
 pub mod tree;
+mod wide;

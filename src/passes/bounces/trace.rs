@@ -86,7 +86,7 @@ impl Trace {
     }
 
     /// The results; texel i, row by row, is for ray i. For the nearest hit: distance (1e30: none), position in
-    /// [`Bvh::triangles`](crate::scene::Bvh::triangles), barycentric weights of the second and third corner. Otherwise 1 if there
+    /// [`Tree::numbers`], barycentric weights of the second and third corner. Otherwise 1 if there
     /// is a hit and 0 if not.
     pub fn hits(&self) -> &Image {
         &self.hits

@@ -5,13 +5,11 @@ use std::thread;
 use glam::Vec3;
 
 use crate::gpu::{Format, Image, ImageDesc, Pass, Recorder, Result, Sampler, upload_texture};
-use crate::scene::{Bvh, Mean, Node, Reflectances, Scene, Triangle};
+use crate::passes::bounces::wide::{Wide, WideNode};
+use crate::scene::{Bvh, Mean, Reflectances, Scene, Triangle};
 
 /// Nodes and triangles in a row of their images; the rows are longer if there would be too many.
 const COLUMNS: usize = 1024;
-
-/// Bits of a triangle's flags: its opacity, and whether it is the last one of its leaf.
-const LAST: u32 = 0x100;
 
 /// The hierarchy in images.
 pub struct Tree {
@@ -19,7 +17,8 @@ pub struct Tree {
     triangles: Image,
     node_columns: u32,
     triangle_columns: u32,
-    node_count: u32,
+    most_steps: u32,
+    numbers: Vec<u32>,
 }
 
 impl Tree {
@@ -29,29 +28,37 @@ impl Tree {
     /// Fails when the device is out of memory or cannot hold images of that size.
     pub fn new(recorder: &mut Recorder, scene: &Scene) -> Result<Self> {
         let bvh = Bvh::of(scene, |_| true);
+        let wide = Wide::of(&bvh);
         let most_rows = recorder.context().summary().max_image_edge as usize;
         let (nodes, node_columns) = upload(
             recorder,
             "hierarchy: nodes",
-            bvh.nodes(),
+            &wide.nodes,
             most_rows,
-            |_, node| node_words(node),
+            WideNode::words,
         )?;
         let reflectances = Reflectances::new(scene);
-        let last = last_of_leaves(&bvh);
         let (triangles, triangle_columns) = upload(
             recorder,
             "hierarchy: triangles",
-            bvh.triangles(),
+            &wide.triangles,
             most_rows,
-            |at, triangle| triangle_words(triangle, &reflectances.of(triangle.number), last[at]),
+            |position| {
+                let triangle = &bvh.triangles()[*position as usize];
+                triangle_words(triangle, &reflectances.of(triangle.number))
+            },
         )?;
         Ok(Self {
             nodes,
             triangles,
             node_columns,
             triangle_columns,
-            node_count: bvh.nodes().len() as u32,
+            most_steps: (wide.nodes.len() + bvh.triangles().len()) as u32,
+            numbers: wide
+                .triangles
+                .iter()
+                .map(|position| bvh.triangles()[*position as usize].number)
+                .collect(),
         })
     }
 
@@ -60,8 +67,13 @@ impl Tree {
         [
             ("NODE_COLUMNS", self.node_columns),
             ("TRIANGLE_COLUMNS", self.triangle_columns),
-            ("NODE_COUNT", self.node_count),
+            ("MOST_STEPS", self.most_steps),
         ]
+    }
+
+    /// For each triangle of the image, its number in the scene.
+    pub fn numbers(&self) -> &[u32] {
+        &self.numbers
     }
 
     /// Binds the images to a pass.
@@ -77,7 +89,7 @@ fn upload<T: Sync, const N: usize>(
     name: &str,
     elements: &[T],
     most_rows: usize,
-    words: impl Fn(usize, &T) -> [[u32; 4]; N] + Sync,
+    words: impl Fn(&T) -> [[u32; 4]; N] + Sync,
 ) -> Result<(Image, u32)> {
     let columns = COLUMNS * elements.len().div_ceil(COLUMNS * most_rows).max(1);
     let rows = elements.len().div_ceil(columns).max(1);
@@ -86,11 +98,11 @@ fn upload<T: Sync, const N: usize>(
     let share = elements.len().div_ceil(threads).max(1);
     thread::scope(|scope| {
         let chunks = table.chunks_mut(share).zip(elements.chunks(share));
-        for (number, (target, source)) in chunks.enumerate() {
+        for (target, source) in chunks {
             let words = &words;
             scope.spawn(move || {
-                for (i, (target, element)) in target.iter_mut().zip(source).enumerate() {
-                    *target = words(number * share + i, element);
+                for (target, element) in target.iter_mut().zip(source) {
+                    *target = words(element);
                 }
             });
         }
@@ -106,31 +118,14 @@ fn texel(v: Vec3, word: u32) -> [u32; 4] {
     [x, y, z, word]
 }
 
-fn node_words(node: &Node) -> [[u32; 4]; 2] {
-    [
-        texel(node.min, node.first_triangle),
-        texel(node.max, node.skip),
-    ]
-}
-
-fn triangle_words(triangle: &Triangle, mean: &Mean, is_last: bool) -> [[u32; 4]; 3] {
+fn triangle_words(triangle: &Triangle, mean: &Mean) -> [[u32; 4]; 3] {
     let opacity = (mean.opacity.clamp(0.0, 1.0) * 255.0).round() as u32;
-    let flags = opacity | if is_last { LAST } else { 0 };
     let [r, g, b] = mean.diffuse.map(|v| v.clamp(0.0, 1.0));
     let bits = |v: f32, most: u32| (v * most as f32).round() as u32;
     let albedo = bits(r, 2047) | bits(g, 2047) << 11 | bits(b, 1023) << 22;
     [
         texel(triangle.corner, albedo),
         texel(triangle.edge1, 0),
-        texel(triangle.edge2, flags),
+        texel(triangle.edge2, opacity),
     ]
-}
-
-/// For each triangle, whether it is the last one of its leaf.
-fn last_of_leaves(bvh: &Bvh) -> Vec<bool> {
-    let mut last = vec![false; bvh.triangles().len()];
-    for leaf in bvh.nodes().iter().filter(|node| node.triangle_count > 0) {
-        last[(leaf.first_triangle + leaf.triangle_count - 1) as usize] = true;
-    }
-    last
 }

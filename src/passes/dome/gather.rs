@@ -10,7 +10,7 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{IVec2, Vec3};
 
 use crate::daylight::sampling;
 use crate::daylight::sky::Daylight;
@@ -21,6 +21,7 @@ use crate::gpu::{
 use crate::gpu_struct;
 
 use crate::passes::bounces::cells::Bounces;
+use crate::passes::bounces::gather::HalfSize;
 use crate::passes::dome::specular::SpecularSky;
 use crate::passes::light::lighting::{LightingSettings, Show};
 use crate::passes::sun_shadow::fit::ShadowView;
@@ -47,10 +48,11 @@ gpu_struct! {
 }
 
 gpu_struct! {
-    /// Radiance of the ground, and the weight of this frame.
+    /// Radiance of the ground, the weight of this frame, and its pixels with bounced light.
     pub struct Push: push of DOME_GATHER_FRAG {
         ground: Vec3,
         share: f32,
+        chosen: IVec2,
     }
 }
 
@@ -122,7 +124,7 @@ pub struct Gathered<'a> {
     /// Radiance L of sky and ground, kcd/m².
     pub sky_radiance: &'a Image,
     /// Irradiance from other surfaces, klx; `None` without bounces.
-    pub bounced: Option<&'a Image>,
+    pub bounced: Option<HalfSize<'a>>,
 }
 
 /// Depth bias of the comparison, texels. Within half a texel of a concave edge, the texel's centre may lie on the other face, up to
@@ -248,6 +250,7 @@ impl Dome {
         let push = Push {
             ground: kilo(daylight.ground_luminance),
             share: 1.0 / (index + 1) as f32,
+            chosen: gathered.bounced.map_or(IVec2::ZERO, |b| b.chosen),
         };
         self.gather(recorder, gathered, view, &block, &push);
         self.resolve(recorder);
@@ -350,7 +353,9 @@ impl Dome {
         let [[sky, rest], [old_sky, old_rest]] = &self.means;
         let surfaces = gathered.surfaces;
         // Without bounces any image will do: the binding must be written.
-        let bounced = gathered.bounced.unwrap_or(gathered.frame);
+        let bounced = gathered
+            .bounced
+            .map_or(&surfaces.normal_material, |b| b.image);
         let pass = recorder.pass("dome: gather", &self.gather);
         let pass = surfaces
             .sampled_by(pass, gathered.materials)

@@ -1,0 +1,37 @@
+// Irradiance at half the size of the picture, and its upsampling. A texel is for one pixel of a square of two by two: which one
+// changes from frame to frame. Needs octahedral.glsl.
+
+/// A texel: irradiance (klx) as half floats, distance along the view axis (metres), normal. All 0 is background.
+uvec4 half_size_pack(vec3 irradiance, float distance, uint normal) {
+    // Half floats end at 65 504.
+    vec3 e = min(irradiance, 65504.0);
+    return uvec4(packHalf2x16(e.rg), packHalf2x16(vec2(e.b, 0.0)), floatBitsToUint(distance), normal);
+}
+
+vec3 half_size_irradiance(uvec4 texel) {
+    return vec3(unpackHalf2x16(texel.x), unpackHalf2x16(texel.y).x);
+}
+
+// Squarings of the cosine between normals in the weights: cos^8.
+const int SHARPNESS = 3;
+
+/// Irradiance at a pixel, interpolated between texels of the same surface. `chosen`: the pixel of each square that has the texel.
+vec3 half_size_at(usampler2D image, ivec2 pixel, ivec2 chosen, float distance, vec3 n) {
+    vec2 at = 0.5 * vec2(pixel - chosen);
+    vec2 base = floor(at);
+    vec2 f = at - base, g = 1.0 - f;
+    vec4 bilinear = vec4(g.x * g.y, f.x * g.y, g.x * f.y, f.x * f.y);
+    vec2 size = vec2(textureSize(image, 0));
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 4; ++i) {
+        vec2 texel = base + vec2(i & 1, i >> 1);
+        uvec4 tap = textureLod(image, (texel + 0.5) / size, 0.0);
+        float there = uintBitsToFloat(tap.z);
+        float same = max(dot(n, normal_unpack(tap.w)), 0.0);
+        for (int k = 0; k < SHARPNESS; ++k) same *= same;
+        // The small terms keep the weights finite, and other surfaces count if there is nothing else.
+        float w = there > 0.0 ? (bilinear[i] + 1e-3) * (same + 1e-3) / (1e-3 * distance + abs(there - distance)) : 0.0;
+        sum += vec4(half_size_irradiance(tap), 1.0) * w;
+    }
+    return sum.a > 0.0 ? sum.rgb / sum.a : vec3(0.0);
+}

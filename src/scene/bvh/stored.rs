@@ -54,7 +54,7 @@ struct Open {
 }
 
 /// Whether the nodes are a binary tree that is no deeper than the stack of a ray, stored depth-first with the right skips, whose
-/// leaves have all `triangles` in order.
+/// leaves have all `triangles` in order, no more of them than a built one has.
 fn is_tree(nodes: &[Node], triangles: usize) -> bool {
     let mut open: Vec<Open> = Vec::with_capacity(MAX_DEPTH);
     let mut count = 0;
@@ -74,8 +74,7 @@ fn is_tree(nodes: &[Node], triangles: usize) -> bool {
             });
             continue;
         }
-        // Only the depth makes a leaf larger.
-        let is_large = node.triangle_count as usize > LEAF_TRIANGLES && open.len() < MAX_DEPTH;
+        let is_large = node.triangle_count as usize > LEAF_TRIANGLES;
         if is_large || node.first_triangle as usize != count || skip != at + 1 {
             return false;
         }

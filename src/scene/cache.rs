@@ -11,22 +11,23 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::scene::bounds::Bounds;
+use crate::scene::bvh::FlatBvh;
 use crate::scene::culling::layout::{FlatLayout, clusters, ranges};
 use crate::scene::files::{Digest, ReadFile, digest};
 use crate::scene::material::Material;
 use crate::scene::scene_file::NamedOptions;
 use crate::scene::texture::{Encoding, Texture};
-use crate::scene::{Layout, LoadOptions, Loaded, Part, Scene};
+use crate::scene::{Bvh, Layout, LoadOptions, Loaded, Node, Part, Scene};
 
 /// Version of the entry format and of the result of loading a model.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// Minimum size of a cached model, bytes. Smaller models load as fast as a cache entry.
 pub(super) const MIN_MODEL_BYTES: u64 = 4 << 20;
 /// Limit on the total size of all entries, bytes.
 const MAX_BYTES: u64 = 4 << 30;
 
 /// Number of arrays in an entry, not counting textures.
-const ARRAYS: usize = 9;
+const ARRAYS: usize = 11;
 
 /// Header of an entry, followed by its arrays.
 #[derive(Serialize, Deserialize)]
@@ -42,7 +43,7 @@ struct Head {
     cameras: Vec<NamedOptions>,
     moments: Vec<NamedOptions>,
     /// Lengths of the arrays: positions, normals, texture coordinates, colours, tangents, indices, then clusters, parts and
-    /// thicknesses of the layout.
+    /// thicknesses of the layout, nodes and triangles of the hierarchy.
     lengths: [usize; ARRAYS],
 }
 
@@ -85,9 +86,13 @@ pub(super) fn read(entry: &Path, path: &Path) -> Option<Loaded> {
     if head.version != VERSION {
         return None;
     }
-    let scene = head.scene(&mut entry)?;
+    let (mut scene, nodes, order) = head.scene(&mut entry)?;
     let agrees = entry.checksum_agrees() && head.files.iter().all(ReadFile::is_unchanged);
-    (agrees && is_valid(&scene)).then(|| Loaded {
+    if !agrees || !is_valid(&scene) {
+        return None;
+    }
+    scene.bvh = Some(Bvh::from_stored(nodes, &order, &scene)?);
+    Some(Loaded {
         path: path.to_owned(),
         scene,
         options: head.options,
@@ -145,20 +150,23 @@ impl Entry {
 /// When the folder is not writable.
 pub(super) fn write(entry: &Path, loaded: &Loaded, mut files: Vec<ReadFile>) -> io::Result<()> {
     let scene = &loaded.scene;
-    let (Some(folder), Some(layout)) = (entry.parent(), scene.layout.as_ref()) else {
+    let (Some(folder), Some(layout), Some(bvh)) = (entry.parent(), &scene.layout, &scene.bvh)
+    else {
         return Ok(());
     };
     // The model itself is already covered by the key.
     files.retain(|file| file.path != loaded.path);
     fs::create_dir_all(folder)?;
     remove_oldest(folder);
-    let layout = FlatLayout::of(layout);
-    let head = serde_json::to_vec(&Head::of(loaded, files, &layout))?;
+    let (layout, bvh) = (FlatLayout::of(layout), FlatBvh::of(bvh));
+    let arrays = arrays(scene, &layout, &bvh);
+    let lengths = arrays.map(|(_, count)| count);
+    let head = serde_json::to_vec(&Head::of(loaded, files, lengths))?;
     let mut file = tempfile::NamedTempFile::new_in(folder)?;
     let mut hasher = blake3::Hasher::new();
     let length = (head.len() as u64).to_le_bytes();
     let start = [&length[..], &head];
-    let arrays = arrays(scene, &layout).map(|(bytes, _)| bytes);
+    let arrays = arrays.map(|(bytes, _)| bytes);
     let textures = scene.textures.iter().map(|t| t.rgba8.as_slice());
     for bytes in start.into_iter().chain(arrays).chain(textures) {
         hasher.update(bytes);
@@ -170,7 +178,11 @@ pub(super) fn write(entry: &Path, loaded: &Loaded, mut files: Vec<ReadFile>) -> 
 }
 
 /// The bytes and the element count of each array.
-fn arrays<'s>(scene: &'s Scene, layout: &'s FlatLayout<'s>) -> [(&'s [u8], usize); ARRAYS] {
+fn arrays<'s>(
+    scene: &'s Scene,
+    layout: &'s FlatLayout<'s>,
+    bvh: &'s FlatBvh<'s>,
+) -> [(&'s [u8], usize); ARRAYS] {
     fn array<T: bytemuck::Pod>(values: &[T]) -> (&[u8], usize) {
         (bytemuck::cast_slice(values), values.len())
     }
@@ -184,6 +196,8 @@ fn arrays<'s>(scene: &'s Scene, layout: &'s FlatLayout<'s>) -> [(&'s [u8], usize
         array(&layout.clusters),
         array(&layout.of_part),
         array(layout.thickness),
+        array(bvh.nodes),
+        array(&bvh.order),
     ]
 }
 
@@ -213,7 +227,7 @@ fn remove_oldest(folder: &Path) {
 }
 
 impl Head {
-    fn of(loaded: &Loaded, files: Vec<ReadFile>, layout: &FlatLayout<'_>) -> Self {
+    fn of(loaded: &Loaded, files: Vec<ReadFile>, lengths: [usize; ARRAYS]) -> Self {
         let scene = &loaded.scene;
         let picture = |t: &Texture| Picture {
             name: t.name.clone(),
@@ -232,14 +246,14 @@ impl Head {
             options: loaded.options.clone(),
             cameras: loaded.cameras.clone(),
             moments: loaded.moments.clone(),
-            lengths: arrays(scene, layout).map(|(_, count)| count),
+            lengths,
         }
     }
 
-    /// Reads the arrays.
-    fn scene(&self, entry: &mut Entry) -> Option<Scene> {
+    /// Reads the arrays: a scene, and the nodes and triangles of its hierarchy.
+    fn scene(&self, entry: &mut Entry) -> Option<(Scene, Vec<Node>, Vec<u32>)> {
         let lengths = self.lengths;
-        Some(Scene {
+        let mut scene = Scene {
             positions: entry.numbers(lengths[0])?,
             normals: entry.numbers(lengths[1])?,
             texcoords: entry.numbers(lengths[2])?,
@@ -251,16 +265,16 @@ impl Head {
                 of_part: ranges(&entry.numbers(lengths[7])?),
                 thickness: entry.numbers(lengths[8])?,
             }),
-            textures: self
-                .textures
-                .iter()
-                .map(|picture| picture.read(entry))
-                .collect::<Option<_>>()?,
             parts: self.parts.clone(),
             materials: self.materials.clone(),
             bounds: self.bounds,
             warnings: self.warnings.clone(),
-        })
+            ..Scene::default()
+        };
+        let (nodes, order) = (entry.numbers(lengths[9])?, entry.numbers(lengths[10])?);
+        let textures = self.textures.iter().map(|picture| picture.read(entry));
+        scene.textures = textures.collect::<Option<_>>()?;
+        Some((scene, nodes, order))
     }
 }
 
@@ -298,4 +312,31 @@ fn is_valid(scene: &Scene) -> bool {
         && scene.parts.iter().all(part)
         && scene.materials.iter().all(material)
         && scene.layout.as_ref().is_some_and(|l| l.fits(scene))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::hills;
+
+    #[test]
+    fn an_entry_with_the_hierarchy_of_another_scene_is_refused() {
+        let folder = tempfile::tempdir().expect("a scratch folder");
+        let entry = folder.path().join("hills.scene");
+        let mut scene = hills(300);
+        scene.arrange();
+        let mut loaded = Loaded {
+            path: PathBuf::from("hills.obj"),
+            scene,
+            options: Vec::new(),
+            cameras: Vec::new(),
+            moments: Vec::new(),
+        };
+        for (other, is_own) in [(hills(500), false), (loaded.scene.clone(), true)] {
+            loaded.scene.bvh = Some(other.hierarchy().into_owned());
+            write(&entry, &loaded, Vec::new()).expect("an entry");
+            let again = read(&entry, &loaded.path);
+            assert_eq!(again, is_own.then(|| loaded.clone()));
+        }
+    }
 }

@@ -13,7 +13,7 @@ use crate::scene::progress::{Progress, Reporter};
 use crate::scene::scene_file::{
     NamedCamera, NamedMoment, NamedOptions, SceneFileOptions, camera_table,
 };
-use crate::scene::{Scene, SceneError, cache, gltf, scene_file};
+use crate::scene::{Bvh, Scene, SceneError, cache, gltf, scene_file};
 
 /// Options and limits for [`load`].
 #[derive(Debug, Clone, PartialEq)]
@@ -113,6 +113,8 @@ fn load_cached(
     }
     files.start_record();
     let mut loaded = load_from(&mut files, path, options, progress)?;
+    progress(1.0, "building the hierarchy");
+    loaded.scene.bvh = Some(Bvh::of(&loaded.scene, |_| true));
     if let Err(error) = cache::write(&entry, &loaded, files.take_record()) {
         let line = format!(
             "the scene cannot be cached in {} ({error}); check the disk or pass --no-cache",

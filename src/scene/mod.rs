@@ -23,6 +23,8 @@ mod reflectance;
 mod scene_file;
 mod texture;
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 pub use bounds::Bounds;
@@ -72,6 +74,8 @@ pub struct Scene {
     pub warnings: Vec<String>,
     /// Draw layout, if computed. It is valid for the current order of `indices`.
     pub layout: Option<Layout>,
+    /// Hierarchy over all triangles, if computed: see [`Scene::hierarchy`]. It is valid for the current `positions` and `indices`.
+    pub bvh: Option<Bvh>,
 }
 
 /// A run of triangles of one mesh with one material.
@@ -104,6 +108,7 @@ impl Default for Scene {
             bounds: Bounds::EMPTY,
             warnings: Vec::new(),
             layout: None,
+            bvh: None,
         }
     }
 }
@@ -125,6 +130,15 @@ impl Scene {
         let (indices, layout) = Layout::of(self);
         self.indices = indices;
         self.layout = Some(layout);
+        self.bvh = None;
+    }
+
+    /// The hierarchy over all triangles: that of a model from the cache, or a new one.
+    pub fn hierarchy(&self) -> Cow<'_, Bvh> {
+        match &self.bvh {
+            Some(bvh) => Cow::Borrowed(bvh),
+            None => Cow::Owned(Bvh::of(self, |_| true)),
+        }
     }
 
     /// For each part, whether it casts shadows. All parts do, except a flat ground (or sea) that lies below the centre of

@@ -1,5 +1,7 @@
 //! The surfaces of a scene as paths see them: ray queries, diffuse reflectance, cut-outs.
 
+use std::borrow::Cow;
+
 use glam::{DVec3, Vec2, Vec3};
 
 use crate::scene::{Bvh, Encoding, Hit, Material, Ray, Scene, Texture};
@@ -7,7 +9,7 @@ use crate::scene::{Bvh, Encoding, Hit, Material, Ray, Scene, Texture};
 /// A scene as paths see it.
 pub struct TracedScene<'a> {
     scene: &'a Scene,
-    bvh: Bvh,
+    bvh: Cow<'a, Bvh>,
     /// Number of the material of each triangle.
     material_of: Vec<u32>,
     /// Whether any surface has holes.
@@ -29,7 +31,7 @@ pub(super) struct Point {
 const OFFSET: f32 = 3e-5;
 
 impl<'a> TracedScene<'a> {
-    /// Builds the hierarchy.
+    /// Builds the hierarchy, unless the scene has one.
     pub fn new(scene: &'a Scene) -> Self {
         let mut material_of = vec![0; scene.triangles()];
         for part in &scene.parts {
@@ -38,7 +40,7 @@ impl<'a> TracedScene<'a> {
             material_of[first..first + count].fill(part.material);
         }
         Self {
-            bvh: Bvh::of(scene, |_| true),
+            bvh: scene.hierarchy(),
             material_of,
             has_cut_outs: scene.materials.iter().any(|m| m.alpha_cutoff.is_some()),
             scene,

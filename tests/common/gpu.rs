@@ -1,11 +1,11 @@
-//! Shared by the GPU tests: a validated device, frames, read-back and small scenes.
+//! Shared by the GPU tests: a validated device, frames, read-back, and the small scenes of `model`.
 #![allow(dead_code)]
 
 use std::sync::Arc;
 
-use glam::{DVec3, UVec2, Vec3};
+use glam::{DVec3, UVec2};
 use skylight::daylight::cube;
-use skylight::daylight::sky::{Conditions, Daylight, SkyModel};
+use skylight::daylight::sky::Daylight;
 use skylight::daylight::tone_curve::ToneCurve;
 use skylight::frame::{Frame, FrameSettings};
 use skylight::gpu::{Context, ContextOptions, Image, Recorder, Timing, read_back};
@@ -13,7 +13,12 @@ use skylight::passes::bounces::cells::Bounces;
 use skylight::passes::light::lighting::{Ambient, Precision, Show};
 use skylight::passes::occlusion::ssao::SsaoSettings;
 use skylight::passes::picture::tone_map::Scale;
-use skylight::scene::{Bounds, Camera, Material, Part, Scene};
+use skylight::scene::{Camera, Scene};
+
+#[path = "model.rs"]
+mod model;
+
+pub use model::{Model, clear_day, constant_sky, matt};
 
 /// Relative step of 16-bit floats. Vulkan lets a device round to either neighbour (lavapipe truncates), so the error of a
 /// stored value is a whole step, not half of one.
@@ -248,155 +253,4 @@ pub fn pixel_ray(camera: &Camera, size: [usize; 2], pixel: [usize; 2]) -> DVec3 
 pub fn on_ground(camera: &Camera, size: [usize; 2], pixel: [usize; 2]) -> Option<DVec3> {
     let (eye, ray) = (camera.eye.as_dvec3(), pixel_ray(camera, size, pixel));
     (ray.y < 0.0).then(|| eye + ray * (-eye.y / ray.y))
-}
-
-/// Preetham's clear sky with the sun at an azimuth and an elevation, degrees.
-pub fn clear_day(azimuth: f64, elevation: f64) -> Daylight {
-    Daylight::new(&Conditions {
-        model: SkyModel::Preetham,
-        sun_azimuth_deg: azimuth,
-        sun_elevation_deg: elevation,
-        ..Conditions::default()
-    })
-}
-
-/// Uniform environment: sky and ground of one luminance, cd/m², and no sun.
-pub fn constant_sky(luminance: f64) -> Daylight {
-    let mut day = clear_day(180.0, 45.0);
-    day.guard.scale = 0.0;
-    day.guard.night = DVec3::splat(luminance);
-    day.ground_luminance = DVec3::splat(luminance);
-    day.sky_irradiance_up = DVec3::splat(luminance * std::f64::consts::PI);
-    day.sun_illuminance = DVec3::ZERO;
-    day.sun_luminance = DVec3::ZERO;
-    day
-}
-
-/// A Lambertian material.
-pub fn matt(diffuse: f32) -> Material {
-    Material {
-        diffuse: [diffuse; 3],
-        ..Material::default()
-    }
-}
-
-/// Builder of a scene: each part has its own material.
-#[derive(Default)]
-pub struct Model(Scene);
-
-impl Model {
-    fn part(&mut self, material: &Material, mesh: impl FnOnce(&mut Scene)) {
-        let (vertex, index) = (self.0.positions.len(), self.0.indices.len());
-        mesh(&mut self.0);
-        let points = self.0.positions[vertex..].iter().map(|p| Vec3::from(*p));
-        let bounds = Bounds::of(points);
-        self.0.parts.push(Part {
-            has_colours: false,
-            first_index: index as u32,
-            index_count: (self.0.indices.len() - index) as u32,
-            material: self.0.materials.len() as u32,
-            bounds,
-        });
-        self.0.materials.push(material.clone());
-        self.0.bounds = self.0.bounds.union(bounds);
-    }
-
-    /// A parallelogram: a corner and its two edges, counter-clockwise seen from the front.
-    pub fn quad(mut self, corner: [f32; 3], a: [f32; 3], b: [f32; 3], material: &Material) -> Self {
-        let (corner, a, b) = (Vec3::from(corner), Vec3::from(a), Vec3::from(b));
-        self.part(material, |scene| quad(scene, corner, a, b));
-        self
-    }
-
-    /// A horizontal square at y = 0 around the origin, facing up.
-    pub fn ground(self, half: f32, material: &Material) -> Self {
-        self.square([0.0; 3], half, material)
-    }
-
-    /// A horizontal square facing up; the position is its centre.
-    pub fn square(self, [x, y, z]: [f32; 3], half: f32, material: &Material) -> Self {
-        let edge = 2.0 * half;
-        self.quad(
-            [x - half, y, z + half],
-            [edge, 0.0, 0.0],
-            [0.0, 0.0, -edge],
-            material,
-        )
-    }
-
-    /// A cube; `half` is half its edge.
-    pub fn cube(mut self, centre: [f32; 3], half: f32, material: &Material) -> Self {
-        let centre = Vec3::from(centre);
-        self.part(material, |scene| {
-            for n in [Vec3::X, Vec3::Y, Vec3::Z]
-                .into_iter()
-                .flat_map(|n| [n, -n])
-            {
-                let a = n.any_orthonormal_vector() * half;
-                let b = n.cross(a);
-                quad(scene, centre + n * half - a - b, 2.0 * a, 2.0 * b);
-            }
-        });
-        self
-    }
-
-    /// A sphere of `2 rings x rings` quads with smooth normals.
-    pub fn sphere(
-        mut self,
-        centre: [f32; 3],
-        radius: f32,
-        rings: u32,
-        material: &Material,
-    ) -> Self {
-        self.part(material, |scene| {
-            sphere(scene, centre.into(), radius, rings);
-        });
-        self
-    }
-
-    /// The scene.
-    pub fn build(self) -> Scene {
-        self.0
-    }
-}
-
-fn quad(scene: &mut Scene, corner: Vec3, a: Vec3, b: Vec3) {
-    let first = scene.positions.len() as u32;
-    let normal = a.cross(b).normalize();
-    for (s, t) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
-        scene.positions.push((corner + a * s + b * t).into());
-        scene.normals.push(normal.into());
-        scene.texcoords.push([s, t]);
-    }
-    scene
-        .indices
-        .extend([0, 1, 2, 0, 2, 3].map(|i: u32| first + i));
-}
-
-fn sphere(scene: &mut Scene, centre: Vec3, radius: f32, rings: u32) {
-    let first = scene.positions.len() as u32;
-    let columns = 2 * rings + 1;
-    for ring in 0..=rings {
-        for column in 0..columns {
-            let (s, t) = (
-                column as f32 / (columns - 1) as f32,
-                ring as f32 / rings as f32,
-            );
-            let (sin_phi, cos_phi) = (s * std::f32::consts::TAU).sin_cos();
-            let (sin_theta, cos_theta) = (t * std::f32::consts::PI).sin_cos();
-            let n = Vec3::new(sin_theta * cos_phi, cos_theta, -sin_theta * sin_phi);
-            scene.positions.push((centre + n * radius).into());
-            scene.normals.push(n.into());
-            scene.texcoords.push([s, t]);
-        }
-    }
-    for ring in 0..rings {
-        for column in 0..columns - 1 {
-            let i = first + ring * columns + column;
-            let below = i + columns;
-            scene
-                .indices
-                .extend([i, below, below + 1, i, below + 1, i + 1]);
-        }
-    }
 }

@@ -2,9 +2,13 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/model.rs"]
+mod model;
 
+mod bounces;
 mod irradiance;
 mod reference;
+mod rooms;
 mod sampling;
 mod sun_position;
 mod tone_curves_and_frames;

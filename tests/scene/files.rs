@@ -406,7 +406,8 @@ fn a_cached_model_is_equal_and_damaged_or_stale_entries_are_replaced() {
         cache: Some(cache.clone()),
         ..LoadOptions::default()
     };
-    let plain = load(&path, &LoadOptions::default()).expect("a model");
+    let mut plain = load(&path, &LoadOptions::default()).expect("a model");
+    plain.scene.bvh = Some(plain.scene.hierarchy().into_owned());
     let entries = || -> Vec<PathBuf> {
         let list = fs::read_dir(&cache).expect("the cache");
         list.map(|entry| entry.expect("an entry").path()).collect()
@@ -440,7 +441,8 @@ fn a_cache_that_cannot_be_written_is_one_warning() {
         cache: Some(file.join("cache")),
         ..LoadOptions::default()
     };
-    let plain = load(&path, &LoadOptions::default()).expect("a model").scene;
+    let mut plain = load(&path, &LoadOptions::default()).expect("a model").scene;
+    plain.bvh = Some(plain.hierarchy().into_owned());
     let mut scene = load(&path, &options).expect("a model").scene;
     let warnings = std::mem::take(&mut scene.warnings);
     assert!(

@@ -13,6 +13,7 @@ pub fn subdivided(scene: &Scene, k: u32) -> Scene {
         fine: Scene {
             indices: Vec::with_capacity(scene.indices.len() * (k * k) as usize),
             layout: None,
+            bvh: None,
             ..scene.clone()
         },
         k,

@@ -115,7 +115,7 @@ impl Frame {
             let lighting = scope.spawn(move || settings.lighting(device));
             let background = scope.spawn(move || settings.background(device));
             Ok(Self {
-                ambient: AmbientPasses::new(device, &geometry, &tree, &settings)?,
+                ambient: AmbientPasses::new(device, &geometry, &settings)?,
                 gbuffer: settings.gbuffer(device, &geometry)?,
                 average: Average::new(device, &geometry, &tree, &settings)?,
                 cells: settings.cells(device, &tree, &geometry)?,
@@ -175,7 +175,7 @@ impl Frame {
         let gbuffer = remade(is_new_gbuffer, || new.gbuffer(device, geometry))?;
         let is_new_ambient = is_resized || AmbientNeed::of(&new) != AmbientNeed::of(old);
         let ambient = remade(is_new_ambient, || {
-            AmbientPasses::new(device, geometry, &self.tree, &new)
+            AmbientPasses::new(device, geometry, &new)
         })?;
         let shadow = remade(is_new_shadow, || new.shadow(device, geometry))?;
         let lighting = remade(is_lit, || new.lighting(device))?;
@@ -256,7 +256,7 @@ impl Frame {
         }
         let ambient = match (&mut self.ambient, &self.cells) {
             (AmbientPasses::Cells(pass), Some(cells)) if !is_dome => {
-                pass.record(rec, (&self.tree, cells), surfaces, daylight, &view)
+                pass.record(rec, cells, surfaces, daylight, &view)
             }
             (AmbientPasses::Screen(screen), _) if !is_dome => match self.tiling.occlusion(index) {
                 Some(of_picture) => of_picture,

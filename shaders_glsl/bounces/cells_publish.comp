@@ -11,12 +11,12 @@ layout(local_size_x = 64) in;
 
 PRINTS;
 LIVE;
-PLACES;
-CONTESTS;
+CONTESTED;
+WALLS;
 SUMS;
 
 layout(set = 0, binding = 8, rgba32ui) uniform writeonly uimage2DArray cells;
-layout(set = 0, binding = 9, rgba32f) uniform writeonly image2DArray anchors;
+layout(set = 0, binding = 9, rgba32f) uniform writeonly image2DArray cell_walls;
 
 void main() {
     uint index = gl_GlobalInvocationID.x;
@@ -24,7 +24,8 @@ void main() {
     uint slot = live[index];
     ivec3 texel = ivec3(slot_texel(slot), 0);
     Sum sum = sums[slot];
-    imageStore(cells, texel, uvec4(prints[slot], shared_exponent_pack(sum.sky.rgb), shared_exponent_pack(sum.bounce.rgb), uint(sum.sky.a)));
-    imageStore(anchors, texel, vec4(points[slot * POINTS].position, 0.0));
-    for (uint i = 1u; i < POINTS; ++i) contests[slot * POINTS + i] = 0xffffffffu;
+    uint word = uint(sum.samples) | sum.hidden << SAMPLE_BITS;
+    imageStore(cells, texel, uvec4(prints[slot], shared_exponent_pack(sum.sky), shared_exponent_pack(sum.bounce), word));
+    imageStore(cell_walls, texel, walls[slot]);
+    contests[slot * CONTESTS + 1u] = 0xffffffffu;
 }

@@ -17,8 +17,9 @@ layout(set = 0, binding = 0, scalar) uniform View { VIEW_BLOCK } view;
 PRINTS;
 LIVE;
 PLACES;
-CONTESTS;
+CONTESTED;
 CANDIDATES;
+WALLS;
 
 layout(push_constant, scalar) uniform Push {
     uint paths;
@@ -41,30 +42,38 @@ uint claim_slot(Key key) {
     return NONE;
 }
 
-/// The slot of the cell of a point, created if there is none; NONE if the table is full there. `is_new`: it has no anchor yet.
-uint claim(vec3 p, vec3 n, int level, out bool is_new) {
+/// The slot of the cell of a point, created if there is none, and the contest for it; NONE if the table is full there.
+uint claim(vec3 p, vec3 n, int level, out uint contest) {
     float edge = cell_edge(level);
     ivec3 at = ivec3(floor(in_grid(p, n, edge)));
     uint side = dominant(n);
     for (uint sibling = 0u; sibling < SIBLINGS; ++sibling) {
         uint slot = claim_slot(cell_key(at, side, level, sibling));
         if (slot == NONE) return NONE;
-        is_new = (prints[slot] & ANCHORED) == 0u;
-        if (is_new || is_seen(points[slot * POINTS].position, p, n, edge)) return slot;
-        atomicOr(prints[slot], MIXED);
+        uint print = prints[slot];
+        if ((print & DIVIDED) != 0u && !is_on_side(walls[slot], p)) continue;
+        contest = (print & ANCHORED) == 0u ? 0u : (print & DIVIDED) != 0u ? 1u : WALL;
+        return slot;
     }
     return NONE;
 }
 
-/// A point of a path enters the contest of its cell.
+/// Whether something stands between a point and the anchor of its cell.
+bool is_divided(vec3 p, vec3 n, vec3 anchor, float edge) {
+    vec3 from = p + n * (SIGHT * edge), way = anchor - p;
+    float far = length(way);
+    return far > 1e-3 * edge && any_hit(from, way / far, far);
+}
+
+/// A point of a path enters a contest of its cell.
 void enter(uint index, vec3 p, vec3 n, uint hash) {
-    candidates[index].slot = NONE;
-    // Some points are for larger cells, which stand in where small ones are missing.
-    int level = cell_level(distance(p, scene.eye)) + ((hash & 0x700u) == 0u ? 2 : 0);
-    bool is_new;
-    uint slot = claim(p, n, level, is_new);
+    int level = candidate_level(p, hash);
+    uint contest;
+    uint slot = claim(p, n, level, contest);
     if (slot == NONE) return;
-    uint place = slot * POINTS + (is_new ? 0u : 1u + (hash >> 16) % (POINTS - 1u));
+    // What does not see the anchor asks for a wall.
+    if (contest == WALL && !is_divided(p, n, points[slot * POINTS].position, cell_edge(level))) contest = 1u;
+    uint place = slot * CONTESTS + contest;
     atomicMin(contests[place], hash);
     candidates[index] = Candidate(slot, place, hash, Point(p, normal_pack(n)));
 }

@@ -59,31 +59,15 @@ vec3 path_light(Surface surface, inout uint state) {
     return light;
 }
 
-/// Whether something stands between the anchor and the neighbouring cells.
-bool is_edged(Point anchor, float edge) {
-    vec3 n = normal_unpack(anchor.normal);
-    mat3 frame = frame_from_normal(n);
-    vec3 from = anchor.position + n * (SIGHT * edge);
-    for (int i = 0; i < 8; ++i) {
-        float angle = float(i) * (0.25 * PI);
-        if (any_hit(from, frame * vec3(cos(angle), sin(angle), 0.0), 2.0 * edge)) return true;
-    }
-    return false;
-}
-
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index >= push.count || index >= live_count) return;
     uint slot = live[(push.first + index) % live_count];
     uint print = prints[slot];
     Sum sum = sums[slot];
-    uint number = uint(min(sum.sky.a, push.most));
+    uint number = uint(min(sum.samples, push.most));
     if ((print & ANCHORED) == 0u || number >= ENOUGH) return;
     uint state = tea(print & ~FLAGS, tea(scene.seed, number ^ scene.frame << 16));
-    if (number == 0u) {
-        Point anchor = points[slot * POINTS];
-        if (is_edged(anchor, cell_edge(cell_level(distance(anchor.position, scene.eye))))) atomicOr(prints[slot], EDGED);
-    }
     Point point = points[slot * POINTS + state % POINTS];
     vec3 n = normal_unpack(point.normal);
     vec3 toward = cosine_direction(n, scrambled_sobol(number, tea(print & ~FLAGS, scene.seed)));
@@ -93,7 +77,7 @@ void main() {
     else if (push.segments > 0u) bounce = path_light(surface_of(hit, point.position, toward), state);
     // Later paths end in better cells: the weights of their light grow with the cube of their number.
     float k = float(number) + 1.0;
-    sum.sky.rgb = mix(sum.sky.rgb * push.sky_change, sky, 1.0 / k);
-    sum.bounce.rgb = mix(sum.bounce.rgb * push.bounce_change, bounce, 4.0 * k / ((k + 1.0) * (k + 1.0)));
-    sums[slot] = Sum(vec4(sum.sky.rgb, k), vec4(sum.bounce.rgb, k));
+    sum.sky = mix(sum.sky * push.sky_change, sky, 1.0 / k);
+    sum.bounce = mix(sum.bounce * push.bounce_change, bounce, 4.0 * k / ((k + 1.0) * (k + 1.0)));
+    sums[slot] = Sum(sum.sky, sum.bounce, k, sum.hidden);
 }

@@ -124,32 +124,36 @@ Hit triangle_hit(uint triangle, vec3 origin, vec3 toward, float far) {
     return Hit(is_met ? distance : FAR, triangle, vec2(u, v));
 }
 
-/// The nearest hit from `origin` along `toward`, before the distance `far`.
-Hit closest(vec3 origin, vec3 toward, float far) {
+/// The nearest hit from `origin` along `toward`, before the distance `far`; with `any`, the first one that is found.
+Hit traced(vec3 origin, vec3 toward, float far, bool any) {
     vec3 inverse = inverse_of(toward);
     Hit best = Hit(far, 0u, vec2(0.0));
     uint waiting[STACK];
     float entries[STACK];
     int depth = 0;
     uint child = 0u;
+    // A step visits a node or a triangle: on a software device both branches cost time in each.
     for (uint i = 0u; i < MOST_STEPS; ++i) {
-        uint count = child >> KIND, first = child & NUMBER;
-        if (count == 0u) {
+        uint first = child & NUMBER;
+        bool goes_on;
+        if (child > NUMBER) {
+            Hit hit = triangle_hit(first, origin, toward, best.distance);
+            if (hit.distance < best.distance) best = hit;
+            if (any && best.distance < far) break;
+            // The next one of the leaf.
+            child += 1u - (1u << KIND);
+            goes_on = child > NUMBER;
+        } else {
             uvec4 c;
             vec4 e = children_of(first, origin, inverse, best.distance, c);
             order_all(e, c);
             if (e.w < FAR) { waiting[depth] = c.w; entries[depth++] = e.w; }
             if (e.z < FAR) { waiting[depth] = c.z; entries[depth++] = e.z; }
             if (e.y < FAR) { waiting[depth] = c.y; entries[depth++] = e.y; }
-            if (e.x < FAR) {
-                child = c.x;
-                continue;
-            }
+            child = c.x;
+            goes_on = e.x < FAR;
         }
-        for (uint k = 0u; k < count; ++k) {
-            Hit hit = triangle_hit(first + k, origin, toward, best.distance);
-            if (hit.distance < best.distance) best = hit;
-        }
+        if (goes_on) continue;
         while (depth > 0 && entries[depth - 1] >= best.distance) --depth;
         if (depth == 0) break;
         child = waiting[--depth];
@@ -158,31 +162,12 @@ Hit closest(vec3 origin, vec3 toward, float far) {
     return best;
 }
 
+/// The nearest hit from `origin` along `toward`, before the distance `far`.
+Hit closest(vec3 origin, vec3 toward, float far) {
+    return traced(origin, toward, far, false);
+}
+
 /// Whether anything is hit from `origin` along `toward`, before the distance `far`.
 bool any_hit(vec3 origin, vec3 toward, float far) {
-    vec3 inverse = inverse_of(toward);
-    uint waiting[STACK];
-    int depth = 0;
-    uint child = 0u;
-    for (uint i = 0u; i < MOST_STEPS; ++i) {
-        uint count = child >> KIND, first = child & NUMBER;
-        if (count == 0u) {
-            uvec4 c;
-            vec4 e = children_of(first, origin, inverse, far, c);
-            order_all(e, c);
-            if (e.w < FAR) waiting[depth++] = c.w;
-            if (e.z < FAR) waiting[depth++] = c.z;
-            if (e.y < FAR) waiting[depth++] = c.y;
-            if (e.x < FAR) {
-                child = c.x;
-                continue;
-            }
-        }
-        for (uint k = 0u; k < count; ++k) {
-            if (triangle_hit(first + k, origin, toward, far).distance < far) return true;
-        }
-        if (depth == 0) return false;
-        child = waiting[--depth];
-    }
-    return false;
+    return traced(origin, toward, far, true).distance < far;
 }

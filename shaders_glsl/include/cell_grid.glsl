@@ -3,7 +3,7 @@
 // to. Needs `scene`, bvh.glsl.
 #include "cell_flags.glsl"
 
-// Most cells at one place, each for the surfaces that the anchors of the ones before do not see.
+// Most cells at one place, each for what is beyond the walls of the ones before.
 const uint SIBLINGS = 4u;
 // Levels that a lookup tries beyond its own.
 const int COARSER = 4;
@@ -19,6 +19,11 @@ struct Key {
 /// Level of the cells at a distance from the eye (metres): the edge doubles with each.
 int cell_level(float distance) {
     return max(int(floor(log2(max(distance / scene.near, 1e-6)))) + 1, 0);
+}
+
+/// Level of the cell for a candidate: some are for larger cells, which stand in where small ones are missing.
+int candidate_level(vec3 p, uint hash) {
+    return cell_level(distance(p, scene.eye)) + ((hash & 0x700u) == 0u ? 2 : 0);
 }
 
 float cell_edge(int level) {
@@ -53,10 +58,17 @@ Key cell_key(ivec3 at, uint side, int level, uint sibling) {
     return Key((h & (BUCKETS - 1u)) * BUCKET, (print | (FLAGS + 1u)) & ~FLAGS);
 }
 
-/// Whether two points of surfaces see each other, a little above them.
-bool is_seen(vec3 anchor, vec3 p, vec3 n, float edge) {
-    vec3 from = p + n * (SIGHT * edge), to = anchor + n * (SIGHT * edge);
-    vec3 way = to - from;
-    float distance = length(way);
-    return distance < 1e-5 || !any_hit(from, way / distance, distance);
+/// The coordinates of a vector in the order: two along the sides of the grid that a surface of this axis follows, its own axis.
+vec3 turned(vec3 v, uint axis) {
+    return axis == 0u ? v.yzx : axis == 1u ? v.zxy : v.xyz;
+}
+
+/// The inverse of `turned`.
+vec3 turned_back(vec3 v, uint axis) {
+    return axis == 0u ? v.zxy : axis == 1u ? v.yzx : v.xyz;
+}
+
+/// Whether a point is on the anchor's side of the wall that divides a cell.
+bool is_on_side(vec4 wall, vec3 p) {
+    return dot(wall.xyz, p) >= wall.w;
 }

@@ -7,19 +7,24 @@ struct Point {
 
 struct Candidate {
     uint slot;  // NONE: none
-    uint place; // of the slot's points
+    uint place; // of the slot's contests
     uint hash;
     Point point;
 };
 
-/// Running means of a cell, klx; a: number of samples.
+/// Running means of a cell.
 struct Sum {
-    vec4 sky;
-    vec4 bounce;
+    vec3 sky;      // irradiance of the sky, klx
+    vec3 bounce;   // irradiance of the bounces, klx
+    float samples; // number of paths
+    uint hidden;   // neighbours that something hides
 };
 
-// Points of a cell: its anchor, and two that new candidates replace.
-const uint POINTS = 3u;
+// Points of a cell: its anchor, and one that new candidates replace.
+const uint POINTS = 2u;
+// Contests of a cell: for its points, and for a wall that divides it.
+const uint CONTESTS = 3u;
+const uint WALL = 2u;
 // Points of a path that creates cells.
 const uint PATH_POINTS = 4u;
 
@@ -27,6 +32,7 @@ const uint PATH_POINTS = 4u;
 #define PRINTS layout(set = 0, binding = 1, scalar) buffer Prints { uint prints[]; }
 #define LIVE layout(set = 0, binding = 2, scalar) buffer Live { uint live_count; uint live[]; }
 #define PLACES layout(set = 0, binding = 3, scalar) buffer Places { Point points[]; }
-#define CONTESTS layout(set = 0, binding = 4, scalar) buffer Contests { uint contests[]; }
+#define CONTESTED layout(set = 0, binding = 4, scalar) buffer Contests { uint contests[]; }
 #define CANDIDATES layout(set = 0, binding = 5, scalar) buffer Candidates { Candidate candidates[]; }
+#define WALLS layout(set = 0, binding = 11, scalar) buffer Walls { vec4 walls[]; }
 #define SUMS layout(set = 0, binding = 6, scalar) buffer Sums { Sum sums[]; }

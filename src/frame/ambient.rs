@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::{FrameSettings, Visibility};
 use crate::gpu::{Context, Result};
 use crate::passes::bounces::ambient::CellLight;
-use crate::passes::bounces::tree::Tree;
 use crate::passes::light::lighting::Ambient;
 use crate::passes::occlusion::height_map::HeightMap;
 use crate::passes::occlusion::ssao::{Ssao, SsaoSettings};
@@ -54,7 +53,6 @@ impl AmbientPasses {
     pub fn new(
         context: &Arc<Context>,
         geometry: &Geometry,
-        tree: &Tree,
         settings: &FrameSettings,
     ) -> Result<Self> {
         let size = settings.size.to_array();
@@ -64,7 +62,7 @@ impl AmbientPasses {
                 heights: HeightMap::new(context, geometry)?,
                 ssao: Ssao::new(context, size, ssao)?,
             })),
-            AmbientNeed::Cells => Self::Cells(CellLight::new(context, tree, size)?),
+            AmbientNeed::Cells => Self::Cells(CellLight::new(context, size)?),
         })
     }
 }

@@ -9,7 +9,7 @@ gpu_struct! {
     /// `VIEW_BLOCK` of `include/view.glsl`.
     pub struct ViewBlock: view of
         SSAO_FRAG, LIGHTING_FRAG, BACKGROUND_FRAG, DOME_GATHER_FRAG, DOME_SPECULAR_FRAG, CELLS_SEED_COMP, BOUNCES_GATHER_COMP,
-        CELLS_AMBIENT_COMP
+        CELLS_AMBIENT_FRAG
     {
         world_from_view: Mat3,
         eye: Vec3,

@@ -3,12 +3,10 @@
 use std::sync::Arc;
 
 use crate::daylight::sky::Daylight;
-use crate::gpu::{
-    Context, Depth, Image, ImageDesc, Pipeline, PipelineDesc, Recorder, Result, Sampler, shaders,
-};
+use crate::gpu::{Context, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders};
 use crate::passes::bounces::cells::Cells;
 use crate::passes::bounces::gather::{HALF_SIZE, half_size};
-use crate::passes::bounces::tree::Tree;
+use crate::passes::fullscreen;
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::view::View;
 
@@ -23,21 +21,17 @@ impl CellLight {
     ///
     /// # Errors
     /// Fails when the device cannot create the resources.
-    pub fn new(context: &Arc<Context>, tree: &Tree, size: [u32; 2]) -> Result<Self> {
+    pub fn new(context: &Arc<Context>, size: [u32; 2]) -> Result<Self> {
         let desc = ImageDesc::flat("irradiance from cells", HALF_SIZE, half_size(size));
         Ok(Self {
-            pipeline: Pipeline::new(
+            pipeline: fullscreen(
                 context,
-                &PipelineDesc {
-                    name: "cells: ambient",
-                    stages: &[&shaders::CELLS_AMBIENT_COMP],
-                    vertex: &[],
-                    colors: &[],
-                    depth: Depth::Off,
-                    constants: &tree.constants(),
-                },
+                "cells: ambient",
+                &shaders::CELLS_AMBIENT_FRAG,
+                HALF_SIZE,
+                &[],
             )?,
-            ambient: Image::new(context, &desc.stored())?,
+            ambient: Image::new(context, &desc)?,
         })
     }
 
@@ -45,14 +39,15 @@ impl CellLight {
     pub fn record(
         &self,
         recorder: &mut Recorder,
-        (tree, cells): (&Tree, &Cells),
+        cells: &Cells,
         surfaces: &Surfaces,
         daylight: &Daylight,
         view: &View,
     ) -> &Image {
         let pass = recorder.pass("cells: ambient", &self.pipeline);
-        let pass = cells.bound_to(tree.bound_to(pass));
-        pass.sample("depth", &surfaces.depth, Sampler::Nearest)
+        cells
+            .bound_to(pass)
+            .sample("depth", &surfaces.depth, Sampler::Nearest)
             .sample(
                 "normal_material",
                 &surfaces.normal_material,
@@ -60,8 +55,8 @@ impl CellLight {
             )
             .uniform("view", &view.block())
             .uniform("scene", &cells.block(view, daylight))
-            .store("ambient", &self.ambient)
-            .dispatch();
+            .color(&self.ambient, Load::Discard)
+            .draw();
         &self.ambient
     }
 }

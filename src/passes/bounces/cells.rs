@@ -29,8 +29,9 @@ use crate::scene::Bounds;
 const SLOTS: u32 = 1 << 17;
 /// Slots in a row of the published images, as in `include/cell_flags.glsl`.
 const SLOT_COLUMNS: u32 = 512;
-/// Points of a cell and of a path, as in `include/cell_table.glsl`.
-const POINTS: u32 = 3;
+/// Points of a cell, its contests, and points of a path, as in `include/cell_table.glsl`.
+const POINTS: u32 = 2;
+const CONTESTS: u32 = 3;
 const PATH_POINTS: u32 = 4;
 /// Sizes of the structs there, bytes.
 const POINT_BYTES: u32 = 16;
@@ -81,7 +82,8 @@ impl Bounces {
 
 gpu_struct! {
     /// The light of a moment and the grid of cells, see `include/scene_light.glsl`.
-    pub struct SceneBlock: scene of CELLS_SEED_COMP, CELLS_UPDATE_COMP, BOUNCES_GATHER_COMP, CELLS_AMBIENT_COMP {
+    pub struct SceneBlock: scene of
+        CELLS_SEED_COMP, CELLS_PLACE_COMP, CELLS_UPDATE_COMP, BOUNCES_GATHER_COMP, CELLS_AMBIENT_FRAG {
         eye: Vec3,
         cell: f32,
         near: f32,
@@ -141,8 +143,9 @@ pub struct Cells {
     contests: Buffer,
     candidates: Buffer,
     sums: Buffer,
+    walls: Buffer,
     cells: Image,
-    anchors: Image,
+    cell_walls: Image,
     held: Option<Held>,
     /// Rounds so far.
     round: u32,
@@ -189,20 +192,21 @@ impl Cells {
             seed,
             cell: CELL.min(bounds.extent().length() / CELLS_ACROSS).max(1e-6),
             claim: pipeline("cells: seed", &shaders::CELLS_SEED_COMP, &traces)?,
-            place: pipeline("cells: place", &shaders::CELLS_PLACE_COMP, &[])?,
+            place: pipeline("cells: place", &shaders::CELLS_PLACE_COMP, &traces)?,
             update: pipeline("cells: update", &shaders::CELLS_UPDATE_COMP, &traces)?,
             publish: pipeline("cells: publish", &shaders::CELLS_PUBLISH_COMP, &[])?,
             prints: buffer("prints of cells", SLOTS)?,
             live: buffer("live cells", SLOTS + 1)?,
             points: buffer("points of cells", SLOTS * POINTS * POINT_BYTES / 4)?,
-            contests: buffer("contests of cells", SLOTS * POINTS)?,
+            contests: buffer("contests of cells", SLOTS * CONTESTS)?,
             candidates: buffer(
                 "candidates of cells",
                 PATHS * PATH_POINTS * CANDIDATE_BYTES / 4,
             )?,
             sums: buffer("sums of cells", SLOTS * SUM_BYTES / 4)?,
             cells: image("cells", Format::R32G32B32A32_UINT)?,
-            anchors: image("anchors of cells", Format::R32G32B32A32_SFLOAT)?,
+            walls: buffer("walls of cells", SLOTS * 4)?,
+            cell_walls: image("walls that divide cells", Format::R32G32B32A32_SFLOAT)?,
             held: None,
             round: 0,
         })
@@ -219,7 +223,7 @@ impl Cells {
             recorder.fill(buffer, 0);
         }
         recorder.fill(&self.contests, u32::MAX);
-        for image in [&self.cells, &self.anchors] {
+        for image in [&self.cells, &self.cell_walls] {
             recorder.clear(image, [0.0; 4]);
         }
         self.round = 0;
@@ -273,8 +277,8 @@ impl Cells {
     /// Binds the published cells to a pass that looks them up.
     pub(in crate::passes) fn bound_to<'r>(&'r self, pass: Pass<'r>) -> Pass<'r> {
         pass.sample("cells", &self.cells, Sampler::Nearest).sample(
-            "anchors",
-            &self.anchors,
+            "walls",
+            &self.cell_walls,
             Sampler::Nearest,
         )
     }
@@ -292,15 +296,21 @@ impl Cells {
             .storage_mut("Places", &self.points)
             .storage_mut("Contests", &self.contests)
             .storage_mut("Candidates", &self.candidates)
+            .storage_mut("Walls", &self.walls)
             .push(&SeedPush { paths: PATHS })
             .dispatch_over([PATHS, 1, 1]);
         let candidates = PATHS * PATH_POINTS;
-        recorder
-            .pass("cells: place", &self.place)
+        let pass = recorder.pass("cells: place", &self.place);
+        around
+            .tree
+            .bound_to(pass)
+            .uniform("scene", &self.block(&view, around.daylight))
             .storage_mut("Prints", &self.prints)
             .storage_mut("Places", &self.points)
             .storage_mut("Contests", &self.contests)
             .storage_mut("Candidates", &self.candidates)
+            .storage_mut("Walls", &self.walls)
+            .storage_mut("Sums", &self.sums)
             .push(&PlacePush { candidates })
             .dispatch_over([candidates, 1, 1]);
     }
@@ -324,11 +334,11 @@ impl Cells {
             .pass("cells: publish", &self.publish)
             .storage_mut("Prints", &self.prints)
             .storage_mut("Live", &self.live)
-            .storage_mut("Places", &self.points)
+            .storage_mut("Walls", &self.walls)
             .storage_mut("Contests", &self.contests)
             .storage_mut("Sums", &self.sums)
             .store("cells", &self.cells)
-            .store("anchors", &self.anchors)
+            .store("cell_walls", &self.cell_walls)
             .dispatch_over([self.most_live(), 1, 1]);
     }
 

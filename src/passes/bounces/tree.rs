@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::gpu::{Format, Image, ImageDesc, Pass, Recorder, Result, Sampler, upload_texture};
 use crate::passes::bounces::wide::{Wide, WideNode};
-use crate::scene::{Bvh, Mean, Reflectances, Scene, Triangle};
+use crate::scene::{Mean, Reflectances, Scene, Triangle};
 
 /// Nodes and triangles in a row of their images; the rows are longer if there would be too many.
 const COLUMNS: usize = 1024;
@@ -27,7 +27,7 @@ impl Tree {
     /// # Errors
     /// Fails when the device is out of memory or cannot hold images of that size.
     pub fn new(recorder: &mut Recorder, scene: &Scene) -> Result<Self> {
-        let bvh = Bvh::of(scene, |_| true);
+        let bvh = scene.hierarchy();
         let wide = Wide::of(&bvh);
         let most_rows = recorder.context().summary().max_image_edge as usize;
         let (nodes, node_columns) = upload(

@@ -1,7 +1,8 @@
-//! Lighting: per pixel, the terms L_sun + L_sky + L_bounces of the illumination model on the crate's first page, one of them, or one
-//! of its inputs. The background adds L_e; in converging frames the dome adds the diffuse part of L_sky and L_bounces.
+//! Lighting: per pixel, the terms L_sun + L_sky + L_bounces of the illumination model on the crate's first page, one of them, or
+//! one of its inputs. The background adds L_e; in converging frames the dome adds L_bounces and the diffuse part of L_sky.
 //!
-//! With [`Ambient::Cells`] the irradiances of sky and bounces are those of the cells. With [`Ambient::Ssao`] it is the lecture's model:
+//! With [`Ambient::Cells`] the irradiances of sky and bounces are those of the cells. With [`Ambient::Ssao`] it is the lecture's
+//! model:
 //!
 //! L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r))
 

@@ -241,8 +241,7 @@ options! {
             #[arg(value_name = "N", value_parser = values::bounces, allow_hyphen_values = true, default_value_t)]
             bounces: Bounces,
             /// Where single frames have the light of the sky and of other surfaces from.
-            #[arg(value_name = "SOURCE", value_parser = choice::<Ambient>(), default_value_t,
-                  default_value_if("visibility", name(Visibility::Ssao), name(Ambient::Ssao)))]
+            #[arg(value_name = "SOURCE", value_parser = choice::<Ambient>(), default_value_t)]
             ambient: Ambient,
             /// Radius of ambient occlusion (--ambient ssao), metres; 0 turns it off.
             #[arg(value_name = "METRES", value_parser = values::ao_radius, allow_hyphen_values = true,

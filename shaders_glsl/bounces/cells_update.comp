@@ -21,8 +21,7 @@ layout(set = 0, binding = 7) uniform samplerCube sky_radiance; // L of sky and g
 layout(push_constant, scalar) uniform Push {
     uint segments;     // of a path at most; 0: no bounces
     uint ends_in_cell; // whether a path takes the bounces of the cell at its end: all bounces instead of as many as segments
-    uint first;        // of the live cells to update
-    uint count;        // of cells to update
+    uint paths;        // in all: few cells get several each
     float most;        // paths that the old means count for: few after a change of the light
     vec3 sky_change;   // factor on the old means of the sky
     vec3 bounce_change; // factor on the old means of the bounces
@@ -30,6 +29,8 @@ layout(push_constant, scalar) uniform Push {
 
 // Paths after which a cell is not updated any more.
 const uint ENOUGH = 4096u;
+// Most paths of a cell in a round.
+const uint MOST_PATHS = 16u;
 
 /// Irradiance of the bounces along a path that starts with a ray from a point, klx.
 vec3 path_light(Surface surface, inout uint state) {
@@ -59,25 +60,35 @@ vec3 path_light(Surface surface, inout uint state) {
     return light;
 }
 
-void main() {
-    uint index = gl_GlobalInvocationID.x;
-    if (index >= push.count || index >= live_count) return;
-    uint slot = live[(push.first + index) % live_count];
-    uint print = prints[slot];
-    Sum sum = sums[slot];
-    uint number = uint(min(sum.samples, push.most));
-    if ((print & ANCHORED) == 0u || number >= ENOUGH) return;
-    uint state = tea(print & ~FLAGS, tea(scene.seed, number ^ scene.frame << 16));
+/// Adds a path to the means of a cell.
+void add_path(inout Sum sum, uint slot, uint print) {
+    uint number = uint(sum.samples);
+    uint state = tea(print, tea(scene.seed, number ^ scene.frame << 16));
     Point point = points[slot * POINTS + state % POINTS];
     vec3 n = normal_unpack(point.normal);
-    vec3 toward = cosine_direction(n, scrambled_sobol(number, tea(print & ~FLAGS, scene.seed)));
+    vec3 toward = cosine_direction(n, scrambled_sobol(number, tea(print, scene.seed)));
     Hit hit = closest(point.position, toward, FAR);
     vec3 sky = vec3(0.0), bounce = vec3(0.0);
     if (hit.distance == FAR) sky = PI * textureLod(sky_radiance, toward, 0.0).rgb;
     else if (push.segments > 0u) bounce = path_light(surface_of(hit, point.position, toward), state);
     // Later paths end in better cells: the weights of their light grow with the cube of their number.
-    float k = float(number) + 1.0;
-    sum.sky = mix(sum.sky * push.sky_change, sky, 1.0 / k);
-    sum.bounce = mix(sum.bounce * push.bounce_change, bounce, 4.0 * k / ((k + 1.0) * (k + 1.0)));
-    sums[slot] = Sum(sum.sky, sum.bounce, k, sum.hidden);
+    float k = sum.samples + 1.0;
+    sum.sky = mix(sum.sky, sky, 1.0 / k);
+    sum.bounce = mix(sum.bounce, bounce, 4.0 * k / ((k + 1.0) * (k + 1.0)));
+    sum.samples = k;
+}
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= live_count) return;
+    uint slot = live[index];
+    uint print = prints[slot];
+    Sum sum = sums[slot];
+    if ((print & ANCHORED) == 0u) return;
+    sum.samples = min(sum.samples, push.most);
+    sum.sky *= push.sky_change;
+    sum.bounce *= push.bounce_change;
+    uint paths = sum.samples < float(ENOUGH) ? clamp(push.paths / live_count, 1u, MOST_PATHS) : 0u;
+    for (uint i = 0u; i < paths; ++i) add_path(sum, slot, print & ~FLAGS);
+    sums[slot] = sum;
 }

@@ -4,8 +4,8 @@ use clap::parser::ValueSource;
 use glam::Vec3;
 
 use super::{
-    OptionValues, Options, OptionsError, Preset, Reflections, Visibility, all_tables, long, name,
-    tables,
+    Ambient, OptionValues, Options, OptionsError, Preset, Reflections, Visibility, all_tables,
+    long, name, tables,
 };
 use crate::scene::{
     Bounds, Camera, DEFAULT_FOV_DEG, LoadOptions, Loaded, NamedOptions, SceneError,
@@ -84,9 +84,14 @@ impl Options {
             given.set("camera", camera);
         }
         let (mut options, matches) = given.parse()?;
-        let is_default = matches.value_source("visibility") == Some(ValueSource::DefaultValue);
-        if is_default && options.samples >= DOME_SAMPLES {
+        let is_default = |name| matches.value_source(name) == Some(ValueSource::DefaultValue);
+        if is_default("visibility") && options.samples >= DOME_SAMPLES {
             options.visibility = Visibility::Dome;
+        }
+        // Who asks for ambient occlusion of the screen gets it.
+        let asks_for_screen = !is_default("visibility") && options.visibility == Visibility::Ssao;
+        if asks_for_screen && is_default("ambient") {
+            options.ambient = Ambient::Ssao;
         }
         options.check()?;
         Ok(options)

@@ -41,10 +41,13 @@ const SUM_BYTES: u32 = 32;
 /// Paths from the eye in a round.
 const PATHS: u32 = 1 << 12;
 
+/// Paths from the cells in a round, unless there are more cells.
+const UPDATES: u32 = 1 << 14;
+
 /// Edge of the smallest cells, metres, in scenes larger than a room.
 const CELL: f32 = 0.25;
 /// Smallest number of cells along the diagonal of a scene.
-const CELLS_ACROSS: f32 = 128.0;
+const CELLS_ACROSS: f32 = 40.0;
 /// Distance from the eye within which cells are smallest, in their edges; they double with every doubling of the distance.
 const NEAR_CELLS: f32 = 24.0;
 
@@ -114,8 +117,7 @@ gpu_struct! {
     pub struct UpdatePush: push of CELLS_UPDATE_COMP {
         segments: u32,
         ends_in_cell: u32,
-        first: u32,
-        count: u32,
+        paths: u32,
         most: f32,
         sky_change: Vec3,
         bounce_change: Vec3,
@@ -361,8 +363,7 @@ fn update_push(old: Option<&Held>, new: &Held) -> UpdatePush {
     UpdatePush {
         segments,
         ends_in_cell,
-        first: 0,
-        count: SLOTS,
+        paths: UPDATES,
         most: if change.is_some() {
             AFTER_CHANGE
         } else {

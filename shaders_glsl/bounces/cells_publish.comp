@@ -21,6 +21,11 @@ SUMS;
 layout(set = 0, binding = 8, rgba32ui) uniform writeonly uimage2DArray cells;
 layout(set = 0, binding = 9, rgba32f) uniform writeonly image2DArray cell_walls;
 
+layout(push_constant, scalar) uniform Push {
+    uint paths; // as those of the update
+    uint first;
+} push;
+
 // Paths after which the smoothing fades out.
 const float SMOOTHED = 512.0;
 
@@ -70,6 +75,9 @@ void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index >= live_count) return;
     uint slot = live[index];
+    // A cell that is not published yet may be new.
+    bool is_new = sums[slot].samples <= float(MOST_PATHS);
+    if (!is_new && !is_due(index, live_count, push.first, push.paths)) return;
     ivec3 texel = ivec3(slot_texel(slot), 0);
     Sum sum = smoothed(slot);
     uint word = uint(sum.samples) | (sum.hidden & 0xffu) << SAMPLE_BITS;

@@ -16,14 +16,18 @@ struct Key {
     uint print;
 };
 
-/// Level of the cells at a distance from the eye (metres): the edge doubles with each.
-int cell_level(float distance) {
-    return max(int(floor(log2(max(distance / scene.near, 1e-6)))) + 1, 0);
+// Width of the band in which the level changes, in levels.
+const float BAND = 0.3;
+
+/// Level of the cells at a distance from the eye (metres): the edge doubles with each. Within a band the levels mix by chance;
+/// `xi`: 0..1.
+int cell_level(float distance, float xi) {
+    return max(int(floor(log2(max(distance / scene.near, 1e-6)) + BAND * (xi - 0.5))) + 1, 0);
 }
 
 /// Level of the cell for a candidate: some are for larger cells, which stand in where small ones are missing.
 int candidate_level(vec3 p, uint hash) {
-    return cell_level(distance(p, scene.eye)) + ((hash & 0x700u) == 0u ? 2 : 0);
+    return cell_level(distance(p, scene.eye), float(hash >> 24) / 255.0) + ((hash & 0x700u) == 0u ? 2 : 0);
 }
 
 float cell_edge(int level) {

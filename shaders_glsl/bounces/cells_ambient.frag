@@ -23,8 +23,6 @@ void main() {
     float distance = view.near / d;
     uint normal = texel_at(normal_material, pixel).x;
     vec3 world = view.eye + view.world_from_view * (ray * distance);
-    // Jimenez 2014, "Next generation post processing in Call of Duty: Advanced Warfare": interleaved gradient noise.
-    float noise = fract(52.9829189 * fract(dot(floor(gl_FragCoord.xy), vec2(0.06711056, 0.00583715))));
-    Cached light = interpolated(world, normal_unpack(normal), noise);
+    Cached light = interpolated(world, normal_unpack(normal));
     ambient = half_size_pack(Ambient(light.sky, light.bounce), distance, normal);
 }

@@ -54,20 +54,16 @@ Cached cached_at(vec3 p, vec3 n, int level) {
 }
 
 /// The light at a point: of its cell, or of the next larger cell that exists.
-Cached cached_from(vec3 p, vec3 n, int level) {
+Cached cached(vec3 p, vec3 n) {
+    int level = cell_level(distance(p, scene.eye));
     Cached light = cached_at(p, n, level);
     for (int i = 1; i <= COARSER && !light.is_found; ++i) light = cached_at(p, n, level + i);
     return light;
 }
 
-Cached cached(vec3 p, vec3 n) {
-    return cached_from(p, n, cell_level(distance(p, scene.eye), 0.5));
-}
-
-/// The light at a point, interpolated between the four cells of its surface around it. Cells beyond a wall do not count. `xi`: 0..1,
-/// mixes levels.
-Cached interpolated(vec3 p, vec3 n, float xi) {
-    int level = cell_level(distance(p, scene.eye), xi);
+/// The light at a point, interpolated between the four cells of its surface around it. Cells beyond a wall do not count.
+Cached interpolated(vec3 p, vec3 n) {
+    int level = cell_level(distance(p, scene.eye));
     float edge = cell_edge(level);
     uint side = dominant(n), axis = side % 3u;
     vec3 place = turned(in_grid(p, n, edge), axis), slope = turned(n, axis);
@@ -96,6 +92,6 @@ Cached interpolated(vec3 p, vec3 n, float xi) {
         bounce += weight * shared_exponent_unpack(texels[i].z);
         sum += weight;
     }
-    if (sum < 1e-4) return cached_from(p, n, level);
+    if (sum < 1e-4) return cached(p, n);
     return Cached(sky / sum, bounce / sum, true);
 }

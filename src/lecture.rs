@@ -33,6 +33,8 @@
 //! | Illumination model | L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r)) | [`Show`](crate::options::Show) | `light/lighting.frag`: `r_dot_l` | `each_addend_is_in_the_picture_once` |
 //! | Rendering equation | ρ_s V(x, r) L_sky(r), V over the lobe around r | [`Reflections::Hidden`](crate::options::Reflections::Hidden) | `dome/dome_specular.frag`: `along_r` | `a_mirror_on_the_floor_shows_the_sky_in_the_opening_and_nowhere_else` |
 //! | Rendering equation | V(x, ω) L_sky(ω) cos θ over the sky | [`SkySampler`](crate::daylight::sky_sampler::SkySampler) | `dome/dome_gather.frag`: `light_of_directions` | `a_room_with_an_opening_gets_the_light_of_its_configuration_factor` |
+//! | Rendering equation | ρ_d/π ∫ L(ω) cos θ dω over what other surfaces reflect | [`Bounces`](crate::options::Bounces) | `bounces/bounces_gather.comp`: `gathered` | `each_addend_is_in_the_picture_once` |
+//! | Rendering equation | the same for a sensor, all bounces | [`measure`](crate::sensors::measure) | – | `the_wall_of_a_sphere_with_an_opening_has_the_light_of_all_bounces` |
 //!
 //! # The slips, and what is done instead
 //!
@@ -77,7 +79,8 @@
 //! positive to the east: t = UTC + equation of time + longitude/15.
 //!
 //! **L_sun and E_sun.** The illumination model calls the sun's term L_sun, "radiance (color) of the directional light", but the slide "Direct
-//! sunlight" sets that colour to the irradiance at normal incidence, in lux here. It is E_sun in this program. The disc's luminance is
+//! sunlight" sets that colour to the irradiance at normal incidence, in lux here. It is E_sun in this program, where
+//! L_sun is the sun's light that a surface reflects toward the eye. The disc's luminance is
 //! [`Daylight::sun_luminance`](crate::daylight::Daylight::sun_luminance), and E_sun = L Ω.
 //!
 //! **1383 W/m² are no lux.** They are power over all wavelengths. The 683 lm/W hold at 555 nm only: the product, 945 klux, would be 7.4
@@ -101,6 +104,11 @@
 //! The course framework's settings: day 200 at 10 h solar time, latitude 45°, turbidity 2.4, the lecture's sun formulas without refraction, black
 //! below the horizon, sky cube 512², irradiance of 2 000 random samples as 400 frames of 5, shadow map 4096², occlusion at half resolution,
 //! 55° field of view, one linear scale s = 0.025 and γ = 1. Any other option still rules.
+//!
+//! The preset also sets `--ambient ssao --bounces 0`: the picture is then the row "Illumination model" of the map, with A in screen
+//! space. Without the preset it is L = L_e + L_sun + L_sky + L_bounces ([the first page](crate)): the same terms of the sun, the sky by its
+//! true visibility instead of A, and the light that surfaces reflect onto each other. From 16 samples on A is the true visibility with
+//! the preset too, unless `--visibility ssao` is given.
 //!
 //! The framework multiplies s with the sky's RGB divided by 683, and with the sun's radiometric RGB: both are luminous values over
 //! 683 lm/W. So with luminances L in cd/m² the picture is

@@ -6,29 +6,45 @@
 //!  place + time ──► sun ──► sky cube ──► irradiance cube (geometry shader, gl_Layer, progressive)
 //!                    │         │               │
 //!  scene ─┬─► shadow map       │               │
-//!         └─► G-buffer ──► ambient occlusion   │
+//!         ├─► G-buffer         │               │
+//!         └─► hierarchy ──► cells: irradiance of sky and bounces, in world space
 //!                    │         │               │
 //!                    └──► lighting ◄───────────┘
 //!                              │
 //!                         background ──► average ──► exposure ──► tone map ──► window | PNG | EXR
-//!                                           ▲
-//!                    dome: the sky's true visibility, by shadow maps from its directions
+//!                                         ▲   ▲
+//!   dome: the sky's true visibility, by   │   └── gather: the bounces, by rays from the pixels,
+//!   shadow maps from its directions ──────┘       lit where they end by the sun and the cells
 //! ```
 //!
 //! [`frame::Frame::record`] draws that picture from top to bottom. While something moves, [`frame::Frame::preview`] leaves the
-//! average out. Lighting evaluates the lecture's illumination model,
+//! average out. The picture is
+//!
+//! L = L_e + L_sun + L_sky + L_bounces
+//!
+//! | term | value | in a single frame | in an average with `--visibility dome` |
+//! |---|---|---|---|
+//! | L_e | sky, ground and the sun's disc where no surface is | sky cube, disc | the same |
+//! | L_sun | (ρ_d/π (n·l) + ρ_s (r·l)^p) V E_sun | V by the shadow map | V by shadow maps of points of the disc |
+//! | L_sky | ρ_d/π ∫ V(ω) L_sky(ω) cos θ dω + ρ_s L_sky(r) | diffuse: cells | diffuse: dome |
+//! | L_bounces | ρ_d/π E_bounces | cells | gathered rays |
+//!
+//! with E_sun the sun's illuminance at normal incidence, V visibility, L_sky(ω) the sky cube without the sun's disc, and E_bounces the
+//! irradiance of the light that other surfaces reflect. Only diffuse reflection bounces; emission of surfaces is not read.
+//!
+//! `--ambient ssao --bounces 0`, part of `--preset lecture`, shows the lecture's illumination model in single frames:
 //!
 //! L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r))
 //!
-//! with E_sun the sun's illuminance at normal incidence, V the shadow map, A ambient occlusion (it dims sky light only),
-//! E_sky the irradiance cube (it holds E, not E/π) and L_sky the sky cube without the sun's disc.
+//! with A ambient occlusion in screen space (it dims sky light only) and E_sky the irradiance cube (it holds E, not E/π).
 //!
 //! # Rooms
 //!
 //! - [`daylight`]: the physics, CPU only, in `f64`; the reference that the shaders are tested against.
-//! - [`scene`]: models, materials, textures, cameras, scene files; no device.
+//! - [`scene`]: models, materials, textures, cameras, scene files, the hierarchy that rays go through; no device.
 //! - [`gpu`]: Vulkan nouns; knows no pass by name.
-//! - [`passes`]: passes in folders by topic; [`frame`] owns them.
+//! - [`passes`]: passes in folders by topic; [`frame`] owns them. [`passes::bounces`]: the hierarchy on the device, the cells, the
+//!   rays that are gathered; [`passes::dome`]: the sky by shadow maps.
 //! - [`sensors`]: illuminance at points with all diffuse bounces, by path tracing on the CPU; no device.
 //! - [`lecture`]: every formula of the slides with its function, shader and test.
 //! - [`compare`]: two pictures, how far apart: radiometric errors and FLIP.

@@ -170,9 +170,9 @@ options! {
             #[arg(value_name = "WHAT", value_parser = choice::<Show>(), default_value_t,
                   default_value_if("false_colour", name(Quantity::Illuminance), name(Show::Irradiance)))]
             show: Show,
-            /// Write every addend, V, A, normal, depth and albedo as named layers (render to .exr only).
+            /// Write every addend (sun, sky, bounces ..), V, A, normal, depth and albedo as named layers (render to .exr only).
             layers: bool,
-            /// Defaults of the lecture: its sun, sky, sampling and scale; other options override them.
+            /// Defaults of the lecture: its sun, sky, sampling and scale, ambient occlusion, no bounces; other options override them.
             #[arg(value_name = "NAME", value_parser = choice::<Preset>())]
             preset: Option<Preset>,
         }
@@ -243,7 +243,7 @@ options! {
             /// Where single frames have the light of the sky and of other surfaces from.
             #[arg(value_name = "SOURCE", value_parser = choice::<Ambient>(), default_value_t)]
             ambient: Ambient,
-            /// Radius of ambient occlusion, metres; 0 turns it off.
+            /// Radius of ambient occlusion (--ambient ssao), metres; 0 turns it off.
             #[arg(value_name = "METRES", value_parser = values::ao_radius, allow_hyphen_values = true,
                   default_value_t = SsaoSettings::default().radius.into())]
             ao_radius: f64,

@@ -58,7 +58,8 @@ void main() {
     Candidate candidate = candidates[index];
     if (candidate.slot == NONE || contests[candidate.place] != candidate.hash) return;
     uint contest = candidate.place - candidate.slot * CONTESTS, first = candidate.slot * POINTS;
-    float edge = cell_edge(candidate_level(candidate.point.position, candidate.hash));
+    int level = candidate_level(candidate.point.position, candidate.hash);
+    float edge = cell_edge(level);
     if (contest == WALL) {
         walls[candidate.slot] = wall_between(candidate.point, points[first].position, edge);
         atomicOr(prints[candidate.slot], DIVIDED);
@@ -68,6 +69,6 @@ void main() {
     if (contest != 0u) return;
     // A new cell: its other point is the anchor too until another one comes.
     points[first + 1u] = candidate.point;
-    sums[candidate.slot].hidden = hidden_neighbours(candidate.point, edge);
+    sums[candidate.slot].hidden = hidden_pack(hidden_neighbours(candidate.point, edge), level);
     atomicOr(prints[candidate.slot], ANCHORED);
 }

@@ -17,7 +17,7 @@ struct Sum {
     vec3 sky;      // irradiance of the sky, klx
     vec3 bounce;   // irradiance of the bounces, klx
     float samples; // number of paths
-    uint hidden;   // neighbours that something hides
+    uint hidden;   // neighbours that something hides; from bit 8 on: the level
 };
 
 // Points of a cell: its anchor, and one that new candidates replace.
@@ -36,3 +36,8 @@ const uint PATH_POINTS = 4u;
 #define CANDIDATES layout(set = 0, binding = 5, scalar) buffer Candidates { Candidate candidates[]; }
 #define WALLS layout(set = 0, binding = 11, scalar) buffer Walls { vec4 walls[]; }
 #define SUMS layout(set = 0, binding = 6, scalar) buffer Sums { Sum sums[]; }
+
+/// The hidden neighbours and the level in a word.
+uint hidden_pack(uint hidden, int level) {
+    return hidden | uint(level) << 8;
+}

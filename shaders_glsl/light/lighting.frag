@@ -10,7 +10,8 @@
 #include "phong.glsl"
 #include "face.glsl"
 
-// The lecture's slide "Illumination model for skylight":
+// L_sun + L_sky + L_bounces. With CELLS the irradiances of sky and bounces are those of the cells. Otherwise it is the lecture's
+// slide "Illumination model for skylight":
 //   L_r = rho_d/pi ((n.l) V E_sun + A E_sky(n)) + rho_s ((r.l)^p V E_sun + L_sky(r))
 
 layout(location = 0) out vec4 radiance; // rgb: kcd/m^2, or the quantity shown; a: illuminance of the surface, klx

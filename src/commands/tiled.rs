@@ -1,6 +1,6 @@
 //! Images too large to be drawn in one piece: tiles are drawn and stitched row by row into the file.
 //!
-//! All tiles share the same light. Shadow map and sky are those of the whole image; exposure and ambient occlusion come from an
+//! All tiles share the same light. Shadow map, sky and cells are those of the whole image; exposure and ambient occlusion come from an
 //! overview. Up to 36 million pixels the overview has full resolution, and the result is identical to the image drawn in one
 //! piece; above that, ambient occlusion is coarser. There are no seams either way.
 

@@ -14,12 +14,12 @@ use super::FrameSettings;
 /// How the sky's visibility from a surface is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Visibility {
-    /// Screen-space ambient occlusion: a single-frame estimate from the surfaces on screen.
+    /// That of a single frame, see [`Ambient`](crate::passes::light::lighting::Ambient).
     #[default]
     Ssao,
     /// Shadow maps from sampled sky directions: their mean over the samples converges to the true visibility.
     Dome,
-    /// `Dome`, cross-faded from an `Ssao` preview, for a view that comes to rest.
+    /// `Dome`, cross-faded from a preview, for a view that comes to rest.
     Progressive,
 }
 

@@ -117,14 +117,14 @@ choices! {
     Show {
         Beauty = "beauty": "The whole picture, cd/m²",
         Sun = "sun": "ρ_d/π (n·l) V E_sun, cd/m²",
-        Sky = "sky": "ρ_d/π A E_sky(n), cd/m²",
-        Bounces = "bounces": "ρ_d/π E_bounce, the light that other surfaces reflect, cd/m²",
+        Sky = "sky": "ρ_d/π A E_sky(n), the light of the visible sky, cd/m²",
+        Bounces = "bounces": "ρ_d/π E_bounces, the light that other surfaces reflect, cd/m²",
         SunSpecular = "sun-specular": "ρ_s (r·l)^p V E_sun, cd/m²",
         SkySpecular = "sky-specular": "ρ_s L_sky(r), cd/m²",
         Background = "background": "Sky, ground and the sun's disc where no surface is, cd/m²",
         Visibility = "visibility": "V, 0..1",
-        Occlusion = "occlusion": "A, 0..1",
-        Irradiance = "irradiance": "(n·l) V E_sun + A E_sky(n), lux",
+        Occlusion = "occlusion": "A, the fraction of the sky's light that is visible, 0..1",
+        Irradiance = "irradiance": "(n·l) V E_sun + A E_sky(n) + E_bounces, lux",
         Albedo = "albedo": "ρ_d, 0..1",
         Normal = "normal": "World normal on the viewer's side, -1..1",
         Depth = "depth": "Distance along the view axis, metres; 0 is background",
@@ -150,7 +150,7 @@ choices! {
         Aces = "aces": "ACES RRT + ODT, Hill's fit",
     }
     Visibility {
-        Ssao = "ssao": "Screen-space ambient occlusion: at once, from what is on the screen",
+        Ssao = "ssao": "Single frames: at once; if given, --ambient is ssao too",
         Dome | Progressive = "dome": "Shadow maps from directions of the sky: converges to the truth over the samples",
     }
 }

@@ -287,7 +287,7 @@ fn frame_settings(job: &Job) -> FrameSettings {
     let mut settings = job.frame_settings(job.settings.show, Precision::Half);
     settings.irradiance.samples = job.settings.irradiance_samples;
     settings.sampling.dome.illuminance = true;
-    // Ambient occlusion while something moves; at rest the image fades over to the true visibility.
+    // Single frames while something moves; at rest the image fades over to the converging one.
     if settings.sampling.visibility == Visibility::Dome {
         settings.sampling.visibility = Visibility::Progressive;
     }

@@ -86,7 +86,7 @@ impl Bounces {
 gpu_struct! {
     /// The light of a moment and the grid of cells, see `include/scene_light.glsl`.
     pub struct SceneBlock: scene of
-        CELLS_SEED_COMP, CELLS_PLACE_COMP, CELLS_UPDATE_COMP, BOUNCES_GATHER_COMP, CELLS_AMBIENT_FRAG {
+        CELLS_SEED_COMP, CELLS_PLACE_COMP, CELLS_UPDATE_COMP, CELLS_PUBLISH_COMP, BOUNCES_GATHER_COMP, CELLS_AMBIENT_FRAG {
         eye: Vec3,
         cell: f32,
         near: f32,
@@ -252,7 +252,7 @@ impl Cells {
             self.held = Some(held.clone());
             self.seed(recorder, around);
             self.update(recorder, around, &update);
-            self.publish(recorder);
+            self.publish(recorder, around);
             self.round += 1;
         }
     }
@@ -331,9 +331,11 @@ impl Cells {
             .dispatch_over([self.most_live(), 1, 1]);
     }
 
-    fn publish(&self, recorder: &mut Recorder) {
+    fn publish(&self, recorder: &mut Recorder, around: &Surroundings<'_>) {
         recorder
             .pass("cells: publish", &self.publish)
+            .uniform("scene", &self.block(around.view, around.daylight))
+            .storage_mut("Places", &self.points)
             .storage_mut("Prints", &self.prints)
             .storage_mut("Live", &self.live)
             .storage_mut("Walls", &self.walls)

@@ -1,4 +1,8 @@
-//! Lighting: per pixel, the lecture's illumination model, one of its terms, or one of its inputs.
+//! Lighting: per pixel, the terms L_sun + L_sky + L_bounces of the illumination model on the crate's first page, one of them, or
+//! one of its inputs. The background adds L_e; in converging frames the dome adds L_bounces and the diffuse part of L_sky.
+//!
+//! With [`Ambient::Cells`] the irradiances of sky and bounces are those of the cells. With [`Ambient::Ssao`] it is the lecture's
+//! model:
 //!
 //! L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r))
 
@@ -44,9 +48,9 @@ pub enum Show {
     Beauty,
     /// ρ_d/π (n·l) V E_sun, cd/m².
     Sun,
-    /// ρ_d/π A E_sky(n), cd/m².
+    /// ρ_d/π A E_sky(n), the light of the visible sky, cd/m².
     Sky,
-    /// ρ_d/π E_bounce, the light that other surfaces reflect, cd/m².
+    /// ρ_d/π E_bounces, the light that other surfaces reflect, cd/m².
     Bounces,
     /// ρ_s (r·l)^p V E_sun, cd/m².
     SunSpecular,
@@ -56,9 +60,9 @@ pub enum Show {
     Background,
     /// V, 0..1.
     Visibility,
-    /// A, 0..1.
+    /// A, the fraction of the sky's light that is visible, 0..1.
     Occlusion,
-    /// (n·l) V E_sun + A E_sky(n), lux.
+    /// (n·l) V E_sun + A E_sky(n) + E_bounces, lux.
     Irradiance,
     /// ρ_d, 0..1.
     Albedo,

@@ -1,6 +1,6 @@
 //! Cross-fade from the preview, shown during movement, to the converging picture at rest.
 //!
-//! The two differ because ambient occlusion only approximates the sky's visibility and, in the first frames, because of noise.
+//! The two differ because the preview only approximates the light of sky and bounces and, in the first frames, because of noise.
 //! The last preview is kept and fades out along a smoothstep.
 
 use std::sync::Arc;

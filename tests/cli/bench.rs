@@ -16,12 +16,13 @@ fn place() -> tempfile::TempDir {
     folder
 }
 
-/// Benchmarks a few frames of a small picture.
+/// Benchmarks a few frames of a small picture of direct light.
 fn bench(folder: &Path, words: &str) -> Output {
     Command::new(env!("CARGO_BIN_EXE_skylight"))
         .current_dir(folder)
         .args(["bench", "m.obj", "--frames", "2", "--size", "64x36"])
         .args(["--irradiance-samples", "64", "--quiet"])
+        .args(["--bounces", "0", "--ambient", "ssao"])
         .args(words.split_whitespace())
         .output()
         .expect("the program starts")

@@ -6,8 +6,17 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// A small, quick picture that suffices for most tests.
-const SMALL: [&str; 4] = ["--size", "64x36", "--irradiance-samples", "16"];
+/// A small, quick picture that suffices for most tests: the light of sun and sky alone.
+const SMALL: [&str; 8] = [
+    "--size",
+    "64x36",
+    "--irradiance-samples",
+    "16",
+    "--bounces",
+    "0",
+    "--ambient",
+    "ssao",
+];
 
 /// A model with a material and a texture.
 const OBJ: &str = "mtllib m.mtl\nv -2 0 2\nv 2 0 2\nv 2 0 -2\nv -2 0 -2\nv 0 2 0\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl paint\n\
@@ -307,13 +316,20 @@ fn metadata_name_flags_and_the_preset() {
 #[test]
 fn an_exr_is_32_bit_float_with_its_parameters() {
     let place = Place(tempfile::tempdir().expect("a scratch folder"));
-    place.render(&["-o", "a.EXR", "--sun", "215,42"]).silently();
+    let words = ["render", "-o", "a.EXR", "--sun", "215,42"];
+    place.run(&[&words[..], &SMALL[..4]].concat()).silently();
     assert_eq!(place.names(), ["a.EXR"]);
     let exr = exr(&place.path().join("a.EXR"));
     assert_eq!(exr.size, [64, 36]);
     let names: Vec<_> = exr.channels.keys().map(String::as_str).collect();
     assert_eq!(names, ["B", "G", "R"]);
-    for (key, value) in [("sun", "215,42"), ("turbidity", "3.2"), ("samples", "1")] {
+    for (key, value) in [
+        ("sun", "215,42"),
+        ("turbidity", "3.2"),
+        ("samples", "1"),
+        ("bounces", "all"),
+        ("ambient", "cells"),
+    ] {
         assert_eq!(exr.parameters.get(key).map(String::as_str), Some(value));
     }
     // Scene luminances in daylight are thousands of cd/m², not display values.
@@ -325,12 +341,21 @@ fn an_exr_is_32_bit_float_with_its_parameters() {
 #[test]
 fn the_addends_of_layers_sum_to_the_picture() {
     let place = Place(tempfile::tempdir().expect("a scratch folder"));
+    let words = ["render", "-o", "a.exr", "--layers", "--samples", "3"];
+    let converged = ["--visibility", "dome"];
     let ended = place
-        .render(&["-o", "a.exr", "--layers", "--samples", "3"])
+        .run(&[&words[..], &converged, &SMALL[..4]].concat())
         .silently();
-    assert!(ended.stdout.contains("12 layer"), "{}", ended.stdout);
+    assert!(ended.stdout.contains("13 layer"), "{}", ended.stdout);
     let exr = exr(&place.path().join("a.exr"));
-    let addends = ["sun", "sky", "sun-specular", "sky-specular", "background"];
+    let addends = [
+        "sun",
+        "sky",
+        "bounces",
+        "sun-specular",
+        "sky-specular",
+        "background",
+    ];
     let mut names = vec![
         "visibility.Y".to_owned(),
         "occlusion.Y".into(),
@@ -344,7 +369,7 @@ fn the_addends_of_layers_sum_to_the_picture() {
     names.sort();
     let found: Vec<_> = exr.channels.keys().cloned().collect();
     assert_eq!(found, names);
-    let mut seen = [false; 5];
+    let mut seen = [false; 6];
     for c in ["R", "G", "B"] {
         let layers = addends.map(|layer| &exr.channels[&format!("{layer}.{c}")]);
         for (i, whole) in exr.channels[c].iter().enumerate() {
@@ -356,7 +381,7 @@ fn the_addends_of_layers_sum_to_the_picture() {
             }
         }
     }
-    assert_eq!(seen, [true; 5], "every addend is somewhere: {addends:?}");
+    assert_eq!(seen, [true; 6], "every addend is somewhere: {addends:?}");
 }
 
 #[test]
@@ -635,7 +660,15 @@ fn help_version_and_info_are_results() {
         ),
         (
             &["render", "--help"],
-            &["--turbidity", "--layers", "[default: 1280x720]"],
+            &[
+                "--turbidity",
+                "--layers",
+                "--bounces <N>",
+                "--ambient <SOURCE>",
+                "[default: all]",
+                "[default: cells]",
+                "[default: 1280x720]",
+            ],
         ),
         (&["bench", "--help"], &["--json", "--frames"]),
         (

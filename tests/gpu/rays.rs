@@ -94,7 +94,14 @@ fn the_device_meets_the_same_triangles_of_real_models() {
         return;
     };
     let mut device = Device::new();
-    for file in ["gi/office/office.obj", "scenes/colonnade/colonnade.obj"] {
+    for file in [
+        "gi/office/office.obj",
+        "scenes/colonnade/colonnade.obj",
+        "scenes/house/house.obj",
+        "scenes/medieval_building/Medieval_building.obj",
+        "scenes/teapot/teapot_on_plane.obj",
+        "scenes/courtyard/scene.obj",
+    ] {
         let loaded = load(&shared.join(file), &LoadOptions::default()).expect("a model");
         check(&mut device, file, &loaded.scene);
     }

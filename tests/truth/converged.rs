@@ -1,4 +1,4 @@
-//! Converged renders against path-traced references under identical light (`../shared/truth`), edges included.
+//! Converged renders of direct light against path-traced references under identical light (`../shared/truth`), edges included.
 //!
 //! 64 samples, or SKYLIGHT_TRUTH_SAMPLES. Sky light in the references has about 1 % of noise per pixel, which averages out
 //! over many pixels.
@@ -22,7 +22,7 @@ const MEDIAN_OF_FEW: f64 = 0.015;
 const RMSE: f64 = 0.03;
 const MEDIAN: f64 = 0.012;
 
-fn samples() -> u32 {
+pub fn samples() -> u32 {
     match std::env::var("SKYLIGHT_TRUTH_SAMPLES") {
         Ok(text) => text.parse().expect("SKYLIGHT_TRUTH_SAMPLES is a number"),
         Err(_) => SAMPLES,
@@ -30,13 +30,13 @@ fn samples() -> u32 {
 }
 
 /// A view's reference and our render.
-struct Compared {
+pub struct Compared {
     folder: PathBuf,
     name: &'static str,
     reference: Picture,
     ours: Picture,
     /// Pixels with geometry, eroded by one pixel.
-    inside: Vec<bool>,
+    pub inside: Vec<bool>,
 }
 
 fn picture(exr: &Exr) -> Picture {
@@ -49,25 +49,25 @@ fn picture(exr: &Exr) -> Picture {
 }
 
 impl Compared {
-    fn new(shared: &Path, name: &'static str) -> Self {
+    /// Renders a view with `further` options; `reference` is the light of the reference: `direct` or `full`.
+    pub fn new(shared: &Path, name: &'static str, reference: &str, further: &[&str]) -> Self {
         let folder = shared.join("truth");
         let read = |what: &str| Exr::read(&folder.join(format!("{name}_{what}.exr")));
         let json = fs::read(folder.join(format!("{name}.json"))).expect("the view");
         let view: Value = serde_json::from_slice(&json).expect("JSON");
-        let samples = samples().to_string();
-        let further = ["--visibility", "dome", "--samples", &samples];
         let aov = read("aov");
         let geometry: Vec<bool> = aov.channel("depth.T").iter().map(|d| *d > 0.0).collect();
         Self {
             name,
-            reference: picture(&read("direct")),
-            ours: picture(&crate::truth::render(shared, &view, &further)),
+            reference: picture(&read(reference)),
+            ours: picture(&crate::truth::render(shared, &view, further)),
             inside: eroded(aov.size, &geometry),
             folder,
         }
     }
 
-    fn statistics(&self, mask: &[bool]) -> Statistics {
+    /// Our render against the reference.
+    pub fn statistics(&self, mask: &[bool]) -> Statistics {
         Statistics::new(&self.reference, &self.ours, mask).expect("figures")
     }
 
@@ -103,7 +103,16 @@ fn every_view_converges_to_the_path_tracers() {
     };
     let mut faults = Vec::new();
     for name in VIEWS {
-        let compared = Compared::new(&shared, name);
+        let count = samples().to_string();
+        let direct = [
+            "--visibility",
+            "dome",
+            "--samples",
+            &count,
+            "--bounces",
+            "0",
+        ];
+        let compared = Compared::new(&shared, name, "direct", &direct);
         let (s, flip) = (compared.statistics(&compared.inside), compared.flip());
         println!(
             "{name:10} {} samples: ratio {:.4} RMSE/mean {:.4} median {:.4} p95 {:.4} FLIP {flip:.4}",

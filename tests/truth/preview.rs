@@ -1,4 +1,4 @@
-//! Single-frame renders against path-traced references under identical light (`../shared/truth`), term by term.
+//! Single-frame renders of direct light with ambient occlusion of the screen against path-traced references under identical light (`../shared/truth`), term by term.
 //!
 //! No specular reflection, no ground light, and direct light of sun and sky without interreflection. Uncertain pixels are
 //! excluded and counted: those within 2 pixels of an edge of the geometry or of a shadow.
@@ -135,8 +135,9 @@ impl Compared {
         let parameters: Value = serde_json::from_slice(&json).expect("JSON");
         let layers = ["sun", "sky", "direct", "aov", "ao_inf"];
         let read = |layer| Picture::new(Exr::read(&folder.join(format!("{name}_{layer}.exr"))));
+        let further = ["--layers", "--bounces", "0", "--ambient", "ssao"];
         Self {
-            ours: Picture::new(crate::truth::render(shared, &parameters, &["--layers"])),
+            ours: Picture::new(crate::truth::render(shared, &parameters, &further)),
             truth: layers.map(|layer| (layer, read(layer))).into(),
             parameters,
         }

@@ -1,0 +1,274 @@
+//! Light that surfaces reflect onto others, from rays in converged pictures and from the cells in single frames: closed forms, sums,
+//! repeatability, and no light through walls.
+
+use crate::common::Worst;
+use crate::gpu::{
+    Device, Model, Picture, camera, clear_day, constant_sky, matt, settings, showing,
+};
+use crate::lighting::{check_sum, glossy_scene, roundings};
+use glam::DVec3;
+use skylight::daylight::colour::luminance;
+use skylight::daylight::sky::Daylight;
+use skylight::frame::{FrameSettings, Visibility};
+use skylight::passes::bounces::cells::Bounces;
+use skylight::passes::light::lighting::{Ambient, Show};
+use skylight::scene::{Camera, Material, Scene};
+
+/// Settings of a single frame that has all its light but the sun's from the cells.
+fn single(width: u32, height: u32) -> FrameSettings {
+    let mut set = settings(width, height);
+    set.bounces = Bounces::All;
+    set.lighting.ambient = Ambient::Cells;
+    set
+}
+
+/// Settings of a converged picture with all bounces.
+fn converged(width: u32, height: u32, samples: u32) -> FrameSettings {
+    let mut set = single(width, height);
+    set.samples = samples;
+    set.sampling.visibility = Visibility::Dome;
+    set.sampling.dome.map_edge = 512;
+    set
+}
+
+fn with_bounces(bounces: Bounces, settings: FrameSettings) -> FrameSettings {
+    FrameSettings {
+        bounces,
+        ..settings
+    }
+}
+
+fn mean(picture: &Picture) -> f64 {
+    picture.pixels().map(|(_, l)| luminance(l)).sum::<f64>() / picture.texels.len() as f64
+}
+
+fn brightest(picture: &Picture) -> f64 {
+    let channels = picture.pixels().map(|(_, l)| l.max_element());
+    channels.fold(0.0, f64::max)
+}
+
+/// Half the width of each of the two rooms, their height and half their depth, metres.
+const HALF: f32 = 2.0;
+const HEIGHT: f32 = 3.0;
+/// Where the partition stands: off the round coordinates, so that it divides cells.
+const PARTITION: f32 = 0.11;
+
+/// Two rooms on one floor beside a partition without thickness. The one at x > 0 has an opening in its roof; the other is closed.
+fn rooms(paint: &Material) -> Scene {
+    let (depth, up) = ([0.0, 0.0, 2.0 * HALF], [0.0, HEIGHT, 0.0]);
+    let (long, left) = ([4.0 * HALF, 0.0, 0.0], -2.0 * HALF);
+    let wall = |model: Model, x: f32| model.quad([x, 0.0, -HALF], depth, up, paint);
+    let roof = |model: Model, from: f32, to: f32| {
+        model.quad([from, HEIGHT, -HALF], [to - from, 0.0, 0.0], depth, paint)
+    };
+    let mut model = Model::default()
+        .quad([left, 0.0, HALF], long, [0.0, 0.0, -2.0 * HALF], paint)
+        .quad([left, 0.0, -HALF], long, up, paint)
+        .quad([left, 0.0, HALF], long, up, paint);
+    for x in [left, PARTITION, 2.0 * HALF] {
+        model = wall(model, x);
+    }
+    for (from, to) in [(left, 1.2), (2.8, 2.0 * HALF)] {
+        model = roof(model, from, to);
+    }
+    model.build()
+}
+
+/// From one end of a room toward the partition: of the dark one, or of the lit one.
+fn inside(dark: bool) -> Camera {
+    let side = if dark { -1.0 } else { 1.0 };
+    Camera {
+        fov_deg: 75.0,
+        ..camera([3.7 * side, 1.6, 1.2], [0.0, 1.2, -0.4])
+    }
+}
+
+#[test]
+fn the_same_seed_makes_the_same_light() {
+    let (scene, day, view) = (rooms(&matt(0.6)), clear_day(150.0, 60.0), inside(false));
+    for (what, set) in [
+        ("converged", converged(96, 64, 4)),
+        ("single", single(96, 64)),
+    ] {
+        let with_seed = |seed: u32| {
+            let mut set = set;
+            set.sampling.dome.seed = seed;
+            Device::new().picture(&scene, set, &day, &view)
+        };
+        let (a, b, c) = (with_seed(3), with_seed(3), with_seed(4));
+        let differ = a.texels.iter().zip(&b.texels).filter(|(a, b)| a != b);
+        let ratio = mean(&a) / mean(&c);
+        println!(
+            "{what}: {} texels differ; mean to that of another seed {ratio:.4}",
+            differ.clone().count()
+        );
+        assert_eq!(differ.count(), 0, "{what}");
+        assert_ne!(a.texels, c.texels);
+        assert!((ratio - 1.0).abs() < 0.03, "{what}: {ratio}");
+    }
+}
+
+#[test]
+fn the_addends_with_bounces_sum_to_the_picture() {
+    let mut device = Device::new();
+    let (scene, day) = (glossy_scene(), clear_day(150.0, 35.0));
+    let view = camera([1.0, 1.6, 4.5], [0.0, 0.6, 0.0]);
+    let mut check = |set: FrameSettings, worst: Worst| {
+        let mut frame = device.frame(&scene, set, &day, &view);
+        let mut shown = |show| {
+            frame.show(show).expect("shown");
+            device.draw(&mut frame, &day, &view);
+            let picture = device.picture_of(&frame);
+            picture.pixels().map(|p| p.1).collect::<Vec<_>>()
+        };
+        let addends = Show::ADDENDS.map(&mut shown);
+        check_sum(&shown(Show::Beauty), &addends, &[], worst);
+    };
+    check(single(96, 54), roundings("sum of the addends, cells"));
+    // The means of the frames round at each step.
+    let worst = Worst::new("sum of the addends, converged", 1e-5);
+    check(converged(96, 54, 4), worst);
+}
+
+#[test]
+fn without_bounces_there_is_direct_light_alone() {
+    let mut device = Device::new();
+    let (scene, day, view) = (rooms(&matt(0.6)), clear_day(150.0, 60.0), inside(false));
+    for (what, set) in [
+        ("converged", converged(96, 64, 4)),
+        ("single", single(96, 64)),
+    ] {
+        let mut draw = |show, bounces| {
+            let set = with_bounces(bounces, showing(show, set));
+            device.picture(&scene, set, &day, &view)
+        };
+        let none = draw(Show::Bounces, Bounces::UpTo(0));
+        assert_eq!(brightest(&none), 0.0, "{what}: bounces");
+        let direct = draw(Show::Beauty, Bounces::UpTo(0));
+        let (whole, bounced) = (
+            draw(Show::Beauty, Bounces::All),
+            draw(Show::Bounces, Bounces::All),
+        );
+        println!(
+            "{what}: direct {:.4}, bounces {:.4} kcd/m2",
+            mean(&direct),
+            mean(&bounced)
+        );
+        assert!(mean(&bounced) > 0.1 * mean(&direct));
+        let mut worst = Worst::new("picture without its bounces against direct light", 1e-5);
+        for (pixel, l) in whole.pixels() {
+            let [x, y] = pixel;
+            let rest = l - bounced.at(x, y) - direct.at(x, y);
+            worst.see(
+                rest.abs().max_element() / l.max_element(),
+                format!("{what} {pixel:?}"),
+            );
+        }
+        worst.finish();
+    }
+}
+
+#[test]
+fn more_bounces_are_brighter_and_those_beyond_the_eighth_are_few() {
+    let mut device = Device::new();
+    let (scene, day, view) = (rooms(&matt(0.5)), clear_day(150.0, 60.0), inside(false));
+    for (what, set) in [
+        ("converged", converged(64, 48, 32)),
+        ("single", single(64, 48)),
+    ] {
+        let counts = [1, 2, 8].map(Bounces::UpTo);
+        let [one, two, eight, all] =
+            [counts[0], counts[1], counts[2], Bounces::All].map(|bounces| {
+                let set = with_bounces(bounces, showing(Show::Bounces, set));
+                mean(&device.picture(&scene, set, &day, &view))
+            });
+        println!("{what}: 1, 2, 8 and all bounces {one:.4} {two:.4} {eight:.4} {all:.4} kcd/m2");
+        assert!(0.0 < one && one < two && two < eight, "{what}");
+        // At most half of the light is reflected each time: beyond the eighth there is less than 1 % of it.
+        assert!((all / eight - 1.0).abs() < 0.03, "{what}: {}", all / eight);
+    }
+}
+
+/// A white floor with a white cube: under a uniform sky everything is as bright as the sky, corners too.
+#[test]
+fn in_the_furnace_bounces_make_up_for_what_is_hidden() {
+    let mut device = Device::new();
+    let white = matt(1.0);
+    let scene = Model::default()
+        .ground(4.0, &white)
+        .cube([0.0, 1.0, 0.0], 1.0, &white)
+        .build();
+    let (day, view) = (
+        constant_sky(1000.0),
+        camera([4.0, 2.5, 5.0], [0.0, 0.7, 0.0]),
+    );
+    let direct = with_bounces(Bounces::UpTo(0), single(64, 48));
+    let darkest = |picture: &Picture| {
+        let pixels = picture.pixels().map(|(_, l)| l.min_element());
+        pixels.fold(f64::INFINITY, f64::min)
+    };
+    let without = darkest(&device.picture(&scene, direct, &day, &view));
+    println!("without bounces the darkest pixel has {without:.3}");
+    assert!(without < 0.7, "{without}");
+    for (what, set, rmse_limit) in [
+        ("converged", converged(64, 48, 64), 0.05),
+        ("single", single(64, 48), 0.08),
+    ] {
+        let picture = device.picture(&scene, set, &day, &view);
+        let (mean, pixels) = (mean(&picture), picture.texels.len() as f64);
+        let squares = picture
+            .pixels()
+            .map(|(_, l)| (l - DVec3::ONE).length_squared() / 3.0);
+        let rmse = (squares.sum::<f64>() / pixels).sqrt();
+        println!(
+            "{what}: mean {mean:.4}, RMSE {rmse:.4}, darkest {:.3}",
+            darkest(&picture)
+        );
+        assert!((mean - 1.0).abs() < 0.01, "{what}: {mean}");
+        assert!(rmse < rmse_limit, "{what}: {rmse}");
+    }
+}
+
+/// The picture in the dark room after eight previews in the lit one and `count` in the dark one, with the cells of both. Cells at the
+/// partition are divided once both sides are seen; what the dark cells took from them before fades with their further paths.
+fn after_a_walk(
+    device: &mut Device,
+    scene: &Scene,
+    set: FrameSettings,
+    day: &Daylight,
+    count: u32,
+) -> Picture {
+    let mut frame = device.frame(scene, set, day, &inside(false));
+    for (dark, count) in [(false, 8), (true, count)] {
+        for _ in 0..count {
+            device.run(|rec| frame.preview(rec, day, &inside(dark)));
+        }
+    }
+    device.picture_of(&frame)
+}
+
+#[test]
+fn no_light_comes_through_a_wall_without_thickness() {
+    let mut device = Device::new();
+    let (scene, day) = (rooms(&matt(0.7)), clear_day(90.0, 65.0));
+    let check = |what: &str, lit: &Picture, dark: &Picture| {
+        let (share, most) = (mean(dark) / mean(lit), brightest(dark) / mean(lit));
+        println!(
+            "{what}: lit {:.4} kcd/m2; of it in the dark room {share:.2e}, at most {most:.2e}",
+            mean(lit)
+        );
+        assert!(mean(lit) > 0.0 && share < 1e-3, "{what}: {share}");
+    };
+    // Light from the cells and of the rays; the maps of sun and sky have tests of their own.
+    for (show, frames) in [(Show::Sky, 2), (Show::Bounces, 48)] {
+        let set = showing(show, single(96, 64));
+        let [lit, dark] =
+            [false, true].map(|dark| device.picture(&scene, set, &day, &inside(dark)));
+        check(&format!("single, {show:?}"), &lit, &dark);
+        let walked = after_a_walk(&mut device, &scene, set, &day, frames);
+        check(&format!("after a walk, {show:?}"), &lit, &walked);
+    }
+    let set = showing(Show::Bounces, converged(96, 64, 16));
+    let [lit, dark] = [false, true].map(|dark| device.picture(&scene, set, &day, &inside(dark)));
+    check("converged, bounces", &lit, &dark);
+}

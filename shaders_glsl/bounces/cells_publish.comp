@@ -81,18 +81,17 @@ Mean smoothed(Sum own, vec3 p, vec3 n, int level) {
     return mean;
 }
 
-/// The light of the cells of a level around a point, interpolated.
+/// The light of the cells of a level around a point: a quadratic B-spline, as wide as the tent and the interpolation of lookups.
 Mean interpolated(vec3 p, vec3 n, int level) {
     uint side = dominant(n), axis = side % 3u;
     vec3 place = turned(in_grid(p, n, cell_edge(level)), axis), slope = turned(n, axis);
-    vec2 base = floor(place.xy - 0.5);
-    vec2 f = place.xy - 0.5 - base;
+    vec2 f = fract(place.xy) - 0.5;
+    vec2 w[3] = vec2[](0.5 * (0.5 - f) * (0.5 - f), 0.75 - f * f, 0.5 * (0.5 + f) * (0.5 + f));
     Mean mean = Mean(vec3(0.0), vec3(0.0), 0.0);
-    for (int i = 0; i < 4; ++i) {
-        vec2 corner = vec2(i & 1, i >> 1);
-        uint slot = slot_at(cell_beside(place, slope, base + corner + 0.5 - place.xy, axis), side, level, p);
-        vec2 w = mix(1.0 - f, f, corner);
-        if (slot != NONE) add(mean, sums[slot], w.x * w.y * min(sums[slot].samples, 1.0));
+    for (int i = 0; i < 9; ++i) {
+        ivec2 k = ivec2(i % 3, i / 3);
+        uint slot = slot_at(cell_beside(place, slope, vec2(k - 1) - f, axis), side, level, p);
+        if (slot != NONE) add(mean, sums[slot], w[k.x].x * w[k.y].y * sums[slot].samples);
     }
     return mean;
 }

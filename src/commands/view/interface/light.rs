@@ -8,6 +8,7 @@ use crate::commands::view::document::Document;
 use crate::daylight::irradiance::IrradianceMethod;
 use crate::daylight::sample_count::ErrorEstimate;
 use crate::daylight::sky::Conditions;
+use crate::options::{Ambient, Bounces};
 
 /// Shadow map resolutions to choose from, texels.
 const SHADOW_SIZES: [u32; 4] = [1024, 2048, 4096, 8192];
@@ -31,10 +32,21 @@ impl Readout {
         ui.label(line);
         ui.separator();
         let settings = &mut document.job.settings;
-        let radius = Slider::new(&mut settings.ao_radius, 0.0..=20.0);
-        ui.add(radius.text("AO radius, m"))
-            .on_hover_text("radius of ambient occlusion; 0 turns it off");
-        choice(ui, "AO resolution", &mut settings.ao_resolution);
+        bounces(ui, &mut settings.bounces);
+        choice(ui, "moving view", &mut settings.ambient);
+        match settings.ambient {
+            Ambient::Cells => {
+                let paths = Slider::new(&mut settings.refine, 0..=65_536);
+                ui.add(paths.logarithmic(true).text("paths a frame"))
+                    .on_hover_text("light paths that refine the cells while the view moves");
+            }
+            Ambient::Ssao => {
+                let radius = Slider::new(&mut settings.ao_radius, 0.0..=20.0);
+                ui.add(radius.text("AO radius, m"))
+                    .on_hover_text("radius of ambient occlusion; 0 turns it off");
+                choice(ui, "AO resolution", &mut settings.ao_resolution);
+            }
+        }
         ui.separator();
         shadow_size(ui, &mut settings.shadow_size);
         let samples = Slider::new(&mut settings.samples, 1..=1024);
@@ -80,6 +92,27 @@ impl Readout {
         self.error = Some((done, error));
         error
     }
+}
+
+/// Numbers of bounces to choose from.
+const BOUNCES: [Bounces; 5] = [
+    Bounces::All,
+    Bounces::UpTo(0),
+    Bounces::UpTo(1),
+    Bounces::UpTo(2),
+    Bounces::UpTo(4),
+];
+
+fn bounces(ui: &mut Ui, bounces: &mut Bounces) {
+    ComboBox::new("bounces", "bounces")
+        .selected_text(bounces.to_string())
+        .show_ui(ui, |ui| {
+            for count in BOUNCES {
+                ui.selectable_value(bounces, count, count.to_string());
+            }
+        })
+        .response
+        .on_hover_text("how often surfaces reflect light onto others");
 }
 
 fn shadow_size(ui: &mut Ui, size: &mut u32) {

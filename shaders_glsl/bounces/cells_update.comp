@@ -39,6 +39,9 @@ vec3 path_light(Surface surface, inout uint state) {
         throughput *= surface.albedo;
         vec3 sun = sun_irradiance_at(surface.position, surface.normal, vec2(rnd(state), rnd(state)));
         Cached here = cached(surface.position, surface.normal);
+        // What is published is still of the old light.
+        here.sky *= push.sky_change;
+        here.bounce *= push.bounce_change;
         light += throughput * (sun + here.sky);
         bool is_last = segment == push.segments;
         // Russian roulette between the cell and another segment: bounces between dark surfaces converge at once.

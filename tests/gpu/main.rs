@@ -19,6 +19,7 @@ mod furnace;
 mod golden;
 mod irradiance;
 mod lighting;
+mod moving_light;
 mod penumbra;
 mod probe;
 mod rays;

@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 
+use crate::daylight::colour::luminance;
 use crate::daylight::sky::Daylight;
 use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
 use crate::gpu::{
@@ -57,8 +58,14 @@ const SEGMENTS: u32 = 4;
 /// Rounds in which new cells are filled, whatever the budget.
 pub const FIRST_ROUNDS: u32 = 16;
 
-/// Paths that the old mean of a cell counts for after a change of the light.
-const AFTER_CHANGE: f32 = 4.0;
+/// Rounds in the frame in which the light has jumped.
+const JUMP_ROUNDS: u32 = 4;
+
+/// Most paths that the old mean of a cell counts for after a small change of the light.
+const MOST_KEPT: f64 = 64.0;
+
+/// Turn of the sun after which the old light says nothing about the new one, degrees.
+const JUMP_DEG: f64 = 10.0;
 
 /// How often light is reflected from surface to surface before it reaches the one in view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -269,11 +276,12 @@ impl Cells {
             self.clear(recorder);
             self.held = None;
         }
-        let is_changed = self.held.as_ref().is_some_and(|old| *old != held);
+        let change = self.held.as_ref().map_or(0.0, |old| change(old, &held));
         let (rounds, seeds, paths) = match work {
             Work::Rounds(rounds) => (rounds, PATHS, None),
             // All cells follow the light; new ones are filled at once.
-            Work::Paths(_) if is_changed || self.round < FIRST_ROUNDS => (1, PATHS, None),
+            Work::Paths(_) if change >= 1.0 => (JUMP_ROUNDS, PATHS, None),
+            Work::Paths(_) if change > 0.0 || self.round < FIRST_ROUNDS => (1, PATHS, None),
             Work::Paths(0) => (0, 0, None),
             Work::Paths(paths) => (1, (paths / PATH_POINTS).clamp(1, PATHS), Some(paths)),
         };
@@ -390,30 +398,42 @@ impl Cells {
     }
 }
 
+/// How much two lights differ: 0 not at all, 1 so much that one says nothing about the other.
+fn change(old: &Held, new: &Held) -> f64 {
+    let (old, new) = (&old.daylight, &new.daylight);
+    let turn = old.sun_direction.dot(new.sun_direction).clamp(-1.0, 1.0);
+    let level = |day: &Daylight| luminance(horizontal(day)).max(1e-3);
+    let dimming = (level(new) / level(old)).ln().abs();
+    if old == new {
+        return 0.0;
+    }
+    (turn.acos().to_degrees() / JUMP_DEG + dimming).clamp(1e-3, 1.0)
+}
+
+/// Illuminance of sun and sky on open ground, lux.
+fn horizontal(day: &Daylight) -> DVec3 {
+    day.sky_irradiance_up + day.sun_illuminance * day.sun_direction.y.max(0.0)
+}
+
 /// The update that brings cells from the light that they hold to a new one.
 fn update_push(old: Option<&Held>, new: &Held) -> UpdatePush {
     let (segments, ends_in_cell) = match new.bounces {
         Bounces::All => (SEGMENTS, 1),
         Bounces::UpTo(count) => (count, 0),
     };
-    let change = old.filter(|old| old.daylight != new.daylight);
+    let changed = old.filter(|old| old.daylight != new.daylight);
     let factor = |of: fn(&Daylight) -> DVec3| {
-        change.map_or(Vec3::ONE, |old| ratio(of(&new.daylight), of(&old.daylight)))
+        changed.map_or(Vec3::ONE, |old| ratio(of(&new.daylight), of(&old.daylight)))
     };
+    let kept = changed.map(|old| (1.0 / change(old, new) - 1.0).clamp(0.0, MOST_KEPT));
     UpdatePush {
         segments,
         ends_in_cell,
         paths: UPDATES,
         first: u32::MAX,
-        most: if change.is_some() {
-            AFTER_CHANGE
-        } else {
-            f32::MAX
-        },
+        most: kept.map_or(f32::MAX, |paths| paths as f32),
         sky_change: factor(|day| day.sky_irradiance_up),
-        bounce_change: factor(|day| {
-            day.sky_irradiance_up + day.sun_illuminance * day.sun_direction.y.max(0.0)
-        }),
+        bounce_change: factor(horizontal),
     }
 }
 

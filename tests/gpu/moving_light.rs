@@ -1,0 +1,105 @@
+//! The light of a moving view: it follows a moving sun, and it is steady while nothing but the camera moves.
+
+use crate::gpu::{Device, Model, Picture, camera, clear_day, matt, settings};
+use skylight::daylight::colour::luminance;
+use skylight::daylight::sky::Daylight;
+use skylight::frame::{Frame, FrameSettings};
+use skylight::passes::bounces::cells::Bounces;
+use skylight::passes::light::lighting::{Ambient, Show};
+use skylight::scene::{Camera, Scene};
+
+/// A court: a floor between two walls of different reflectance.
+fn court() -> Scene {
+    let (bright, dark) = (matt(0.8), matt(0.3));
+    Model::default()
+        .ground(6.0, &matt(0.5))
+        .quad([-3.0, 0.0, 4.0], [0.0, 0.0, -8.0], [0.0, 4.0, 0.0], &bright)
+        .quad([3.0, 0.0, -4.0], [0.0, 0.0, 8.0], [0.0, 4.0, 0.0], &dark)
+        .build()
+}
+
+/// Settings of single frames that show the light of the cells.
+fn moving(show: Show) -> FrameSettings {
+    let mut set = settings(128, 72);
+    set.bounces = Bounces::All;
+    set.lighting.ambient = Ambient::Cells;
+    set.showing(show)
+}
+
+fn previews(device: &mut Device, frame: &mut Frame, day: &Daylight, eye: &Camera, count: u32) {
+    for _ in 0..count {
+        device.run(|rec| frame.preview(rec, day, eye));
+    }
+}
+
+fn mean(picture: &Picture) -> f64 {
+    picture.pixels().map(|(_, l)| luminance(l)).sum::<f64>() / picture.texels.len() as f64
+}
+
+#[test]
+fn the_light_follows_a_moving_sun_within_four_frames() {
+    let mut device = Device::new();
+    let scene = court();
+    let eye = camera([0.0, 2.0, 7.0], [0.0, 1.0, 0.0]);
+    let days = [
+        clear_day(90.0, 30.0),
+        clear_day(150.0, 50.0),
+        clear_day(260.0, 20.0),
+    ];
+    for show in [Show::Bounces, Show::Sky] {
+        let set = moving(show);
+        let mut frame = device.run(|rec| Frame::new(rec, &scene, set).expect("a frame"));
+        previews(&mut device, &mut frame, &days[0], &eye, 24);
+        for day in &days[1..] {
+            previews(&mut device, &mut frame, day, &eye, 4);
+            let soon = mean(&device.picture_of(&frame));
+            let mut other = device.run(|rec| Frame::new(rec, &scene, set).expect("a frame"));
+            previews(&mut device, &mut other, day, &eye, 48);
+            let finally = mean(&device.picture_of(&other));
+            println!("{show:?}: {soon:.3} after four frames, {finally:.3} at last");
+            assert!((soon / finally - 1.0).abs() < 0.05, "{show:?}");
+            previews(&mut device, &mut frame, day, &eye, 8);
+        }
+    }
+}
+
+/// The mean over the pixels of the temporal standard deviation of their luminance, relative to the mean luminance.
+fn flicker(pictures: &[Picture]) -> f64 {
+    let count = pictures.len() as f64;
+    let luminances: Vec<Vec<f64>> = pictures
+        .iter()
+        .map(|picture| picture.pixels().map(|(_, l)| luminance(l)).collect())
+        .collect();
+    let pixels = luminances[0].len();
+    let (mut deviations, mut sum) = (0.0, 0.0);
+    for pixel in 0..pixels {
+        let values = luminances.iter().map(|picture| picture[pixel]);
+        let mean = values.clone().sum::<f64>() / count;
+        let variance = values.map(|v| (v - mean).powi(2)).sum::<f64>() / count;
+        deviations += variance.sqrt();
+        sum += mean;
+    }
+    deviations / sum
+}
+
+#[test]
+fn still_pixels_do_not_flicker_while_the_cells_are_refined() {
+    let mut device = Device::new();
+    let eye = camera([0.0, 2.0, 7.0], [0.0, 1.0, 0.0]);
+    let set = moving(Show::Beauty);
+    let mut frame = device.run(|rec| Frame::new(rec, &court(), set).expect("a frame"));
+    let day = clear_day(150.0, 40.0);
+    previews(&mut device, &mut frame, &day, &eye, 30);
+    let pictures: Vec<Picture> = (0..16)
+        .map(|_| {
+            previews(&mut device, &mut frame, &day, &eye, 1);
+            device.picture_of(&frame)
+        })
+        .collect();
+    let flicker = flicker(&pictures);
+    println!(
+        "temporal standard deviation {:.3} % of the mean",
+        100.0 * flicker
+    );
+    assert!(flicker < 0.01);
+}

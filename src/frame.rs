@@ -14,7 +14,7 @@ pub use self::settings::FrameSettings;
 
 use crate::daylight::sky::Daylight;
 use crate::gpu::{Context, Image, Recorder, Result};
-use crate::passes::bounces::cells::{Cells, FIRST_ROUNDS, Surroundings, Work};
+use crate::passes::bounces::cells::{Cells, Surroundings, Work};
 use crate::passes::bounces::tree::Tree;
 use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{Light, Show};
@@ -29,17 +29,18 @@ use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::view::{View, Window};
 use crate::scene::{Camera, Scene};
 
-use self::ambient::{AmbientNeed, AmbientPasses};
+use self::ambient::{AmbientInputs, AmbientNeed, AmbientPasses};
 use self::average::{Average, Lit};
 use self::sample::Sample;
 
 /// Frames of an average after which a round of the cells follows.
 const FRAMES_OF_ROUND: u32 = 4;
 
-/// The work for the cells in frame number `index` of an average. `is_new`: they are empty.
+/// The work for the cells in frame number `index` of an average. `is_new`: it does not follow a preview. The same seed gives the
+/// same picture, so such an average starts with new cells.
 fn cell_work(index: Option<u32>, is_new: bool, refine: u32) -> Work {
     match index {
-        _ if is_new => Work::Rounds(FIRST_ROUNDS),
+        _ if is_new => Work::Anew,
         Some(index) => Work::Rounds(u32::from(index.is_multiple_of(FRAMES_OF_ROUND))),
         None => Work::Paths(refine),
     }
@@ -243,34 +244,24 @@ impl Frame {
                 daylight,
                 sky_radiance: sky.radiance,
             };
-            // The same seed gives the same picture, so an average that does not follow a preview starts with new cells.
             let is_new = index == Some(0) && self.drawn.is_none_or(|drawn| drawn.index.is_some());
-            if is_new {
-                cells.restart();
-            }
-            let bounces = settings.cell_bounces(is_dome);
-            cells.record(
-                rec,
-                &around,
-                bounces,
-                cell_work(index, is_new, settings.refine),
-            );
+            let work = cell_work(index, is_new, settings.refine);
+            cells.record(rec, &around, settings.cell_bounces(is_dome), work);
         }
-        let ambient = match (&mut self.ambient, &self.cells) {
-            (AmbientPasses::Cells(pass), Some(cells)) if !is_dome => {
-                pass.record(rec, cells, surfaces, daylight, &view)
-            }
-            (AmbientPasses::Screen(screen), _) if !is_dome => match self.tiling.occlusion(index) {
-                Some(of_picture) => of_picture,
-                None => {
-                    let above = screen.heights.record(rec, geometry, settings.ssao.radius);
-                    screen
-                        .ssao
-                        .record(rec, surfaces, &view, above, sample.phase)
-                }
-            },
+        let ambient = if is_dome {
             // Bound but not read.
-            _ => &surfaces.normal_material,
+            &surfaces.normal_material
+        } else {
+            let inputs = AmbientInputs {
+                geometry,
+                surfaces,
+                daylight,
+                view: &view,
+                cells: self.cells.as_ref(),
+                of_picture: self.tiling.occlusion(index),
+                phase: sample.phase,
+            };
+            self.ambient.record(rec, &inputs)
         };
         let light = Light {
             daylight,

@@ -69,6 +69,7 @@ void main() {
     if (contest != 0u) return;
     // A new cell: its other point is the anchor too until another one comes.
     points[first + 1u] = candidate.point;
-    sums[candidate.slot].hidden = hidden_pack(hidden_neighbours(candidate.point, edge), level);
+    uint hidden = hidden_pack(hidden_neighbours(candidate.point, edge), level);
+    sums[candidate.slot] = Sum(vec3(0.0), vec3(0.0), 0.0, hidden);
     atomicOr(prints[candidate.slot], ANCHORED);
 }

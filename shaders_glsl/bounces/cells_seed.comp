@@ -20,10 +20,25 @@ PLACES;
 CONTESTED;
 CANDIDATES;
 WALLS;
+STAMPS;
 
 layout(push_constant, scalar) uniform Push {
     uint paths;
 } push;
+
+// Rounds after which a cell that no path has met gives way to a new one, if its bucket is full.
+const uint KEPT_ROUNDS = 256u;
+
+/// Takes the slot that paths have not met for longest from its cell; NONE if all are in use.
+uint take_over(Key key) {
+    uint oldest = key.bucket;
+    for (uint i = 1u; i < BUCKET; ++i) if (stamps[key.bucket + i] < stamps[oldest]) oldest = key.bucket + i;
+    if (stamps[oldest] + KEPT_ROUNDS > scene.frame) return NONE;
+    uint before = prints[oldest];
+    if (atomicCompSwap(prints[oldest], before, key.print) != before) return NONE;
+    for (uint i = 0u; i < CONTESTS; ++i) contests[oldest * CONTESTS + i] = 0xffffffffu;
+    return oldest;
+}
 
 /// The slot of a cell, created if there is none; NONE if its bucket is full.
 uint claim_slot(Key key) {
@@ -39,7 +54,7 @@ uint claim_slot(Key key) {
         }
         if ((found & ~FLAGS) == key.print) return slot;
     }
-    return NONE;
+    return take_over(key);
 }
 
 /// The slot of the cell of a point, created if there is none, and the contest for it; NONE if the table is full there.
@@ -50,6 +65,7 @@ uint claim(vec3 p, vec3 n, int level, out uint contest) {
     for (uint sibling = 0u; sibling < SIBLINGS; ++sibling) {
         uint slot = claim_slot(cell_key(at, side, level, sibling));
         if (slot == NONE) return NONE;
+        stamps[slot] = scene.frame;
         uint print = prints[slot];
         if ((print & DIVIDED) != 0u && !is_on_side(walls[slot], p)) continue;
         contest = (print & ANCHORED) == 0u ? 0u : (print & DIVIDED) != 0u ? 1u : WALL;

@@ -37,6 +37,7 @@ const uint PATH_POINTS = 4u;
 #define CONTESTED layout(set = 0, binding = 4, scalar) buffer Contests { uint contests[]; }
 #define CANDIDATES layout(set = 0, binding = 5, scalar) buffer Candidates { Candidate candidates[]; }
 #define WALLS layout(set = 0, binding = 11, scalar) buffer Walls { vec4 walls[]; }
+#define STAMPS layout(set = 0, binding = 12, scalar) buffer Stamps { uint stamps[]; }
 #define SUMS layout(set = 0, binding = 6, scalar) buffer Sums { Sum sums[]; }
 
 /// The hidden neighbours and the level in a word.

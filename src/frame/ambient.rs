@@ -3,12 +3,16 @@
 use std::sync::Arc;
 
 use super::{FrameSettings, Visibility};
-use crate::gpu::{Context, Result};
+use crate::daylight::sky::Daylight;
+use crate::gpu::{Context, Image, Recorder, Result};
 use crate::passes::bounces::ambient::CellLight;
+use crate::passes::bounces::cells::Cells;
 use crate::passes::light::lighting::Ambient;
 use crate::passes::occlusion::height_map::HeightMap;
 use crate::passes::occlusion::ssao::{Ssao, SsaoSettings};
+use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::surfaces::geometry::Geometry;
+use crate::passes::view::View;
 
 /// The passes of one of the sources.
 pub(super) enum AmbientPasses {
@@ -17,7 +21,7 @@ pub(super) enum AmbientPasses {
     /// Screen-space ambient occlusion of the unoccluded sky.
     Screen(Box<Screen>),
     /// The cells.
-    Cells(CellLight),
+    Cells(Box<CellLight>),
 }
 
 /// The passes of screen-space ambient occlusion.
@@ -47,7 +51,36 @@ impl AmbientNeed {
     }
 }
 
+/// The images that may be read for it.
+pub(super) struct AmbientInputs<'a> {
+    pub geometry: &'a Geometry,
+    pub surfaces: &'a Surfaces,
+    pub daylight: &'a Daylight,
+    pub view: &'a View,
+    pub cells: Option<&'a Cells>,
+    /// Occlusion of the whole picture, if it is shared by tiles.
+    pub of_picture: Option<&'a Image>,
+    /// Phase of the noise of occlusion, 0..1.
+    pub phase: f32,
+}
+
 impl AmbientPasses {
+    /// Records the passes and returns what the lighting reads; any image if it reads none.
+    pub fn record<'a>(&'a mut self, rec: &mut Recorder, inputs: &AmbientInputs<'a>) -> &'a Image {
+        let (surfaces, view) = (inputs.surfaces, inputs.view);
+        match (self, inputs.cells) {
+            (Self::Cells(pass), Some(cells)) => {
+                pass.record(rec, cells, surfaces, inputs.daylight, view)
+            }
+            (Self::Screen(screen), _) => inputs.of_picture.unwrap_or_else(|| {
+                let radius = screen.ssao.radius();
+                let above = screen.heights.record(rec, inputs.geometry, radius);
+                screen.ssao.record(rec, surfaces, view, above, inputs.phase)
+            }),
+            _ => &surfaces.normal_material,
+        }
+    }
+
     /// # Errors
     /// Fails when the device cannot create the resources.
     pub fn new(
@@ -62,7 +95,7 @@ impl AmbientPasses {
                 heights: HeightMap::new(context, geometry)?,
                 ssao: Ssao::new(context, size, ssao)?,
             })),
-            AmbientNeed::Cells => Self::Cells(CellLight::new(context, size)?),
+            AmbientNeed::Cells => Self::Cells(Box::new(CellLight::new(context, size)?)),
         })
     }
 }

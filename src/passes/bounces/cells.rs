@@ -13,7 +13,6 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 
-use crate::daylight::colour::luminance;
 use crate::daylight::sky::Daylight;
 use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
 use crate::gpu::{
@@ -21,6 +20,7 @@ use crate::gpu::{
     Recorder, Result, Sampler, Shader, shaders,
 };
 use crate::gpu_struct;
+use crate::passes::bounces::change::{change, horizontal, ratio};
 use crate::passes::bounces::tree::Tree;
 use crate::passes::kilo;
 use crate::passes::view::View;
@@ -56,16 +56,13 @@ const NEAR_CELLS: f32 = 24.0;
 const SEGMENTS: u32 = 4;
 
 /// Rounds in which new cells are filled, whatever the budget.
-pub const FIRST_ROUNDS: u32 = 16;
+const FIRST_ROUNDS: u32 = 16;
 
 /// Rounds in the frame in which the light has jumped.
 const JUMP_ROUNDS: u32 = 4;
 
 /// Most paths that the old mean of a cell counts for after a small change of the light.
 const MOST_KEPT: f64 = 64.0;
-
-/// Turn of the sun after which the old light says nothing about the new one, degrees.
-const JUMP_DEG: f64 = 10.0;
 
 /// How often light is reflected from surface to surface before it reaches the one in view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -164,6 +161,7 @@ pub struct Cells {
     contests: Buffer,
     candidates: Buffer,
     sums: Buffer,
+    stamps: Buffer,
     walls: Buffer,
     cells: Image,
     cell_walls: Image,
@@ -175,6 +173,8 @@ pub struct Cells {
 /// The work of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Work {
+    /// Forget all cells, then as many rounds as fill new ones.
+    Anew,
     /// Rounds in which every cell gets a path, and few cells get several: the same ones in every run.
     Rounds(u32),
     /// A round of about so many paths. If there are more cells, each gets one in turn.
@@ -234,6 +234,7 @@ impl Cells {
                 PATHS * PATH_POINTS * CANDIDATE_BYTES / 4,
             )?,
             sums: buffer("sums of cells", SLOTS * SUM_BYTES / 4)?,
+            stamps: buffer("rounds of cells", SLOTS)?,
             cells: image("cells", Format::R32G32B32A32_UINT)?,
             walls: buffer("walls of cells", SLOTS * 4)?,
             cell_walls: image("walls that divide cells", Format::R32G32B32A32_SFLOAT)?,
@@ -242,14 +243,9 @@ impl Cells {
         })
     }
 
-    /// Forgets all cells: the next round starts anew, with the same random numbers.
-    pub fn restart(&mut self) {
-        self.held = None;
-    }
-
     /// Empties the table.
     fn clear(&mut self, recorder: &mut Recorder) {
-        for buffer in [&self.prints, &self.live, &self.sums] {
+        for buffer in [&self.prints, &self.live, &self.sums, &self.stamps] {
             recorder.fill(buffer, 0);
         }
         recorder.fill(&self.contests, u32::MAX);
@@ -272,12 +268,15 @@ impl Cells {
             daylight: around.daylight.clone(),
             bounces,
         };
-        if self.held.as_ref().is_none_or(|old| old.bounces != bounces) {
+        let is_other = self.held.as_ref().is_none_or(|old| old.bounces != bounces);
+        if is_other || work == Work::Anew {
             self.clear(recorder);
             self.held = None;
         }
-        let change = self.held.as_ref().map_or(0.0, |old| change(old, &held));
+        let old = self.held.as_ref();
+        let change = old.map_or(0.0, |old| change(&old.daylight, around.daylight));
         let (rounds, seeds, paths) = match work {
+            Work::Anew => (FIRST_ROUNDS, PATHS, None),
             Work::Rounds(rounds) => (rounds, PATHS, None),
             // All cells follow the light; new ones are filled at once.
             Work::Paths(_) if change >= 1.0 => (JUMP_ROUNDS, PATHS, None),
@@ -341,6 +340,7 @@ impl Cells {
             .storage_mut("Contests", &self.contests)
             .storage_mut("Candidates", &self.candidates)
             .storage_mut("Walls", &self.walls)
+            .storage_mut("Stamps", &self.stamps)
             .push(&SeedPush { paths })
             .dispatch_over([paths, 1, 1]);
         let candidates = paths * PATH_POINTS;
@@ -398,23 +398,6 @@ impl Cells {
     }
 }
 
-/// How much two lights differ: 0 not at all, 1 so much that one says nothing about the other.
-fn change(old: &Held, new: &Held) -> f64 {
-    let (old, new) = (&old.daylight, &new.daylight);
-    let turn = old.sun_direction.dot(new.sun_direction).clamp(-1.0, 1.0);
-    let level = |day: &Daylight| luminance(horizontal(day)).max(1e-3);
-    let dimming = (level(new) / level(old)).ln().abs();
-    if old == new {
-        return 0.0;
-    }
-    (turn.acos().to_degrees() / JUMP_DEG + dimming).clamp(1e-3, 1.0)
-}
-
-/// Illuminance of sun and sky on open ground, lux.
-fn horizontal(day: &Daylight) -> DVec3 {
-    day.sky_irradiance_up + day.sun_illuminance * day.sun_direction.y.max(0.0)
-}
-
 /// The update that brings cells from the light that they hold to a new one.
 fn update_push(old: Option<&Held>, new: &Held) -> UpdatePush {
     let (segments, ends_in_cell) = match new.bounces {
@@ -425,7 +408,8 @@ fn update_push(old: Option<&Held>, new: &Held) -> UpdatePush {
     let factor = |of: fn(&Daylight) -> DVec3| {
         changed.map_or(Vec3::ONE, |old| ratio(of(&new.daylight), of(&old.daylight)))
     };
-    let kept = changed.map(|old| (1.0 / change(old, new) - 1.0).clamp(0.0, MOST_KEPT));
+    let kept =
+        changed.map(|old| (1.0 / change(&old.daylight, &new.daylight) - 1.0).clamp(0.0, MOST_KEPT));
     UpdatePush {
         segments,
         ends_in_cell,
@@ -435,10 +419,4 @@ fn update_push(old: Option<&Held>, new: &Held) -> UpdatePush {
         sky_change: factor(|day| day.sky_irradiance_up),
         bounce_change: factor(horizontal),
     }
-}
-
-/// Quotient of two lights, component by component; 1 where the old one is black.
-fn ratio(new: DVec3, old: DVec3) -> Vec3 {
-    let quotient = |i: usize| if old[i] > 0.0 { new[i] / old[i] } else { 1.0 };
-    DVec3::new(quotient(0), quotient(1), quotient(2)).as_vec3()
 }

@@ -2,6 +2,7 @@
 
 pub mod ambient;
 pub mod cells;
+mod change;
 pub mod gather;
 pub mod trace;
 pub mod tree;

@@ -136,14 +136,14 @@ impl Ssao {
         })
     }
 
+    /// Radius, metres.
+    pub fn radius(&self) -> f32 {
+        self.settings.radius
+    }
+
     /// The last computed A; consumes the passes.
     pub fn into_image(self) -> Image {
         self.smooth
-    }
-
-    /// The last computed A.
-    pub fn image(&self) -> &Image {
-        &self.smooth
     }
 
     /// Computes A of the surfaces in view. `phase` (0..1) varies the noise between frames.

@@ -1,0 +1,60 @@
+//! How one light follows from another: what cells keep of the old one.
+
+use glam::{DVec3, Vec3};
+
+use crate::daylight::colour::luminance;
+use crate::daylight::sky::Daylight;
+
+/// Turn of the sun after which the old light says nothing about the new one, degrees.
+const JUMP_DEG: f64 = 10.0;
+
+/// How much two lights differ: 0 not at all, 1 so much that one says nothing about the other.
+pub(super) fn change(old: &Daylight, new: &Daylight) -> f64 {
+    let turn = old.sun_direction.dot(new.sun_direction).clamp(-1.0, 1.0);
+    let level = |day: &Daylight| luminance(horizontal(day)).max(1e-3);
+    let dimming = (level(new) / level(old)).ln().abs();
+    if old == new {
+        return 0.0;
+    }
+    (turn.acos().to_degrees() / JUMP_DEG + dimming).clamp(1e-3, 1.0)
+}
+
+/// Illuminance of sun and sky on open ground, lux.
+pub(super) fn horizontal(day: &Daylight) -> DVec3 {
+    day.sky_irradiance_up + day.sun_illuminance * day.sun_direction.y.max(0.0)
+}
+
+/// Quotient of two lights, component by component; 1 where the old one is black.
+pub(super) fn ratio(new: DVec3, old: DVec3) -> Vec3 {
+    let quotient = |i: usize| if old[i] > 0.0 { new[i] / old[i] } else { 1.0 };
+    DVec3::new(quotient(0), quotient(1), quotient(2)).as_vec3()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::daylight::sky::Conditions;
+
+    fn day(elevation: f64) -> Daylight {
+        Daylight::new(&Conditions {
+            sun_elevation_deg: elevation,
+            ..Conditions::default()
+        })
+    }
+
+    #[test]
+    fn a_change_grows_with_the_turn_of_the_sun_up_to_a_jump() {
+        let changes =
+            [40.0, 40.1, 41.0, 44.0, 60.0].map(|elevation| change(&day(40.0), &day(elevation)));
+        assert_eq!(changes[0], 0.0);
+        assert!(changes.is_sorted(), "{changes:?}");
+        assert!(changes[1] > 0.0 && changes[1] < 0.05, "{changes:?}");
+        assert_eq!(changes[4], 1.0);
+    }
+
+    #[test]
+    fn a_ratio_is_one_where_there_was_no_light() {
+        let of = ratio(DVec3::new(4.0, 3.0, 0.0), DVec3::new(2.0, 0.0, 0.0));
+        assert_eq!(of, Vec3::new(2.0, 1.0, 1.0));
+    }
+}

@@ -142,7 +142,7 @@ fn a_scene_file_has_local_times_too() {
     let render = |words: &[&str]| {
         let size = ["render", scene, "-o", picture, "--size", "16x9"];
         let quick = ["--bounces", "0", "--ambient", "ssao"];
-        run(&[&size, &quick, words].concat())
+        run(&[&size[..], &quick, words].concat())
     };
     let metadata = |words: &[&str]| {
         let output = render(words);

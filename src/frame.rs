@@ -14,7 +14,7 @@ pub use self::settings::FrameSettings;
 
 use crate::daylight::sky::Daylight;
 use crate::gpu::{Context, Image, Recorder, Result};
-use crate::passes::bounces::cells::{Cells, Surroundings};
+use crate::passes::bounces::cells::{Cells, FIRST_ROUNDS, Surroundings, Work};
 use crate::passes::bounces::tree::Tree;
 use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{Light, Show};
@@ -33,18 +33,15 @@ use self::ambient::{AmbientNeed, AmbientPasses};
 use self::average::{Average, Lit};
 use self::sample::Sample;
 
-/// Rounds of the cells before the first frame of an average.
-const FIRST_ROUNDS: u32 = 16;
-
-/// Frames of an average after which a round follows.
+/// Frames of an average after which a round of the cells follows.
 const FRAMES_OF_ROUND: u32 = 4;
 
-/// Rounds of the cells in frame number `index` of an average. `is_new`: the cells are empty.
-fn rounds(index: Option<u32>, is_new: bool) -> u32 {
+/// The work for the cells in frame number `index` of an average. `is_new`: they are empty.
+fn cell_work(index: Option<u32>, is_new: bool, refine: u32) -> Work {
     match index {
-        _ if is_new => FIRST_ROUNDS,
-        Some(index) => u32::from(index % FRAMES_OF_ROUND == 0),
-        None => 1,
+        _ if is_new => Work::Rounds(FIRST_ROUNDS),
+        Some(index) => Work::Rounds(u32::from(index.is_multiple_of(FRAMES_OF_ROUND))),
+        None => Work::Paths(refine),
     }
 }
 
@@ -252,7 +249,12 @@ impl Frame {
                 cells.restart();
             }
             let bounces = settings.cell_bounces(is_dome);
-            cells.record(rec, &around, bounces, rounds(index, is_new));
+            cells.record(
+                rec,
+                &around,
+                bounces,
+                cell_work(index, is_new, settings.refine),
+            );
         }
         let ambient = match (&mut self.ambient, &self.cells) {
             (AmbientPasses::Cells(pass), Some(cells)) if !is_dome => {

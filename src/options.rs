@@ -243,6 +243,10 @@ options! {
             /// Where single frames have the light of the sky and of other surfaces from.
             #[arg(value_name = "SOURCE", value_parser = choice::<Ambient>(), default_value_t)]
             ambient: Ambient,
+            /// Light paths that refine the cells in each frame of a moving view, 0 to 65536; more are smoother but slower.
+            #[arg(value_name = "PATHS", value_parser = value_parser!(u32).range(0..=65_536),
+                  default_value_t = FrameSettings::default().refine)]
+            refine: u32,
             /// Radius of ambient occlusion (--ambient ssao), metres; 0 turns it off.
             #[arg(value_name = "METRES", value_parser = values::ao_radius, allow_hyphen_values = true,
                   default_value_t = SsaoSettings::default().radius.into())]

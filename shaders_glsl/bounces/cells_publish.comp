@@ -21,6 +21,11 @@ SUMS;
 layout(set = 0, binding = 8, rgba32ui) uniform writeonly uimage2DArray cells;
 layout(set = 0, binding = 9, rgba32f) uniform writeonly image2DArray cell_walls;
 
+layout(push_constant, scalar) uniform Push {
+    uint paths; // as those of the update
+    uint first;
+} push;
+
 // Paths after which the smoothing fades out.
 const float SMOOTHED = 512.0;
 
@@ -38,40 +43,87 @@ uint slot_at(ivec3 at, uint side, int level, vec3 p) {
     return NONE;
 }
 
-/// The light of a cell, smoothed over its neighbours along the surface.
-Sum smoothed(uint slot) {
+/// Place of the cell beside a point whose middle is `way` from it along the sides of the grid.
+ivec3 cell_beside(vec3 place, vec3 slope, vec2 way, uint axis) {
+    // Where the tangent plane meets that middle.
+    float height = place.z - dot(slope.xy, way) / slope.z;
+    return ivec3(floor(turned_back(vec3(place.xy + way, height), axis)));
+}
+
+/// Sums of light of cells, and of the weights.
+struct Mean {
+    vec3 sky;
+    vec3 bounce;
+    float weight;
+};
+
+void add(inout Mean mean, Sum sum, float weight) {
+    mean.sky += weight * sum.sky;
+    mean.bounce += weight * sum.bounce;
+    mean.weight += weight;
+}
+
+/// The light of a cell and its neighbours along the surface.
+Mean smoothed(Sum own, vec3 p, vec3 n, int level) {
+    uint side = dominant(n), axis = side % 3u;
+    vec3 place = turned(in_grid(p, n, cell_edge(level)), axis), slope = turned(n, axis);
+    float fade = own.samples / SMOOTHED;
+    float spread = 1.0 / (1.0 + fade * fade);
+    Mean mean = Mean(vec3(0.0), vec3(0.0), 0.0);
+    add(mean, own, own.samples);
+    for (int i = 0; i < 8; ++i) {
+        vec2 way = floor(place.xy) + vec2(NEIGHBOURS[i]) + 0.5 - place.xy;
+        uint neighbour = slot_at(cell_beside(place, slope, way, axis), side, level, p);
+        if (neighbour == NONE || (own.hidden & 1u << i) != 0u) continue;
+        // A tent: half beside, a quarter at the corners.
+        add(mean, sums[neighbour], spread * sums[neighbour].samples * ((i & 1) == 0 ? 0.5 : 0.25));
+    }
+    return mean;
+}
+
+/// The light of the cells of a level around a point: a quadratic B-spline, as wide as the tent and the interpolation of lookups.
+Mean interpolated(vec3 p, vec3 n, int level) {
+    uint side = dominant(n), axis = side % 3u;
+    vec3 place = turned(in_grid(p, n, cell_edge(level)), axis), slope = turned(n, axis);
+    vec2 f = fract(place.xy) - 0.5;
+    vec2 w[3] = vec2[](0.5 * (0.5 - f) * (0.5 - f), 0.75 - f * f, 0.5 * (0.5 + f) * (0.5 + f));
+    Mean mean = Mean(vec3(0.0), vec3(0.0), 0.0);
+    for (int i = 0; i < 9; ++i) {
+        ivec2 k = ivec2(i % 3, i / 3);
+        uint slot = slot_at(cell_beside(place, slope, vec2(k - 1) - f, axis), side, level, p);
+        if (slot != NONE) add(mean, sums[slot], w[k.x].x * w[k.y].y * sums[slot].samples);
+    }
+    return mean;
+}
+
+/// The published light of a cell.
+Sum published(uint slot) {
     Sum own = sums[slot];
     Point anchor = points[slot * POINTS];
     int level = int(own.hidden >> 8);
-    vec3 n = normal_unpack(anchor.normal);
-    uint side = dominant(n), axis = side % 3u;
-    vec3 place = turned(in_grid(anchor.position, n, cell_edge(level)), axis), slope = turned(n, axis);
-    float fade = own.samples / SMOOTHED;
-    float spread = 1.0 / (1.0 + fade * fade);
-    float sum = own.samples;
-    vec3 sky = own.sky * sum, bounce = own.bounce * sum;
-    for (int i = 0; i < 8; ++i) {
-        vec2 cell = floor(place.xy) + vec2(NEIGHBOURS[i]);
-        float height = place.z - dot(slope.xy, cell + 0.5 - place.xy) / slope.z;
-        uint neighbour = slot_at(ivec3(turned_back(vec3(cell, floor(height)), axis)), side, level, anchor.position);
-        if (neighbour == NONE || (own.hidden & 1u << i) != 0u) continue;
-        Sum other = sums[neighbour];
-        // A tent: half beside, a quarter at the corners.
-        float weight = spread * other.samples * ((i & 1) == 0 ? 0.5 : 0.25);
-        sky += weight * other.sky;
-        bounce += weight * other.bounce;
-        sum += weight;
+    vec3 p = anchor.position, n = normal_unpack(anchor.normal);
+    Mean fine = smoothed(own, p, n, level);
+    float scale = fine.weight > 0.0 ? 1.0 / fine.weight : 0.0;
+    vec3 sky = fine.sky * scale, bounce = fine.bounce * scale;
+    // At its outer end a level continues as the next.
+    Mean coarse = interpolated(p, n, level + 1);
+    float share = smoothstep(1.0 - BAND, 1.0, level_at(distance(p, scene.eye)) - float(level));
+    if (coarse.weight > 0.0) {
+        sky = mix(sky, coarse.sky / coarse.weight, share);
+        bounce = mix(bounce, coarse.bounce / coarse.weight, share);
     }
-    float scale = sum > 0.0 ? 1.0 / sum : 0.0;
-    return Sum(sky * scale, bounce * scale, own.samples, own.hidden);
+    return Sum(sky, bounce, own.samples, own.hidden);
 }
 
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index >= live_count) return;
     uint slot = live[index];
+    // A cell that is not published yet may be new.
+    bool is_new = sums[slot].samples <= float(MOST_PATHS);
+    if (!is_new && !is_due(index, live_count, push.first, push.paths)) return;
     ivec3 texel = ivec3(slot_texel(slot), 0);
-    Sum sum = smoothed(slot);
+    Sum sum = published(slot);
     uint word = uint(sum.samples) | (sum.hidden & 0xffu) << SAMPLE_BITS;
     imageStore(cells, texel, uvec4(prints[slot], shared_exponent_pack(sum.sky), shared_exponent_pack(sum.bounce), word));
     imageStore(cell_walls, texel, walls[slot]);

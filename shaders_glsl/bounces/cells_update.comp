@@ -21,7 +21,8 @@ layout(set = 0, binding = 7) uniform samplerCube sky_radiance; // L of sky and g
 layout(push_constant, scalar) uniform Push {
     uint segments;     // of a path at most; 0: no bounces
     uint ends_in_cell; // whether a path takes the bounces of the cell at its end: all bounces instead of as many as segments
-    uint paths;        // in all: few cells get several each
+    uint paths;        // in all: few cells get several each; of many each gets one in turn
+    uint first;        // of the live cells whose turn it is; NONE: all get at least one
     float most;        // paths that the old means count for: few after a change of the light
     vec3 sky_change;   // factor on the old means of the sky
     vec3 bounce_change; // factor on the old means of the bounces
@@ -29,8 +30,6 @@ layout(push_constant, scalar) uniform Push {
 
 // Paths after which a cell is not updated any more.
 const uint ENOUGH = 4096u;
-// Most paths of a cell in a round.
-const uint MOST_PATHS = 16u;
 
 /// Irradiance of the bounces along a path that starts with a ray from a point, klx.
 vec3 path_light(Surface surface, inout uint state) {
@@ -82,8 +81,11 @@ void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index >= live_count) return;
     uint slot = live[index];
-    uint print = prints[slot];
     Sum sum = sums[slot];
+    // New cells do not wait for their turn.
+    bool is_new = sum.samples == 0.0;
+    if (!is_new && !is_due(index, live_count, push.first, push.paths)) return;
+    uint print = prints[slot];
     if ((print & ANCHORED) == 0u) return;
     sum.samples = min(sum.samples, push.most);
     sum.sky *= push.sky_change;

@@ -16,14 +16,22 @@ struct Key {
     uint print;
 };
 
-/// Level of the cells at a distance from the eye (metres): the edge doubles with each.
-int cell_level(float distance) {
-    return max(int(floor(log2(max(distance / scene.near, 1e-6)))) + 1, 0);
+/// Level of the cells at a distance from the eye, metres, with its fraction: the edge doubles with each.
+float level_at(float distance) {
+    return max(log2(max(distance / scene.near, 1e-6)) + 1.0, 0.0);
 }
 
-/// Level of the cell for a candidate: some are for larger cells, which stand in where small ones are missing.
+int cell_level(float distance) {
+    return int(level_at(distance));
+}
+
+// Last part of a level in which its cells blend into those of the next.
+const float BAND = 0.3;
+
+/// Level of the cell for a candidate: some are for larger cells, which stand in where small ones are missing or blend into them.
 int candidate_level(vec3 p, uint hash) {
-    return cell_level(distance(p, scene.eye)) + ((hash & 0x700u) == 0u ? 2 : 0);
+    float mixed_level = level_at(distance(p, scene.eye)) + BAND * float(hash >> 24) / 255.0;
+    return int(mixed_level) + ((hash & 0x700u) == 0u ? 2 : 0);
 }
 
 float cell_edge(int level) {

@@ -25,6 +25,8 @@ const uint POINTS = 2u;
 // Contests of a cell: for its points, and for a wall that divides it.
 const uint CONTESTS = 3u;
 const uint WALL = 2u;
+// Most paths of a cell in a round.
+const uint MOST_PATHS = 16u;
 // Points of a path that creates cells.
 const uint PATH_POINTS = 4u;
 
@@ -40,4 +42,9 @@ const uint PATH_POINTS = 4u;
 /// The hidden neighbours and the level in a word.
 uint hidden_pack(uint hidden, int level) {
     return hidden | uint(level) << 8;
+}
+
+/// Whether it is the turn of live cell number `index` of `count`: `paths` of them from `first` on; NONE: of all.
+bool is_due(uint index, uint count, uint first, uint paths) {
+    return first == NONE || (index + count - first % count) % count < paths;
 }

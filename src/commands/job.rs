@@ -172,6 +172,7 @@ impl Job {
             irradiance: self.irradiance_settings(),
             shadow_resolution: s.shadow_size,
             bounces: s.bounces,
+            refine: s.refine,
             ..FrameSettings::default()
         };
         if s.preset == Some(Preset::Lecture) {

@@ -43,6 +43,8 @@ pub struct FrameSettings {
     pub ssao: SsaoSettings,
     /// How often light is reflected between surfaces.
     pub bounces: Bounces,
+    /// Light paths that refine the cells in a frame outside of any average.
+    pub refine: u32,
     /// Lighting.
     pub lighting: LightingSettings,
     /// Tone mapping and exposure.
@@ -62,6 +64,7 @@ impl Default for FrameSettings {
             shadow_resolution: 2048,
             ssao,
             bounces: Bounces::All,
+            refine: 4096,
             lighting: LightingSettings {
                 show,
                 precision: Precision::Half,

@@ -6,8 +6,9 @@ use super::hills::Ground;
 use super::statistics::Samples;
 use crate::cli::Motion;
 use crate::commands::job::Job;
+use crate::daylight::sky::Daylight;
 use crate::error::Result;
-use crate::frame::{Frame, FrameSettings};
+use crate::frame::{Frame, FrameSettings, Visibility};
 use crate::gpu::{Context, DeviceSummary, PassTime, PassWork, Recorder, Stopwatch, Timing};
 use crate::passes::light::lighting::Precision;
 use crate::scene::{Camera, Scene};
@@ -163,7 +164,7 @@ impl<'j> Bench<'j> {
         let daylight = self.motion.daylight(self.job, index);
         let recorder = &mut self.parts;
         recorder.begin()?;
-        self.frame.record(recorder, &daylight, &camera, 0);
+        draw(&mut self.frame, recorder, &daylight, &camera);
         recorder.finish()?;
         into.push(recorder.timings().passes());
         Ok(())
@@ -176,7 +177,7 @@ impl<'j> Bench<'j> {
         let recording = Stopwatch::start();
         let daylight = self.motion.daylight(self.job, index);
         recorder.begin()?;
-        self.frame.record(recorder, &daylight, &camera, 0);
+        draw(&mut self.frame, recorder, &daylight, &camera);
         let (record, record_cpu) = recording.elapsed_ms();
         let waiting = Stopwatch::start();
         recorder.finish()?;
@@ -193,8 +194,7 @@ impl<'j> Bench<'j> {
         self.frame.invalidate();
         recorder.begin()?;
         let job = self.job;
-        self.frame
-            .record(&mut recorder, &job.daylight, &self.camera, 0);
+        draw(&mut self.frame, &mut recorder, &job.daylight, &self.camera);
         recorder.finish()?;
         Ok(recorder.work().to_vec())
     }
@@ -206,6 +206,15 @@ impl<'j> Bench<'j> {
             self.whole.finish()?;
         }
         Ok(())
+    }
+}
+
+/// Draws a frame of a moving view; with the dome, the first one of an average.
+fn draw(frame: &mut Frame, recorder: &mut Recorder, daylight: &Daylight, camera: &Camera) {
+    if frame.settings().sampling.visibility == Visibility::Ssao {
+        frame.preview(recorder, daylight, camera);
+    } else {
+        frame.record(recorder, daylight, camera, 0);
     }
 }
 

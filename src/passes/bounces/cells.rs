@@ -38,7 +38,7 @@ const POINT_BYTES: u32 = 16;
 const CANDIDATE_BYTES: u32 = 28;
 const SUM_BYTES: u32 = 32;
 
-/// Paths from the eye in a round.
+/// Most paths from the eye in a round.
 const PATHS: u32 = 1 << 12;
 
 /// Paths from the cells in a round, unless there are more cells.
@@ -53,6 +53,9 @@ const NEAR_CELLS: f32 = 24.0;
 
 /// Segments of a path before it ends in a cell.
 const SEGMENTS: u32 = 4;
+
+/// Rounds in which new cells are filled, whatever the budget.
+pub const FIRST_ROUNDS: u32 = 16;
 
 /// Paths that the old mean of a cell counts for after a change of the light.
 const AFTER_CHANGE: f32 = 4.0;
@@ -118,9 +121,18 @@ gpu_struct! {
         segments: u32,
         ends_in_cell: u32,
         paths: u32,
+        first: u32,
         most: f32,
         sky_change: Vec3,
         bounce_change: Vec3,
+    }
+}
+
+gpu_struct! {
+    /// The cells to publish.
+    pub struct PublishPush: push of CELLS_PUBLISH_COMP {
+        paths: u32,
+        first: u32,
     }
 }
 
@@ -151,6 +163,15 @@ pub struct Cells {
     held: Option<Held>,
     /// Rounds so far.
     round: u32,
+}
+
+/// The work of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Work {
+    /// Rounds in which every cell gets a path, and few cells get several: the same ones in every run.
+    Rounds(u32),
+    /// A round of about so many paths. If there are more cells, each gets one in turn.
+    Paths(u32),
 }
 
 /// What a round needs to know about the scene and its light.
@@ -231,13 +252,14 @@ impl Cells {
         self.round = 0;
     }
 
-    /// Records rounds: creates cells in view and beyond, and adds a path to each. Light that has changed starts from the old one.
+    /// Records the work of a frame: creates cells in view and beyond, and adds paths to them. Light that has changed starts from the
+    /// old one.
     pub fn record(
         &mut self,
         recorder: &mut Recorder,
         around: &Surroundings<'_>,
         bounces: Bounces,
-        rounds: u32,
+        work: Work,
     ) {
         let held = Held {
             daylight: around.daylight.clone(),
@@ -247,12 +269,24 @@ impl Cells {
             self.clear(recorder);
             self.held = None;
         }
+        let is_changed = self.held.as_ref().is_some_and(|old| *old != held);
+        let (rounds, seeds, paths) = match work {
+            Work::Rounds(rounds) => (rounds, PATHS, None),
+            // All cells follow the light; new ones are filled at once.
+            Work::Paths(_) if is_changed || self.round < FIRST_ROUNDS => (1, PATHS, None),
+            Work::Paths(0) => (0, 0, None),
+            Work::Paths(paths) => (1, (paths / PATH_POINTS).clamp(1, PATHS), Some(paths)),
+        };
         for _ in 0..rounds {
-            let update = update_push(self.held.as_ref(), &held);
+            let mut update = update_push(self.held.as_ref(), &held);
+            if let Some(paths) = paths {
+                update.paths = paths;
+                update.first = self.round.wrapping_mul(paths);
+            }
             self.held = Some(held.clone());
-            self.seed(recorder, around);
+            self.seed(recorder, around, seeds);
             self.update(recorder, around, &update);
-            self.publish(recorder, around);
+            self.publish(recorder, around, &update);
             self.round += 1;
         }
     }
@@ -285,7 +319,7 @@ impl Cells {
         )
     }
 
-    fn seed(&self, recorder: &mut Recorder, around: &Surroundings<'_>) {
+    fn seed(&self, recorder: &mut Recorder, around: &Surroundings<'_>, paths: u32) {
         let view = around.view.whole();
         let pass = recorder.pass("cells: seed", &self.claim);
         around
@@ -299,9 +333,9 @@ impl Cells {
             .storage_mut("Contests", &self.contests)
             .storage_mut("Candidates", &self.candidates)
             .storage_mut("Walls", &self.walls)
-            .push(&SeedPush { paths: PATHS })
-            .dispatch_over([PATHS, 1, 1]);
-        let candidates = PATHS * PATH_POINTS;
+            .push(&SeedPush { paths })
+            .dispatch_over([paths, 1, 1]);
+        let candidates = paths * PATH_POINTS;
         let pass = recorder.pass("cells: place", &self.place);
         around
             .tree
@@ -331,9 +365,13 @@ impl Cells {
             .dispatch_over([self.most_live(), 1, 1]);
     }
 
-    fn publish(&self, recorder: &mut Recorder, around: &Surroundings<'_>) {
+    fn publish(&self, recorder: &mut Recorder, around: &Surroundings<'_>, update: &UpdatePush) {
         recorder
             .pass("cells: publish", &self.publish)
+            .push(&PublishPush {
+                paths: update.paths,
+                first: update.first,
+            })
             .uniform("scene", &self.block(around.view, around.daylight))
             .storage_mut("Places", &self.points)
             .storage_mut("Prints", &self.prints)
@@ -366,6 +404,7 @@ fn update_push(old: Option<&Held>, new: &Held) -> UpdatePush {
         segments,
         ends_in_cell,
         paths: UPDATES,
+        first: u32::MAX,
         most: if change.is_some() {
             AFTER_CHANGE
         } else {

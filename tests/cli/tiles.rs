@@ -42,18 +42,20 @@ fn tiles_are_the_picture_that_is_drawn_at_once() {
     let place = Place::new();
     let cases = [
         // The cells are made anew for each tile: few tiles, for speed.
-        ("--size 320x180", "128"),
-        ("--size 317x203 --samples 3 --visibility ssao", "64"),
+        ("--size 317x203", "160", 4.0),
+        ("--size 317x203 --samples 3 --visibility ssao", "64", 1.0),
         (
-            "--size 320x180 --samples 2 --visibility dome --ev100 14",
-            "128",
+            "--size 317x180 --samples 2 --visibility dome --ev100 14",
+            "160",
+            1.0,
         ),
         (
             "--size 333x190 --show irradiance --ao-resolution full --ambient ssao",
             "64",
+            1.0,
         ),
     ];
-    for (line, edge) in cases {
+    for (line, edge, allowance) in cases {
         let words: Vec<&str> = line.split_whitespace().collect();
         let (whole, _) = place.render("whole.png", &words);
         let (tiles, said) = place.render("tiles.png", &[&words[..], &["--tile", edge]].concat());
@@ -65,8 +67,12 @@ fn tiles_are_the_picture_that_is_drawn_at_once() {
             "{line}: FLIP {flip:.6}, largest difference {largest:.4}, {:.4} % above 1/64",
             more * 100.0
         );
-        // With another projection, vertices snap to other subpixel positions: a few edges move by that.
-        assert!(flip < 5e-4 && more < 1e-3, "{line}: {flip} {more}");
+        // With another projection, vertices snap to other subpixel positions: a few edges move by that. Light from the cells is
+        // for squares of pixels, and lookups beside a wall jump from cell to cell: more pixels move.
+        assert!(
+            flip < allowance * 5e-4 && more < allowance * 1e-3,
+            "{line}: {flip} {more}"
+        );
     }
 }
 

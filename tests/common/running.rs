@@ -27,6 +27,10 @@ pub fn quiet_machine() -> RwLockWriteGuard<'static, ()> {
     MACHINE.write().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Options of the light of sun and sky alone, with ambient occlusion of the screen: the picture at rest does not depend on what was
+/// drawn before. Cells are kept while the view moves, so that their noise does.
+pub const DIRECT: [&str; 4] = ["--bounces", "0", "--ambient", "ssao"];
+
 /// The running program and its window.
 pub struct Running {
     pub display: Display,

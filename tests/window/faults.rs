@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use crate::running::{Running, difference, program, shared_machine};
+use crate::running::{DIRECT, Running, difference, program, shared_machine};
 use crate::x::until;
 
 /// A small, quick picture.
@@ -115,6 +115,7 @@ fn a_fault_that_is_none_is_refused() {
 fn a_window_lives_on_without_its_surface() {
     let _machine = shared_machine();
     let view = ["--size", "320x180", "--samples", "2", "--validate"];
+    let view = [&view[..], &DIRECT].concat();
     let sound = Running::bare(&view);
     let expected = sound.picture();
     sound.close_well();

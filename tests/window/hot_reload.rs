@@ -5,7 +5,7 @@ use std::path::Path;
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::running::{Running, difference, shared_machine};
+use crate::running::{DIRECT, Running, difference, shared_machine};
 
 const STAGE: &str = "picture/tone_map.frag";
 
@@ -33,6 +33,7 @@ fn a_changed_shader_is_seen_and_a_broken_one_is_told() {
     let good = fs::read_to_string(&file).expect("the source");
     let variables = [("SKYLIGHT_SHADERS", folder.path())];
     let words = ["--size", "320x180", "--samples", "1", "--validate"];
+    let words = [&words[..], &DIRECT].concat();
     let running = Running::bare_with(&words, &variables);
     let before = running.picture();
 

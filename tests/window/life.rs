@@ -6,7 +6,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use crate::common::is_soaking;
-use crate::running::{Running, difference, program, quiet_machine, shared_machine};
+use crate::running::{DIRECT, Running, difference, program, quiet_machine, shared_machine};
 use crate::x::{Display, keysym, until};
 use skylight::compare::{Picture, read};
 
@@ -30,7 +30,7 @@ fn rendered(folder: &Path, words: &[&str]) -> Picture {
 #[test]
 fn the_window_shows_what_render_writes() {
     let _machine = shared_machine();
-    let view = ["--size", "640x360", "--samples", "4"];
+    let view = [&["--size", "640x360", "--samples", "4"][..], &DIRECT].concat();
     let running = Running::bare(&[&view[..], &["--validate"]].concat());
     let shown = running.picture();
     let expected = rendered(running.folder.path(), &view);
@@ -53,7 +53,13 @@ fn the_window_shows_what_render_writes() {
 #[test]
 fn keys_and_pointer_do_what_the_help_says() {
     let _machine = shared_machine();
-    let running = Running::bare(&["--size", "480x270", "--samples", "2", "--validate"]);
+    let running = Running::bare(
+        &[
+            &["--size", "480x270", "--samples", "2", "--validate"][..],
+            &DIRECT,
+        ]
+        .concat(),
+    );
     let start = running.picture();
     let another = |other: &Picture| difference(&start, other) > 0.02;
 
@@ -110,7 +116,13 @@ fn keys_and_pointer_do_what_the_help_says() {
 #[test]
 fn the_command_that_c_prints_renders_the_picture() {
     let _machine = shared_machine();
-    let running = Running::bare(&["--size", "320x180", "--samples", "2", "--turbidity", "5"]);
+    let running = Running::bare(
+        &[
+            &["--size", "320x180", "--samples", "2", "--turbidity", "5"][..],
+            &DIRECT,
+        ]
+        .concat(),
+    );
     let moved = running.after(|d| {
         d.point(100, 90);
         d.press(1);
@@ -281,7 +293,7 @@ fn resumed_windows_go_on_where_they_were_left() {
     let _machine = shared_machine();
     let state = tempfile::tempdir().expect("a scratch folder");
     let variables = [("XDG_STATE_HOME", state.path())];
-    let words = ["--size", "320x180", "--samples", "2"];
+    let words = [&["--size", "320x180", "--samples", "2"][..], &DIRECT].concat();
     let first = Running::bare_with(&words, &variables);
     let start = first.picture();
     let left = first.after(|d| {

@@ -50,11 +50,12 @@ impl Plan {
         if !needs && !asks {
             return None;
         }
-        let edge = edge.unwrap_or(EDGE).min(limit.saturating_sub(2 * MARGIN));
+        let most = limit.saturating_sub(2 * MARGIN + 1);
+        let edge = edge.unwrap_or(EDGE).min(most);
         let edge = (edge / STEP * STEP).max(STEP);
         Some(Self {
             full,
-            tile: full.min(UVec2::splat(edge + 2 * MARGIN)),
+            tile: UVec2::new(drawn(full.x, edge), drawn(full.y, edge)),
             columns: spans(full.x, edge),
             bands: spans(full.y, edge),
             limit,
@@ -90,10 +91,16 @@ impl Plan {
     }
 }
 
+/// Number of pixels drawn along an axis for a tile of `edge`. It is odd if `full` is, so that tiles start at even pixels: squares of
+/// two by two pixels that share light are then those of the whole image.
+fn drawn(full: u32, edge: u32) -> u32 {
+    full.min(edge + 2 * MARGIN + full % 2)
+}
+
 /// Divides `full` pixels into spans of `edge`. Each draws the same number of pixels: at the ends of the image the margin is
 /// shifted inward.
 fn spans(full: u32, edge: u32) -> Vec<Span> {
-    let drawn = full.min(edge + 2 * MARGIN);
+    let drawn = drawn(full, edge);
     (0..full)
         .step_by(edge as usize)
         .map(|first| Span {
@@ -119,12 +126,12 @@ mod tests {
             (32_768, 2048),
         ] {
             let spans = spans(full, edge);
-            let drawn = full.min(edge + 2 * MARGIN);
+            let drawn = drawn(full, edge);
             let mut next = 0;
             for span in &spans {
                 assert_eq!(span.first, next);
                 next += span.count;
-                assert!(span.origin + drawn <= full);
+                assert!(span.origin + drawn <= full && span.origin % 2 == 0);
                 let (end, drawn_end) = (span.first + span.count, span.origin + drawn);
                 assert!(
                     span.origin + MARGIN <= span.first || span.origin == 0,

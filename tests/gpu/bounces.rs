@@ -9,7 +9,7 @@ use crate::lighting::{check_sum, glossy_scene, roundings};
 use glam::DVec3;
 use skylight::daylight::colour::luminance;
 use skylight::daylight::sky::Daylight;
-use skylight::frame::{FrameSettings, Visibility};
+use skylight::frame::{Frame, FrameSettings, Visibility};
 use skylight::passes::bounces::cells::Bounces;
 use skylight::passes::light::lighting::{Ambient, Show};
 use skylight::scene::{Camera, Material, Scene};
@@ -186,6 +186,27 @@ fn more_bounces_are_brighter_and_those_beyond_the_eighth_are_few() {
         assert!(0.0 < one && one < two && two < eight, "{what}");
         // At most half of the light is reflected each time: beyond the eighth there is less than 1 % of it.
         assert!((all / eight - 1.0).abs() < 0.03, "{what}: {}", all / eight);
+    }
+}
+
+/// A window goes over from previews, whose cells have all bounces asked for, to rays, whose cells have one less.
+#[test]
+fn few_bounces_at_rest_are_those_of_a_file() {
+    let mut device = Device::new();
+    let (scene, day, view) = (rooms(&matt(0.6)), clear_day(150.0, 60.0), inside(false));
+    for bounces in [Bounces::UpTo(2), Bounces::All] {
+        let set = with_bounces(bounces, showing(Show::Bounces, converged(64, 48, 8)));
+        let file = mean(&device.picture(&scene, set, &day, &view));
+        let mut set = set;
+        set.sampling.visibility = Visibility::Progressive;
+        let mut frame = device.run(|rec| Frame::new(rec, &scene, set).expect("a frame"));
+        device.run(|rec| frame.preview(rec, &day, &view));
+        for index in 0..set.samples {
+            device.run(|rec| frame.record(rec, &day, &view, index));
+        }
+        let window = mean(&device.picture_of(&frame));
+        println!("{bounces:?}: a file {file:.4}, at rest {window:.4} kcd/m2");
+        assert!((window / file - 1.0).abs() < 0.02, "{bounces:?}");
     }
 }
 

@@ -277,7 +277,11 @@ impl Cells {
         let change = old.map_or(0.0, |old| change(&old.daylight, around.daylight));
         let (rounds, seeds, paths) = match work {
             Work::Anew => (FIRST_ROUNDS, PATHS, None),
-            Work::Rounds(rounds) => (rounds, PATHS, None),
+            // What few previews, or none of this light, have begun is filled before it is averaged.
+            Work::Rounds(rounds) => {
+                let missing = FIRST_ROUNDS.saturating_sub(self.round);
+                (rounds.max(missing), PATHS, None)
+            }
             // All cells follow the light; new ones are filled at once.
             Work::Paths(_) if change >= 1.0 => (JUMP_ROUNDS, PATHS, None),
             Work::Paths(_) if change > 0.0 || self.round < FIRST_ROUNDS => (1, PATHS, None),

@@ -21,11 +21,11 @@ layout(push_constant, scalar) uniform Push {
     uint index;   // of this frame in the average
     ivec2 origin; // of this picture in the whole one, pixels
     ivec2 chosen; // pixel of each square
+    float share;  // of the rays in the light, 0..1; the rest is from the cells around the pixel
 } push;
 
 /// Irradiance that a ray from a pixel brings, klx.
-vec3 gathered(ivec2 pixel, vec3 ray, float distance, uvec3 own, vec3 n) {
-    vec3 world = view.eye + view.world_from_view * (ray * distance);
+vec3 gathered(ivec2 pixel, vec3 ray, vec3 world, uvec3 own, vec3 n) {
     vec2 size = vec2(textureSize(depth, 0));
     vec3 face = view.world_from_view * face_normal(own.z, ray.xy, 0.5 * size / view.ray_scale);
     ivec2 whole = pixel + push.origin;
@@ -54,8 +54,12 @@ void main() {
         vec3 ray = view_ray((vec2(pixel) + 0.5) / vec2(size), view.ray_scale, view.ray_offset);
         uvec3 own = texelFetch(normal_material, pixel, 0).xyz;
         float distance = view.near / d;
-        Ambient light = Ambient(vec3(0.0), gathered(pixel, ray, distance, own, normal_unpack(own.x)));
-        result = half_size_pack(light, distance, own.x);
+        vec3 world = view.eye + view.world_from_view * (ray * distance);
+        vec3 n = normal_unpack(own.x);
+        vec3 bounce = gathered(pixel, ray, world, own, n);
+        Cached here = interpolated(world, n);
+        if (here.is_found) bounce = mix(here.bounce, bounce, push.share);
+        result = half_size_pack(Ambient(vec3(0.0), bounce), distance, own.x);
     }
     imageStore(bounced, ivec3(texel, 0), result);
 }

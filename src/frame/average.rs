@@ -73,7 +73,7 @@ impl Average {
             },
             gather: bounces
                 .is_any()
-                .then(|| Gather::new(context, tree, size))
+                .then(|| Gather::new(context, tree, size, bounces))
                 .transpose()?,
             dome: Dome::new(context, geometry, size, sampling.dome, lighting, bounces)?,
             fade: fades

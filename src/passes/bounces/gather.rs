@@ -10,7 +10,7 @@ use crate::gpu::{
     shaders,
 };
 use crate::gpu_struct;
-use crate::passes::bounces::cells::Cells;
+use crate::passes::bounces::cells::{Bounces, Cells};
 use crate::passes::bounces::tree::Tree;
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::view::View;
@@ -21,6 +21,7 @@ gpu_struct! {
         index: u32,
         origin: IVec2,
         chosen: IVec2,
+        share: f32,
     }
 }
 
@@ -47,6 +48,8 @@ pub struct Gather {
     bounced: Image,
     /// The last frame that traced rays.
     traced: Option<u32>,
+    /// Whether the cells hold the same bounces as the rays bring.
+    blends: bool,
 }
 
 impl Gather {
@@ -54,7 +57,12 @@ impl Gather {
     ///
     /// # Errors
     /// Fails when the device cannot create the resources.
-    pub fn new(context: &Arc<Context>, tree: &Tree, size: [u32; 2]) -> Result<Self> {
+    pub fn new(
+        context: &Arc<Context>,
+        tree: &Tree,
+        size: [u32; 2],
+        bounces: Bounces,
+    ) -> Result<Self> {
         let desc = ImageDesc::flat("bounced irradiance", HALF_SIZE, half_size(size));
         Ok(Self {
             pipeline: Pipeline::new(
@@ -70,6 +78,7 @@ impl Gather {
             )?,
             bounced: Image::new(context, &desc.stored())?,
             traced: None,
+            blends: bounces == Bounces::All,
         })
     }
 
@@ -108,6 +117,7 @@ impl Gather {
                 index: of_pair / FRAMES_OF_RAYS,
                 origin,
                 chosen,
+                share: if self.blends { share(of_pair) } else { 1.0 },
             })
             .store("bounced", &self.bounced)
             .dispatch();
@@ -118,6 +128,16 @@ impl Gather {
     }
 }
 
+/// Frames after which rays and cells have the same weight in the mean: the error of the cells is about the noise of so many rays.
+const EVEN: f32 = 32.0;
+
+/// The share of the rays in the light of frame number `index`. Over n frames the mean of the shares is n / (n + EVEN): the picture
+/// starts with the light of the cells, which is smooth, and ends with that of the rays, which is exact.
+fn share(index: u32) -> f32 {
+    let n = index as f32;
+    n * (n + 2.0 * EVEN) / ((n + EVEN) * (n + EVEN))
+}
+
 /// Frames that share rays: a frame costs about as much as its rays, and bounced light varies less than the rest.
 const FRAMES_OF_RAYS: u32 = 2;
 
@@ -125,4 +145,17 @@ const FRAMES_OF_RAYS: u32 = 2;
 fn chosen(index: u32) -> IVec2 {
     let turn = [IVec2::ZERO, IVec2::ONE, IVec2::X, IVec2::Y];
     turn[index as usize % turn.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rays_take_over() {
+        let mean = |n: u32| (0..n).map(share).sum::<f32>() / n as f32;
+        assert_eq!(share(0), 0.0);
+        assert!((mean(32) - 0.5).abs() < 0.02, "{}", mean(32));
+        assert!((mean(320) - 10.0 / 11.0).abs() < 0.01, "{}", mean(320));
+    }
 }

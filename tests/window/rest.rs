@@ -154,12 +154,12 @@ fn at_rest_all_bounces_converge_without_a_jump() {
     let seen = coming_to_rest(&running);
     let (last, (whole, largest)) = (&seen[seen.len() - 1], brightening(&seen));
     let dome = rendered(&["--samples", FRAMES, "--dome-directions", "4"]);
-    let converged = rendered(&["--samples", "256"]);
+    let converged = rendered(&["--samples", "128"]);
     let pairs = [(&dome, last), (&converged, last), (&converged, &seen[0])];
     let [to_dome, to_converged, from_converged] = pairs.map(|(a, b)| difference(a, b));
     println!(
         "{} pictures, brightness in all {:.1} %, largest step {:.2} %; FLIP at last to the dome of as many samples \
-         {to_dome:.4}, of 256 {to_converged:.4}, at first {from_converged:.4}",
+         {to_dome:.4}, of 128 {to_converged:.4}, at first {from_converged:.4}",
         seen.len(),
         100.0 * whole,
         100.0 * largest

@@ -18,6 +18,8 @@ use skylight::scene::{Camera, Material, Scene};
 fn single(width: u32, height: u32) -> FrameSettings {
     let mut set = settings(width, height);
     set.bounces = Bounces::All;
+    // All cells in every frame.
+    set.refine = 1 << 16;
     set.lighting.ambient = Ambient::Cells;
     set
 }

@@ -81,9 +81,17 @@ fn coming_to_rest(running: &Running) -> Vec<Picture> {
         (!same_light(&first, &shown())).then_some(())
     });
     running.display.key('H'.into(), true);
-    // Records every picture until nothing changes for a while.
+    // Records every picture until nothing changes for a while, and nothing is at work: a busy machine may be slow to draw.
     let (mut seen, mut changed) = (Vec::<Picture>::new(), Instant::now());
-    while changed.elapsed() < Duration::from_secs(3) {
+    let mut work = running.cpu_seconds();
+    loop {
+        if changed.elapsed() >= Duration::from_secs(3) {
+            let before = std::mem::replace(&mut work, running.cpu_seconds());
+            if work - before < 0.1 {
+                break;
+            }
+            changed = Instant::now();
+        }
         let now = shown();
         if seen.last() != Some(&now) {
             seen.push(now);

@@ -23,7 +23,7 @@ use crate::gpu_struct;
 use crate::passes::bounces::change::{change, horizontal, ratio};
 use crate::passes::bounces::tree::Tree;
 use crate::passes::kilo;
-use crate::passes::view::View;
+use crate::passes::view::{View, ViewBlock};
 use crate::scene::Bounds;
 
 /// Slots of the hash table, as in `include/cell_flags.glsl`.
@@ -168,6 +168,8 @@ pub struct Cells {
     held: Option<Held>,
     /// Rounds so far.
     round: u32,
+    /// The view of the whole picture for which they were last filled anew.
+    filled_for: Option<ViewBlock>,
 }
 
 /// The work of a frame.
@@ -240,6 +242,7 @@ impl Cells {
             cell_walls: image("walls that divide cells", Format::R32G32B32A32_SFLOAT)?,
             held: None,
             round: 0,
+            filled_for: None,
         })
     }
 
@@ -268,10 +271,17 @@ impl Cells {
             daylight: around.daylight.clone(),
             bounces,
         };
+        let view = around.view.whole().block();
+        let is_filled = self.filled_for == Some(view) && self.round == FIRST_ROUNDS;
+        if work == Work::Anew && is_filled && self.held.as_ref() == Some(&held) {
+            // A tile or a layer of the same picture.
+            return;
+        }
         let is_other = self.held.as_ref().is_none_or(|old| old.bounces != bounces);
         if is_other || work == Work::Anew {
             self.clear(recorder);
             self.held = None;
+            self.filled_for = (work == Work::Anew).then_some(view);
         }
         let old = self.held.as_ref();
         let change = old.map_or(0.0, |old| change(&old.daylight, around.daylight));

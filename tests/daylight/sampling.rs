@@ -7,7 +7,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 /// A small picture of the bundled scene that is quick to render.
-const SMALL: [&str; 7] = [
+const SMALL: [&str; 9] = [
     "render",
     "--size",
     "96x54",
@@ -15,6 +15,8 @@ const SMALL: [&str; 7] = [
     "256",
     "--dome-directions",
     "4",
+    "--bounces",
+    "0",
 ];
 
 fn program(folder: &Path, words: &[&str]) -> Command {

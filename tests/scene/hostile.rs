@@ -146,6 +146,8 @@ fn peak(model: Option<&Path>, folder: &Path) -> u64 {
             "16x16",
             "--shadow-size",
             "64",
+            "--ambient",
+            "ssao",
             "--ao-radius",
             "0",
             "--no-cache",

@@ -142,6 +142,12 @@ fn candidate(
     } else {
         missing.extend(missing_features(instance, handle));
     }
+    let buffers = properties.limits.max_per_stage_descriptor_storage_buffers;
+    if buffers < STORAGE_BUFFERS {
+        missing.push(format!(
+            "{STORAGE_BUFFERS} storage buffers in a shader (it has {buffers})"
+        ));
+    }
     if queue_family.is_none() {
         let to = surface.map_or("", |_| " that presents to this window");
         missing.push(format!("a graphics queue{to}"));
@@ -220,6 +226,9 @@ fn graphics_queue(
     }
     Ok(None)
 }
+
+/// Largest number of storage buffers that a shader of this program uses; Vulkan guarantees four.
+const STORAGE_BUFFERS: u32 = 7;
 
 fn missing_features(instance: &ash::Instance, handle: vk::PhysicalDevice) -> Vec<String> {
     let mut v12 = vk::PhysicalDeviceVulkan12Features::default();
@@ -337,6 +346,7 @@ pub fn devices(without: &[Optional]) -> Result<Vec<DeviceSummary>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::pipeline::shader::{BindingKind, Shader, compiled};
 
     fn fake(index: usize, name: &str, rank: u32, missing: &[&str]) -> Candidate {
         Candidate {
@@ -402,5 +412,17 @@ mod tests {
                 .to_string()
                 .contains("Vulkan 1.3")
         );
+    }
+
+    #[test]
+    fn the_limit_of_storage_buffers_is_what_the_shaders_use() {
+        let buffers = |shader: &&Shader| {
+            let bindings = shader.bindings.iter();
+            bindings
+                .filter(|b| b.kind == BindingKind::StorageBuffer)
+                .count()
+        };
+        let most = compiled::ALL.iter().map(buffers).max();
+        assert_eq!(most, Some(STORAGE_BUFFERS as usize));
     }
 }

@@ -24,5 +24,7 @@ void main() {
     uint normal = texel_at(normal_material, pixel).x;
     vec3 world = view.eye + view.world_from_view * (ray * distance);
     Cached light = interpolated(world, normal_unpack(normal));
+    // Where there is no cell yet, the texels beside it stand in.
+    if (!light.is_found) return;
     ambient = half_size_pack(Ambient(light.sky, light.bounce), distance, normal);
 }

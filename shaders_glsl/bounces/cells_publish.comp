@@ -43,13 +43,6 @@ uint slot_at(ivec3 at, uint side, int level, vec3 p) {
     return NONE;
 }
 
-/// Place of the cell beside a point whose middle is `way` from it along the sides of the grid.
-ivec3 cell_beside(vec3 place, vec3 slope, vec2 way, uint axis) {
-    // Where the tangent plane meets that middle.
-    float height = place.z - dot(slope.xy, way) / slope.z;
-    return ivec3(floor(turned_back(vec3(place.xy + way, height), axis)));
-}
-
 /// Sums of light of cells, and of the weights.
 struct Mean {
     vec3 sky;

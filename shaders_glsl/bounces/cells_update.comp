@@ -6,7 +6,7 @@
 #include "cells.glsl"
 #include "cell_table.glsl"
 
-// Adds a path to each cell: from one of its points over diffuse surfaces, with the light of sun and sky at each, ending in the cells.
+// Adds paths to the cells: each from one of a cell's points over diffuse surfaces, with the light of sun and sky at each, ending in the cells.
 // Reads the published cells and writes the sums, so the outcome does not depend on the order of the invocations.
 
 layout(local_size_x = 64) in;

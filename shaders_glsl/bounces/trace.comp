@@ -3,7 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "bvh.glsl"
 
-// Traces given rays, for tests against the CPU and for benchmarks. An invocation is a ray.
+// Traces given rays, for tests against the CPU. An invocation is a ray.
 
 layout(local_size_x = 64) in;
 

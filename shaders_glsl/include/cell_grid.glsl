@@ -76,6 +76,13 @@ vec3 turned_back(vec3 v, uint axis) {
     return axis == 0u ? v.zxy : axis == 1u ? v.yzx : v.xyz;
 }
 
+/// Place of the cell beside a point whose middle is `way` from it along the sides of the grid.
+ivec3 cell_beside(vec3 place, vec3 slope, vec2 way, uint axis) {
+    // Where the tangent plane meets that middle.
+    float height = place.z - dot(slope.xy, way) / slope.z;
+    return ivec3(floor(turned_back(vec3(place.xy + way, height), axis)));
+}
+
 /// Whether a point is on the anchor's side of the wall that divides a cell.
 bool is_on_side(vec4 wall, vec3 p) {
     return dot(wall.xyz, p) >= wall.w;

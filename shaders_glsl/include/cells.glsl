@@ -10,7 +10,7 @@ layout(set = 0, binding = 23) uniform usampler2D cells;
 layout(set = 0, binding = 24) uniform sampler2D walls;
 
 vec2 slot_uv(uint slot) {
-    return (vec2(slot % SLOT_COLUMNS, slot / SLOT_COLUMNS) + 0.5) / vec2(SLOT_COLUMNS, SLOTS / SLOT_COLUMNS);
+    return (vec2(slot_texel(slot)) + 0.5) / vec2(SLOT_COLUMNS, SLOTS / SLOT_COLUMNS);
 }
 
 /// The published slot of a cell, or NONE. `texel` receives its state.
@@ -72,9 +72,7 @@ Cached interpolated(vec3 p, vec3 n) {
     uvec4 texels[4];
     for (int i = 0; i < 4; ++i) {
         vec2 cell = base + vec2(i & 1, i >> 1);
-        // Where the tangent plane meets the middle of that cell.
-        float height = place.z - dot(slope.xy, cell + 0.5 - place.xy) / slope.z;
-        texels[i] = cell_at(ivec3(turned_back(vec3(cell, floor(height)), axis)), side, level, p);
+        texels[i] = cell_at(cell_beside(place, slope, cell + 0.5 - place.xy, axis), side, level, p);
     }
     // The cell that the point is in.
     ivec2 own = ivec2(greaterThanEqual(f, vec2(0.5)));

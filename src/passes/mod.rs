@@ -23,6 +23,26 @@ fn kilo(rgb: DVec3) -> Vec3 {
     (rgb * 1e-3).as_vec3()
 }
 
+/// A compute pipeline.
+fn compute(
+    context: &Arc<Context>,
+    name: &str,
+    shader: &'static Shader,
+    constants: &[(&str, u32)],
+) -> Result<Pipeline> {
+    Pipeline::new(
+        context,
+        &PipelineDesc {
+            name,
+            stages: &[shader],
+            vertex: &[],
+            colors: &[],
+            depth: Depth::Off,
+            constants,
+        },
+    )
+}
+
 /// A full-screen pipeline with one render target.
 fn fullscreen(
     context: &Arc<Context>,

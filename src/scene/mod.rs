@@ -168,6 +168,17 @@ impl Scene {
         casting.fold(Bounds::EMPTY, |all, (part, _)| all.union(part.bounds))
     }
 
+    /// Number of the material of each triangle.
+    pub fn triangle_materials(&self) -> Vec<u32> {
+        let mut material_of = vec![0; self.triangles()];
+        for part in &self.parts {
+            let first = part.first_index as usize / 3;
+            let count = part.index_count as usize / 3;
+            material_of[first..first + count].fill(part.material);
+        }
+        material_of
+    }
+
     /// Number of triangles.
     pub fn triangles(&self) -> usize {
         self.indices.len() / 3

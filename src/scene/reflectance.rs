@@ -28,12 +28,6 @@ pub struct Reflectances<'a> {
 impl<'a> Reflectances<'a> {
     /// Prepares the textures.
     pub fn new(scene: &'a Scene) -> Self {
-        let mut material_of = vec![0; scene.triangles()];
-        for part in &scene.parts {
-            let first = part.first_index as usize / 3;
-            let count = part.index_count as usize / 3;
-            material_of[first..first + count].fill(part.material);
-        }
         let is_used = |number: usize| {
             let mut materials = scene.materials.iter();
             materials.any(|m| m.diffuse_texture == Some(number))
@@ -48,7 +42,7 @@ impl<'a> Reflectances<'a> {
         });
         Self {
             levels: levels.collect(),
-            material_of,
+            material_of: scene.triangle_materials(),
             scene,
         }
     }

@@ -33,15 +33,9 @@ const OFFSET: f32 = 3e-5;
 impl<'a> TracedScene<'a> {
     /// Builds the hierarchy, unless the scene has one.
     pub fn new(scene: &'a Scene) -> Self {
-        let mut material_of = vec![0; scene.triangles()];
-        for part in &scene.parts {
-            let first = part.first_index as usize / 3;
-            let count = part.index_count as usize / 3;
-            material_of[first..first + count].fill(part.material);
-        }
         Self {
             bvh: scene.hierarchy(),
-            material_of,
+            material_of: scene.triangle_materials(),
             has_cut_outs: scene.materials.iter().any(|m| m.alpha_cutoff.is_some()),
             scene,
         }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::daylight::sky::Daylight;
-use crate::gpu::{Context, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders};
+use crate::gpu::{Context, Image, ImageDesc, Load, Pipeline, Recorder, Result, shaders};
 use crate::passes::bounces::cells::Cells;
 use crate::passes::bounces::gather::{HALF_SIZE, half_size};
 use crate::passes::fullscreen;
@@ -45,14 +45,8 @@ impl CellLight {
         view: &View,
     ) -> &Image {
         let pass = recorder.pass("cells: ambient", &self.pipeline);
-        cells
-            .bound_to(pass)
-            .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample(
-                "normal_material",
-                &surfaces.normal_material,
-                Sampler::Nearest,
-            )
+        surfaces
+            .shapes_sampled_by(cells.bound_to(pass))
             .uniform("view", &view.block())
             .uniform("scene", &cells.block(view, daylight))
             .color(&self.ambient, Load::Discard)

@@ -2,7 +2,7 @@
 //! sky and of the bounces on the surfaces in it.
 //!
 //! A round has four passes. *Seed* traces paths from the eye and claims cells in a hash table; *place* gives them the points from
-//! which they look at the scene; *update* adds a path to each cell, which ends in the cells as the last round left them; *publish*
+//! which they look at the scene; *update* adds paths to the cells, which end in the cells as the last round left them; *publish*
 //! copies the table to images for lookups. Random numbers depend on the cell, and contests for places are won by the smallest hash:
 //! the same seed gives the same light, in whatever order the device runs.
 //!
@@ -16,14 +16,14 @@ use glam::{DVec3, Vec3};
 use crate::daylight::sky::Daylight;
 use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
 use crate::gpu::{
-    Buffer, BufferKind, Context, Depth, Format, Image, ImageDesc, Pass, Pipeline, PipelineDesc,
-    Recorder, Result, Sampler, Shader, shaders,
+    Buffer, BufferKind, Context, Format, Image, ImageDesc, Pass, Pipeline, Recorder, Result,
+    Sampler, shaders,
 };
 use crate::gpu_struct;
 use crate::passes::bounces::change::{change, horizontal, ratio};
 use crate::passes::bounces::tree::Tree;
-use crate::passes::kilo;
 use crate::passes::view::{View, ViewBlock};
+use crate::passes::{compute, kilo};
 use crate::scene::Bounds;
 
 /// Slots of the hash table, as in `include/cell_flags.glsl`.
@@ -203,17 +203,7 @@ impl Cells {
     /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, tree: &Tree, bounds: &Bounds, seed: u32) -> Result<Self> {
         let traces = tree.constants();
-        let pipeline = |name, shader: &'static Shader, constants: &[(&str, u32)]| {
-            let desc = PipelineDesc {
-                name,
-                stages: &[shader],
-                vertex: &[],
-                colors: &[],
-                depth: Depth::Off,
-                constants,
-            };
-            Pipeline::new(context, &desc)
-        };
+        let pipeline = |name, shader, constants: &[_]| compute(context, name, shader, constants);
         let buffer = |name, words: u32| {
             Buffer::new(context, name, BufferKind::Storage, 4 * u64::from(words))
         };

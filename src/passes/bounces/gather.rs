@@ -5,13 +5,11 @@ use std::sync::Arc;
 use glam::IVec2;
 
 use crate::daylight::sky::Daylight;
-use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Pipeline, PipelineDesc, Recorder, Result, Sampler,
-    shaders,
-};
+use crate::gpu::{Context, Format, Image, ImageDesc, Pipeline, Recorder, Result, shaders};
 use crate::gpu_struct;
 use crate::passes::bounces::cells::{Bounces, Cells};
 use crate::passes::bounces::tree::Tree;
+use crate::passes::compute;
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::view::View;
 
@@ -65,16 +63,11 @@ impl Gather {
     ) -> Result<Self> {
         let desc = ImageDesc::flat("bounced irradiance", HALF_SIZE, half_size(size));
         Ok(Self {
-            pipeline: Pipeline::new(
+            pipeline: compute(
                 context,
-                &PipelineDesc {
-                    name: "bounces: gather",
-                    stages: &[&shaders::BOUNCES_GATHER_COMP],
-                    vertex: &[],
-                    colors: &[],
-                    depth: Depth::Off,
-                    constants: &tree.constants(),
-                },
+                "bounces: gather",
+                &shaders::BOUNCES_GATHER_COMP,
+                &tree.constants(),
             )?,
             bounced: Image::new(context, &desc.stored())?,
             traced: None,
@@ -105,12 +98,8 @@ impl Gather {
         self.traced = Some(of_pair);
         let pass = recorder.pass("bounces: gather", &self.pipeline);
         let pass = cells.bound_to(tree.bound_to(pass));
-        pass.sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample(
-                "normal_material",
-                &surfaces.normal_material,
-                Sampler::Nearest,
-            )
+        surfaces
+            .shapes_sampled_by(pass)
             .uniform("view", &view.block())
             .uniform("scene", &cells.block(view, daylight))
             .push(&Push {

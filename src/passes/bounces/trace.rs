@@ -1,11 +1,12 @@
-//! Given rays through the scene, for tests against the CPU and for benchmarks.
+//! Given rays through the scene, for tests against the CPU.
 
 use crate::gpu::{
-    Buffer, BufferKind, Depth, Format, Image, ImageDesc, Pipeline, PipelineDesc, Recorder, Result,
-    shaders, upload_buffer,
+    Buffer, BufferKind, Format, Image, ImageDesc, Pipeline, Recorder, Result, shaders,
+    upload_buffer,
 };
 use crate::gpu_struct;
 use crate::passes::bounces::tree::Tree;
+use crate::passes::compute;
 use crate::scene::Ray;
 
 gpu_struct! {
@@ -44,17 +45,7 @@ impl Trace {
         let context = recorder.context().clone();
         let mut constants = tree.constants().to_vec();
         constants.push(("ANY", (query == Query::Any).into()));
-        let pipeline = Pipeline::new(
-            &context,
-            &PipelineDesc {
-                name: "trace",
-                stages: &[&shaders::TRACE_COMP],
-                vertex: &[],
-                colors: &[],
-                depth: Depth::Off,
-                constants: &constants,
-            },
-        )?;
+        let pipeline = compute(&context, "trace", &shaders::TRACE_COMP, &constants)?;
         let words: Vec<[f32; 3]> = rays
             .iter()
             .flat_map(|ray| [ray.origin.to_array(), ray.direction.to_array()])

@@ -4,11 +4,9 @@ use std::cell::Cell;
 use std::sync::Arc;
 
 use crate::daylight::exposure::{BINS_PER_STOP, BLACK, BOUND, FADE};
-use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Pipeline, PipelineDesc, Recorder, Result, Sampler,
-    shaders,
-};
+use crate::gpu::{Context, Format, Image, ImageDesc, Pipeline, Recorder, Result, Sampler, shaders};
 use crate::gpu_struct;
+use crate::passes::compute;
 
 gpu_struct! {
     /// Metering and adaptation parameters.
@@ -41,17 +39,7 @@ impl Exposure {
                 &ImageDesc::flat(name, Format::R32_SFLOAT, [1, 1]).stored(),
             )
         };
-        let pipeline = Pipeline::new(
-            context,
-            &PipelineDesc {
-                name: "exposure",
-                stages: &[&shaders::EXPOSURE_COMP],
-                vertex: &[],
-                colors: &[],
-                depth: Depth::Off,
-                constants: &[],
-            },
-        )?;
+        let pipeline = compute(context, "exposure", &shaders::EXPOSURE_COMP, &[])?;
         Ok(Self {
             pipeline,
             luminances: [image("average luminance 0")?, image("average luminance 1")?],

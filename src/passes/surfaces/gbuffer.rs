@@ -87,10 +87,18 @@ impl Surfaces {
     /// Without an albedo image the pipeline reads none, but the binding must be written: the table takes its place.
     pub fn sampled_by<'r>(&'r self, pass: Pass<'r>, materials: &'r Image) -> Pass<'r> {
         let albedo = self.albedo.as_ref().unwrap_or(materials);
-        pass.sample("depth", &self.depth, Sampler::Nearest)
-            .sample("normal_material", &self.normal_material, Sampler::Nearest)
+        self.shapes_sampled_by(pass)
             .sample("albedo", albedo, Sampler::Nearest)
             .sample("materials", materials, Sampler::Nearest)
+    }
+
+    /// Samples depth and normals in a pass, texel by texel.
+    pub fn shapes_sampled_by<'r>(&'r self, pass: Pass<'r>) -> Pass<'r> {
+        pass.sample("depth", &self.depth, Sampler::Nearest).sample(
+            "normal_material",
+            &self.normal_material,
+            Sampler::Nearest,
+        )
     }
 
     /// Adds the images as attachments of a pass.

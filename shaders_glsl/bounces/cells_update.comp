@@ -75,8 +75,11 @@ void add_path(inout Sum sum, uint slot, uint print) {
     else if (push.segments > 0u) bounce = path_light(surface_of(hit, point.position, toward), state);
     // Later paths end in better cells: the weights of their light grow with the cube of their number.
     float k = sum.samples + 1.0;
+    float late = 4.0 * k / ((k + 1.0) * (k + 1.0));
     sum.sky = mix(sum.sky, sky, 1.0 / k);
-    sum.bounce = mix(sum.bounce, bounce, 4.0 * k / ((k + 1.0) * (k + 1.0)));
+    sum.sky_gradient = mix(sum.sky_gradient, gradient_of(luminance(sky), toward, n), 1.0 / k);
+    sum.bounce = mix(sum.bounce, bounce, late);
+    sum.bounce_gradient = mix(sum.bounce_gradient, gradient_of(luminance(bounce), toward, n), late);
     sum.samples = k;
 }
 
@@ -93,6 +96,8 @@ void main() {
     sum.samples = min(sum.samples, push.most);
     sum.sky *= push.sky_change;
     sum.bounce *= push.bounce_change;
+    sum.sky_gradient *= luminance(push.sky_change);
+    sum.bounce_gradient *= luminance(push.bounce_change);
     uint paths = sum.samples < float(ENOUGH) ? clamp(push.paths / live_count, 1u, MOST_PATHS) : 0u;
     for (uint i = 0u; i < paths; ++i) add_path(sum, slot, print & ~FLAGS);
     sums[slot] = sum;

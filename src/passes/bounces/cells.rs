@@ -32,12 +32,12 @@ const SLOTS: u32 = 1 << 17;
 const SLOT_COLUMNS: u32 = 512;
 /// Points of a cell, its contests, and points of a path, as in `include/cell_table.glsl`.
 const POINTS: u32 = 2;
-const CONTESTS: u32 = 3;
+const CONTESTS: u32 = 2;
 const PATH_POINTS: u32 = 4;
 /// Sizes of the structs there, bytes.
 const POINT_BYTES: u32 = 16;
 const CANDIDATE_BYTES: u32 = 28;
-const SUM_BYTES: u32 = 32;
+const SUM_BYTES: u32 = 56;
 
 /// Most paths from the eye in a round.
 const PATHS: u32 = 1 << 12;
@@ -164,7 +164,7 @@ pub struct Cells {
     stamps: Buffer,
     walls: Buffer,
     cells: Image,
-    cell_walls: Image,
+    planes: Image,
     held: Option<Held>,
     /// Rounds so far.
     round: u32,
@@ -208,8 +208,12 @@ impl Cells {
             Buffer::new(context, name, BufferKind::Storage, 4 * u64::from(words))
         };
         let size = [SLOT_COLUMNS, SLOTS / SLOT_COLUMNS];
-        let image =
-            |name, format| Image::new(context, &ImageDesc::flat(name, format, size).stored());
+        let image = |name| {
+            Image::new(
+                context,
+                &ImageDesc::flat(name, Format::R32G32B32A32_UINT, size).stored(),
+            )
+        };
         Ok(Self {
             seed,
             cell: CELL.min(bounds.extent().length() / CELLS_ACROSS).max(1e-6),
@@ -227,9 +231,9 @@ impl Cells {
             )?,
             sums: buffer("sums of cells", SLOTS * SUM_BYTES / 4)?,
             stamps: buffer("rounds of cells", SLOTS)?,
-            cells: image("cells", Format::R32G32B32A32_UINT)?,
-            walls: buffer("walls of cells", SLOTS * 4)?,
-            cell_walls: image("walls that divide cells", Format::R32G32B32A32_SFLOAT)?,
+            cells: image("cells")?,
+            walls: buffer("walls of cells", SLOTS * 2)?,
+            planes: image("cells: walls and gradients")?,
             held: None,
             round: 0,
             filled_for: None,
@@ -242,7 +246,7 @@ impl Cells {
             recorder.fill(buffer, 0);
         }
         recorder.fill(&self.contests, u32::MAX);
-        for image in [&self.cells, &self.cell_walls] {
+        for image in [&self.cells, &self.planes] {
             recorder.clear(image, [0.0; 4]);
         }
         self.round = 0;
@@ -324,8 +328,8 @@ impl Cells {
     /// Binds the published cells to a pass that looks them up.
     pub(in crate::passes) fn bound_to<'r>(&'r self, pass: Pass<'r>) -> Pass<'r> {
         pass.sample("cells", &self.cells, Sampler::Nearest).sample(
-            "walls",
-            &self.cell_walls,
+            "cell_planes",
+            &self.planes,
             Sampler::Nearest,
         )
     }
@@ -392,7 +396,7 @@ impl Cells {
             .storage_mut("Contests", &self.contests)
             .storage_mut("Sums", &self.sums)
             .store("cells", &self.cells)
-            .store("cell_walls", &self.cell_walls)
+            .store("cell_planes", &self.planes)
             .dispatch_over([self.most_live(), 1, 1]);
     }
 

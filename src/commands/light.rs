@@ -1,5 +1,6 @@
 //! Resolves options into a sun position and a daylight. `sky` and `bake` need nothing else.
 
+use crate::daylight::perez::Measured;
 use crate::daylight::sky::{Conditions, Daylight};
 use crate::daylight::sun_position::{SunPosition, lecture};
 use crate::error::Result;
@@ -81,5 +82,12 @@ pub fn conditions(settings: &Options, sun: &SunPosition) -> Conditions {
         sun_azimuth_deg: sun.azimuth_deg,
         sun_elevation_deg: sun.apparent_elevation_deg,
         horizontal_illuminance: settings.sky_illuminance,
+        cloud_cover: settings.cloud_cover,
+        measured: Measured {
+            direct_normal_w: settings.dni.unwrap_or_default(),
+            diffuse_horizontal_w: settings.dhi.unwrap_or_default(),
+            dew_point_c: settings.dew_point,
+            day_of_year: settings.sun.day_of_year(),
+        },
     }
 }

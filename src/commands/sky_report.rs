@@ -10,6 +10,8 @@ use crate::daylight::colour::{
     chromaticity, correlated_colour_temperature, luminance, xyz_from_rgb,
 };
 use crate::daylight::irradiance::IrradianceEstimator;
+use crate::daylight::perez::AllWeather;
+use crate::daylight::sky::SkyModel;
 use crate::daylight::sun_position::{self, Polar, SunEvents, sun_events};
 use crate::daylight::sunlight::{Sunlight, air_mass};
 use crate::error::Result;
@@ -76,6 +78,9 @@ pub struct SkyPart {
     /// Turbidity used, clamped to the model's range.
     pub turbidity: f64,
     pub ground_albedo: f64,
+    /// Only of the measured sky.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<MeasuredPart>,
     pub zenith_luminance: f64,
     pub zenith_rgb: [f64; 3],
     pub zenith_chromaticity: [f64; 2],
@@ -89,6 +94,20 @@ pub struct SkyPart {
     pub irradiance: BTreeMap<&'static str, [f64; 3]>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub samples: Vec<Sample>,
+}
+
+/// What Perez' model makes of the irradiances.
+#[derive(Debug, Serialize)]
+pub struct MeasuredPart {
+    /// ε, 1 to 12.
+    pub clearness: f64,
+    /// Δ, 0.01 to 0.6.
+    pub brightness: f64,
+    /// Precipitable water, cm.
+    pub water_cm: f64,
+    /// Luminous efficacies of the light of sky and sun, lm/W.
+    pub diffuse_efficacy: f64,
+    pub direct_efficacy: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -217,6 +236,7 @@ impl SkyPart {
             model: settings.sky.to_string(),
             turbidity: turbidity(light),
             ground_albedo: settings.ground_albedo,
+            measured: measured(light),
             zenith_luminance: luminance(zenith),
             zenith_rgb: zenith.to_array(),
             zenith_chromaticity: chromaticity(xyz_from_rgb(zenith)),
@@ -228,6 +248,20 @@ impl SkyPart {
             samples: directions.iter().map(|d| sample(light, *d)).collect(),
         }
     }
+}
+
+fn measured(light: &Light) -> Option<MeasuredPart> {
+    let conditions = &light.conditions;
+    (conditions.model == SkyModel::Perez).then(|| {
+        let weather = AllWeather::new(&conditions.measured, conditions.sun_elevation_deg);
+        MeasuredPart {
+            clearness: weather.clearness,
+            brightness: weather.brightness,
+            water_cm: conditions.measured.precipitable_water_cm(),
+            diffuse_efficacy: weather.diffuse_efficacy,
+            direct_efficacy: weather.direct_efficacy,
+        }
+    })
 }
 
 fn sample(light: &Light, at: Direction) -> Sample {

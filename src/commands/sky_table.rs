@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::sky_report::{AXES, SkyPart, SkyReport, SunReport};
+use super::sky_report::{AXES, MeasuredPart, SkyPart, SkyReport, SunReport};
 use crate::daylight::colour::luminance;
 
 impl Display for SkyReport {
@@ -93,6 +93,9 @@ impl Display for SkyPart {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let [x, y] = self.zenith_chromaticity;
         let blue = "none: bluer than any black body";
+        if let Some(measured) = &self.measured {
+            measured.fmt(f)?;
+        }
         line(f, "zenith", colour(self.zenith_rgb, "cd/m²"))?;
         line(
             f,
@@ -115,6 +118,17 @@ impl Display for SkyPart {
             )?;
         }
         Ok(())
+    }
+}
+
+impl Display for MeasuredPart {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        line(f, "clearness ε", format!("{:.3}", self.clearness))?;
+        line(f, "brightness Δ", format!("{:.4}", self.brightness))?;
+        line(f, "water in the air", format!("{:.2} cm", self.water_cm))?;
+        let (sky, sun) = (self.diffuse_efficacy, self.direct_efficacy);
+        let both = format!("{sky:.1} lm/W (sky), {sun:.1} lm/W (sun)");
+        line(f, "luminous efficacies", both)
     }
 }
 

@@ -115,6 +115,63 @@ fn a_measured_illuminance_scales_the_sky() {
 }
 
 #[test]
+fn measured_irradiances_give_sky_and_sun_their_illuminances() {
+    let sky = "--sky perez --dni 700 --dhi 120 --dew-point 5";
+    let found = json(&format!(
+        "--place 41.98,-87.92 --when 2026-03-05T12:30-06:00 {sky}"
+    ));
+    let lux = 120.0 * at(&found, "sky.measured.diffuse_efficacy");
+    assert!((at(&found, "sky.diffuse_horizontal_lux") / lux - 1.0).abs() < 1e-9);
+    let lux = 700.0 * at(&found, "sky.measured.direct_efficacy");
+    assert!((at(&found, "sun.illuminance_lux") / lux - 1.0).abs() < 1e-9);
+    // ε = (ratio + 1.041 z³)/(1 + 1.041 z³), the sun 49° from the zenith.
+    assert!((4.3..4.8).contains(&at(&found, "sky.measured.clearness")));
+    let water = (0.07f64 * 5.0 - 0.075).exp();
+    assert!((at(&found, "sky.measured.water_cm") / water - 1.0).abs() < 1e-9);
+    for (name, value) in [
+        ("dni", "700"),
+        ("dhi", "120"),
+        ("dew-point", "5"),
+        ("sky", "perez"),
+    ] {
+        assert_eq!(found["inputs"][name], value);
+    }
+    // The sun is 7 % brighter in January: the same irradiance is a darker sky, relative to what comes in.
+    let of = |day: &str| {
+        let day = json(&format!(
+            "--solar {day},12 --place 0,0 --refraction off {sky}"
+        ));
+        at(&day, "sky.measured.brightness")
+    };
+    assert!(
+        (of("3") / of("182") - 0.935).abs() < 0.02,
+        "{} {}",
+        of("3"),
+        of("182")
+    );
+    let text = String::from_utf8(skylight(&format!("sky {sky}")).stdout).expect("text");
+    for part in ["clearness ε", "brightness Δ", "luminous efficacies"] {
+        assert!(text.contains(part), "{text}");
+    }
+}
+
+#[test]
+fn clouds_dim_the_sun_and_their_own_skies_say_no() {
+    let open = json("--sun 180,40");
+    let half = json("--sun 180,40 --cloud-cover 0.5");
+    let ratio = at(&half, "global_horizontal_lux") / at(&open, "global_horizontal_lux");
+    assert!(
+        (ratio / (1.0 - 0.75 * 0.5f64.powf(3.4)) - 1.0).abs() < 1e-6,
+        "{ratio}"
+    );
+    let sun = at(&half, "sun.illuminance_lux") / at(&open, "sun.illuminance_lux");
+    assert!((0.6..0.75).contains(&sun), "{sun}");
+    let cloudy = json("--sun 180,40 --cloud-cover 0.5 --sky cie-8");
+    let warning = cloudy["warnings"][0].as_str().expect("a warning");
+    assert!(warning.contains("clouds of its own"), "{warning}");
+}
+
+#[test]
 fn refraction_can_be_switched_off() {
     let place = "--place 55.68,12.57 --when 2026-06-21T04:40+02:00";
     let on = json(place);
@@ -247,6 +304,24 @@ fn nonsense_is_one_line_and_exit_code_2() {
         ("sky --direction 1", "AZIMUTH,ELEVATION"),
         ("sky --sky-illuminance -1", "0 to 1000000 lux"),
         ("sky --plot spectrum.png", ".svg"),
+        ("sky --sky cie-17", "cie-16"),
+        ("sky --sky perez", "--dni and --dhi"),
+        ("sky --sky perez --dni 300", "0 to 1500"),
+        (
+            "sky --sky perez --dni -5 --dhi 100",
+            "irradiance must be 0 to 1500 W/m²",
+        ),
+        (
+            "sky --sky perez --dni 5 --dhi 1501",
+            "irradiance must be 0 to 1500 W/m²",
+        ),
+        ("sky --sky perez --dni 300 --dhi 0", "both as measured"),
+        (
+            "sky --sky perez --dni 1 --dhi 1 --dew-point 41",
+            "dew point must be -90 to 40 °C",
+        ),
+        ("sky --cloud-cover 1.1", "cloud cover must be 0 to 1"),
+        ("sky --cloud-cover -0.1", "cloud cover must be 0 to 1"),
         ("sky scene.toml", "scene.toml"),
         ("sky --refraction maybe", "--refraction"),
     ] {

@@ -42,6 +42,12 @@ impl Light {
             conditions,
         })
     }
+
+    /// Turbidity used by the model. A warning reports when it differs from the option.
+    pub fn turbidity(&self) -> f64 {
+        let (low, high) = self.conditions.model.turbidity_range();
+        self.conditions.turbidity.clamp(low, high)
+    }
 }
 
 /// Position of the sun according to the options. Images use its apparent elevation.

@@ -6,6 +6,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::light::Light;
+use super::sky_almanac::{Almanac, rfc3339};
 use crate::daylight::colour::{
     chromaticity, correlated_colour_temperature, luminance, xyz_from_rgb,
 };
@@ -36,6 +37,9 @@ pub struct SkyReport {
     /// The options that reproduce this daylight.
     pub inputs: BTreeMap<String, String>,
     pub sun: SunReport,
+    /// The times of the date and the moon; absent without a place and a moment.
+    #[serde(flatten)]
+    pub almanac: Option<Almanac>,
     pub sky: SkyPart,
     /// Radiance of all directions below the horizon.
     pub ground: GroundPart,
@@ -140,6 +144,7 @@ impl SkyReport {
                 luminance: luminance(daylight.ground_luminance),
                 rgb: daylight.ground_luminance.to_array(),
             },
+            almanac: Almanac::new(light)?,
             global_horizontal_lux: sun.direct_horizontal_lux + sky.diffuse_horizontal_lux,
             sun,
             sky,
@@ -152,9 +157,6 @@ impl SunReport {
     fn new(light: &Light) -> Result<Self> {
         let daylight = &light.daylight;
         let events = events(light)?;
-        let moment = |t: Option<chrono::DateTime<chrono::FixedOffset>>| {
-            t.map(|t| t.format("%Y-%m-%dT%H:%M:%S%:z").to_string())
-        };
         let illuminance = luminance(daylight.sun_illuminance);
         let apparent = light.sun.apparent_elevation_deg;
         Ok(Self {
@@ -171,9 +173,9 @@ impl SunReport {
             cct_k: (illuminance > 0.0)
                 .then(|| sun_temperature(light))
                 .flatten(),
-            sunrise: moment(events.and_then(|e| e.sunrise)),
-            solar_noon: moment(events.and_then(|e| e.noon)),
-            sunset: moment(events.and_then(|e| e.sunset)),
+            sunrise: rfc3339(events.and_then(|e| e.sunrise)),
+            solar_noon: rfc3339(events.and_then(|e| e.noon)),
+            sunset: rfc3339(events.and_then(|e| e.sunset)),
             polar: events.and_then(|e| polar(light, &e)),
         })
     }
@@ -182,18 +184,13 @@ impl SunReport {
 /// Correlated colour temperature of the sun, from its spectrum before gamut mapping to BT.709.
 fn sun_temperature(light: &Light) -> Option<f64> {
     let elevation = light.conditions.sun_elevation_deg.max(0.0);
-    let xyz = Sunlight::new(turbidity(light), elevation).luminance_xyz;
+    let xyz = Sunlight::new(light.turbidity(), elevation).luminance_xyz;
     temperature(xyz)
 }
 
-fn temperature(xyz: DVec3) -> Option<f64> {
+/// Correlated colour temperature, K; `None` if it is bluer than any black body.
+pub(super) fn temperature(xyz: DVec3) -> Option<f64> {
     correlated_colour_temperature(xyz).filter(|kelvin| *kelvin < HOTTEST)
-}
-
-/// Turbidity used by the model. A warning reports when it differs from the option.
-fn turbidity(light: &Light) -> f64 {
-    let (low, high) = light.conditions.model.turbidity_range();
-    light.conditions.turbidity.clamp(low, high)
 }
 
 fn events(light: &Light) -> Result<Option<SunEvents>> {
@@ -234,7 +231,7 @@ impl SkyPart {
             IrradianceEstimator::new(settings.irradiance, radiance, settings.irradiance_samples);
         Self {
             model: settings.sky.to_string(),
-            turbidity: turbidity(light),
+            turbidity: light.turbidity(),
             ground_albedo: settings.ground_albedo,
             measured: measured(light),
             zenith_luminance: luminance(zenith),

@@ -12,6 +12,9 @@ impl Display for SkyReport {
         }
         writeln!(f)?;
         self.sun.fmt(f)?;
+        if let Some(almanac) = &self.almanac {
+            almanac.fmt(f)?;
+        }
         writeln!(f)?;
         self.sky.fmt(f)?;
         let total = self.global_horizontal_lux;
@@ -132,7 +135,7 @@ impl Display for MeasuredPart {
     }
 }
 
-fn line(f: &mut Formatter<'_>, name: &str, value: impl Display) -> fmt::Result {
+pub(super) fn line(f: &mut Formatter<'_>, name: &str, value: impl Display) -> fmt::Result {
     writeln!(f, "{name:<26}{value}")
 }
 
@@ -142,7 +145,7 @@ fn colour(rgb: [f64; 3], unit: &str) -> String {
     format!("{:<18} RGB {r} {g} {b}", with_unit(total, unit))
 }
 
-fn with_unit(value: f64, unit: &str) -> String {
+pub(super) fn with_unit(value: f64, unit: &str) -> String {
     format!("{} {unit}", number(value))
 }
 
@@ -151,7 +154,7 @@ fn kelvin(value: Option<f64>, none: &str) -> String {
 }
 
 /// Formats with four significant digits, or with all integer digits if there are more (below 10⁷).
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     let digits = 3 - value.abs().max(1e-300).log10().floor() as i32;
     match digits {
         _ if value == 0.0 => "0".to_owned(),

@@ -5,6 +5,7 @@
 
 use super::data::perez_1993::{CLEARNESS, COEFFICIENTS, DIFFUSE_EFFICACY, DIRECT_EFFICACY};
 use super::grey_sky::Distribution;
+use super::sun_position::distance_factor;
 use super::sunlight::{WATER_VAPOUR_CM, air_mass};
 
 /// Irradiance outside the air at the mean distance of the sun, W/m² (Perez et al. 1990).
@@ -70,7 +71,7 @@ impl AllWeather {
             (diffuse + direct) / diffuse
         };
         let clearness = ((ratio + cubed) / (1.0 + cubed)).clamp(1.0, 12.009);
-        let outside = SOLAR_CONSTANT_W * distance_factor(measured.day_of_year);
+        let outside = SOLAR_CONSTANT_W * measured.day_of_year.map_or(1.0, distance_factor);
         let brightness = (diffuse * air_mass(elevation) / outside).clamp(0.01, 0.6);
         let bin = CLEARNESS
             .iter()
@@ -97,19 +98,6 @@ impl AllWeather {
             },
         }
     }
-}
-
-/// Spencer 1971: the sun's irradiance outside the air relative to that at its mean distance, 0.967..=1.035.
-fn distance_factor(day_of_year: Option<u32>) -> f64 {
-    let Some(day) = day_of_year else {
-        return 1.0;
-    };
-    let angle = std::f64::consts::TAU * (f64::from(day) - 1.0) / 365.0;
-    1.00011
-        + 0.034221 * angle.cos()
-        + 0.00128 * angle.sin()
-        + 0.000719 * (2.0 * angle).cos()
-        + 0.000077 * (2.0 * angle).sin()
 }
 
 /// Perez et al. 1993, eqs. 5..8: a..e of a bin of clearness (0..=7), `zenith` in radians.

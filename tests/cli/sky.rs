@@ -292,6 +292,105 @@ fn polar_day_and_night_are_told_as_such() {
 }
 
 #[test]
+fn twilights_and_hours_follow_each_other_and_are_told_where_there_are_none() {
+    let found = json("--place 37.08,15.29 --when 2026-09-24T16:40+02:00");
+    let text = |path: &str| {
+        let found = found.pointer(path).and_then(Value::as_str);
+        found
+            .unwrap_or_else(|| panic!("{path} is missing"))
+            .to_owned()
+    };
+    let order = [
+        "/times/astronomical_twilight/dawn",
+        "/times/nautical_twilight/dawn",
+        "/times/civil_twilight/dawn",
+        "/times/blue_hour/morning/1",
+        "/sun/sunrise",
+        "/times/golden_hour/morning/1",
+        "/sun/solar_noon",
+        "/times/golden_hour/evening/0",
+        "/sun/sunset",
+        "/times/blue_hour/evening/0",
+        "/times/civil_twilight/dusk",
+        "/times/nautical_twilight/dusk",
+        "/times/astronomical_twilight/dusk",
+    ];
+    let moments = order.map(text);
+    assert!(moments.is_sorted(), "{moments:?}");
+    assert_eq!(text("/times/blue_hour/morning/0"), moments[2]);
+    // Syracuse, civil twilight of some 25 minutes: the sun sets at 18:50.
+    assert!(
+        moments[10].starts_with("2026-09-24T19:1"),
+        "{}",
+        moments[10]
+    );
+    let summer = skylight("sky --place 55.68,12.57 --when 2026-06-21T12:00+02:00");
+    let summer = String::from_utf8(summer.stdout).expect("text");
+    assert!(
+        summer.contains("none: the sun stays above -12°"),
+        "{summer}"
+    );
+    assert!(summer.contains("golden hour"), "{summer}");
+    let polar = json("--place 78.22,15.65 --when 2026-12-24T12:00+01:00");
+    assert_eq!(polar["times"]["civil_twilight"]["sun_stays"], "below");
+    assert!(polar["times"]["golden_hour"]["morning"][0].is_null());
+    assert!(json("--sun 180,45").get("times").is_none());
+}
+
+#[test]
+fn the_moon_is_told_with_its_phase_and_light() {
+    // Full on 2026-01-03 10:03 UTC: moon.csv has it at Quito.
+    let found = json("--place -0.1807,-78.4678 --when 2026-01-03T10:00Z");
+    let close = |path: &str, expected: f64, within: f64| {
+        let found = at(&found, path);
+        assert!((found - expected).abs() < within, "{path} {found}");
+    };
+    close("moon.elevation_deg", 16.6931, 0.01);
+    close("moon.azimuth_deg", 298.5894, 0.01);
+    close("moon.illuminated_fraction", 0.99849, 0.001);
+    close("moon.distance_km", 360_423.0, 50.0);
+    let (outside, ground) = (
+        at(&found, "moon.outside_lux"),
+        at(&found, "moon.illuminance_lux"),
+    );
+    assert!((0.25..0.4).contains(&outside), "{outside}");
+    assert!(ground > 0.2 * outside && ground < 0.7 * outside, "{ground}");
+    let sine = numbers(&found, "moon.direction", 3)[1];
+    close("moon.direct_horizontal_lux", ground * sine, 1e-12);
+    let below = json("--place 37.0755,15.2866 --when 2026-01-03T10:00Z");
+    assert_eq!(at(&below, "moon.illuminance_lux"), 0.0);
+    assert!(json("--sun 180,45").get("moon").is_none());
+}
+
+#[test]
+fn every_model_is_compared_and_is_as_on_its_own() {
+    let sun = "--sun 180,40 --dni 700 --dhi 120";
+    let found = json(&format!("{sun} --compare"));
+    let models = found["models"].as_array().expect("a list");
+    assert_eq!(models.len(), 21);
+    for row in models {
+        let name = row["model"].as_str().expect("a name");
+        let alone = json(&format!("{sun} --sky {name}"));
+        for (key, path) in [
+            ("sky_lux", "sky.diffuse_horizontal_lux"),
+            ("sun_lux", "sun.illuminance_lux"),
+            ("global_lux", "global_horizontal_lux"),
+            ("zenith_luminance", "sky.zenith_luminance"),
+        ] {
+            assert_eq!(at(row, key), at(&alone, path), "{name} {key}");
+        }
+        assert_eq!(row["sky_cct_k"], alone["sky"]["cct_k"], "{name}");
+    }
+    let published = found["published"].as_array().expect("a list");
+    let clear = 800.0 + 15_500.0 * 40f64.to_radians().sin().sqrt();
+    assert!((at(&published[1], "sky_lux") / clear - 1.0).abs() < 1e-12);
+    let output = skylight("sky --sun 180,-5 --compare");
+    let text = String::from_utf8(output.stdout).expect("text");
+    assert!(text.contains("perez       needs --dni and --dhi"), "{text}");
+    assert!(text.contains("AMS Glossary"), "{text}");
+}
+
+#[test]
 fn nonsense_is_one_line_and_exit_code_2() {
     for (line, part) in [
         ("sky --place 91,0", "latitude must be -90 to 90"),

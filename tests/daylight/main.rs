@@ -8,6 +8,7 @@ mod model;
 mod bounces;
 mod grey_skies;
 mod irradiance;
+mod moon;
 mod reference;
 mod rooms;
 mod sampling;

@@ -142,6 +142,9 @@ options! {
             /// Whether the air lifts the sun to its apparent elevation (of --place and --solar; --sun is as seen).
             #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
             refraction: Switch,
+            /// Whether the moon shines: its disc in the sky, and its light when the sun gives none (of --place and --when).
+            #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
+            moon: Switch,
             /// Reflectance of the ground below the horizon, 0 to 1; 0 is black.
             #[arg(value_name = "ALBEDO", value_parser = values::ground_albedo, allow_hyphen_values = true,
                   default_value_t = Conditions::default().ground_albedo)]

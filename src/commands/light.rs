@@ -1,5 +1,6 @@
 //! Resolves options into a sun position and a daylight. `sky` and `bake` need nothing else.
 
+use crate::daylight::moon::Moon;
 use crate::daylight::perez::Measured;
 use crate::daylight::sky::{Conditions, Daylight};
 use crate::daylight::sun_position::{SunPosition, lecture};
@@ -79,6 +80,24 @@ pub fn sun_position(settings: &Options) -> Result<SunPosition> {
     Ok(sun)
 }
 
+/// The moon of the place and the moment; `None` without them, without an ephemeris for them, or if it is switched off.
+fn moon(settings: &Options) -> Option<Moon> {
+    let SunInput::Place {
+        latitude,
+        longitude,
+        when,
+    } = settings.sun
+    else {
+        return None;
+    };
+    let is_on = settings.moon == Switch::On;
+    let mut moon = is_on.then(|| Moon::at(when, latitude, longitude).ok())??;
+    if settings.refraction == Switch::Off {
+        moon.apparent_elevation_deg = moon.elevation_deg;
+    }
+    Some(moon)
+}
+
 /// Inputs of the daylight for this position of the sun.
 pub fn conditions(settings: &Options, sun: &SunPosition) -> Conditions {
     Conditions {
@@ -89,6 +108,7 @@ pub fn conditions(settings: &Options, sun: &SunPosition) -> Conditions {
         sun_elevation_deg: sun.apparent_elevation_deg,
         horizontal_illuminance: settings.sky_illuminance,
         cloud_cover: settings.cloud_cover,
+        moon: moon(settings),
         measured: Measured {
             direct_normal_w: settings.dni.unwrap_or_default(),
             diffuse_horizontal_w: settings.dhi.unwrap_or_default(),

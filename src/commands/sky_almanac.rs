@@ -148,7 +148,7 @@ impl Hours {
 
 impl MoonPart {
     fn new(moon: &Moon, events: &MoonEvents, turbidity: f64) -> Self {
-        let illuminance = luminance(moon.illuminance(turbidity));
+        let illuminance = luminance(moon.light(turbidity).illuminance);
         let direction = moon.direction();
         Self {
             azimuth_deg: moon.azimuth_deg,

@@ -22,7 +22,7 @@ struct Row {
     sky_lux: f64,
     /// By the sun at normal incidence, lux.
     sun_lux: f64,
-    /// By both on a horizontal plane, lux.
+    /// By both, or by sky and moon at night, on a horizontal plane, lux.
     global_lux: f64,
     /// Luminance of the zenith, cd/m².
     zenith_luminance: f64,
@@ -72,7 +72,7 @@ fn row(model: SkyModel, conditions: &Conditions) -> Row {
         model: name(model),
         sky_lux: luminance(sky),
         sun_lux,
-        global_lux: luminance(sky) + sun_lux * daylight.sun_direction.y.max(0.0),
+        global_lux: luminance(daylight.horizontal()),
         zenith_luminance: luminance(zenith),
         zenith_cct_k: cct(zenith),
         sky_cct_k: cct(sky),

@@ -43,7 +43,7 @@ pub struct SkyReport {
     pub sky: SkyPart,
     /// Radiance of all directions below the horizon.
     pub ground: GroundPart,
-    /// Illuminance of a horizontal plane by sun and sky, lux.
+    /// Illuminance of a horizontal plane by sky and sun, or moon while the sun gives no light, lux.
     pub global_horizontal_lux: f64,
     pub warnings: Vec<String>,
 }
@@ -145,7 +145,7 @@ impl SkyReport {
                 rgb: daylight.ground_luminance.to_array(),
             },
             almanac: Almanac::new(light)?,
-            global_horizontal_lux: sun.direct_horizontal_lux + sky.diffuse_horizontal_lux,
+            global_horizontal_lux: luminance(daylight.horizontal()),
             sun,
             sky,
             warnings: daylight.warnings.clone(),

@@ -18,7 +18,7 @@ impl Display for SkyReport {
         writeln!(f)?;
         self.sky.fmt(f)?;
         let total = self.global_horizontal_lux;
-        line(f, "sun and sky, horizontal", with_unit(total, "lux"))?;
+        line(f, "all light, horizontal", with_unit(total, "lux"))?;
         line(f, "ground", with_unit(self.ground.luminance, "cd/m²"))?;
         if !self.sky.samples.is_empty() {
             writeln!(f)?;

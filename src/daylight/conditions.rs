@@ -1,6 +1,7 @@
 //! What decides a daylight: the model of the sky and its inputs, and their ranges.
 
 use super::cie::{self, SkyCover, StandardSky, standard_sky};
+use super::moon::Moon;
 use super::perez::{DEW_POINTS, MOST_IRRADIANCE_W, Measured};
 use super::{hosek, preetham};
 
@@ -113,6 +114,8 @@ pub struct Conditions {
     /// Share of the sky that clouds cover, 0..=1, see [`super::clouds`]. Only a model that [is clear](SkyModel::is_clear) has use
     /// for it.
     pub cloud_cover: f64,
+    /// The moon. It shines through skies without clouds of their own, where it is dimmed by [`Self::cloud_cover`] as the sun is.
+    pub moon: Option<Moon>,
     /// The irradiances of [`SkyModel::Perez`], which alone has use for them. They are used without twilight fade.
     pub measured: Measured,
 }
@@ -128,6 +131,7 @@ impl Default for Conditions {
             sun_elevation_deg: 45.0,
             horizontal_illuminance: None,
             cloud_cover: 0.0,
+            moon: None,
             measured: Measured::default(),
         }
     }

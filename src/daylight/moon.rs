@@ -4,6 +4,8 @@
 //! the earth by the precession and nutation of IAU 2000B, seen from the WGS84 ellipsoid at sea level. Time is that of
 //! [`super::sun_position::spa`].
 
+use std::f64::consts::PI;
+
 use chrono::{DateTime, Duration, FixedOffset, NaiveDate};
 use glam::DVec3;
 
@@ -103,19 +105,81 @@ impl Moon {
         MAGNITUDE_ZERO_LUX * 10f64.powf(-0.4 * self.magnitude())
     }
 
-    /// Illuminance at normal incidence on the ground, linear BT.709 RGB, lux, through air of `turbidity` (1..=10); 0 once the
-    /// disc has set. The light has the sun's spectrum: that the moon is a little redder is left out.
-    pub fn illuminance(&self, turbidity: f64) -> DVec3 {
+    /// The light of the moon on the ground, through air of `turbidity` (1..=10).
+    pub fn light(&self, turbidity: f64) -> Moonlight {
         let elevation = self.apparent_elevation_deg;
         let outside = Sunlight::extraterrestrial().luminance_xyz.y;
         let through = Sunlight::new(turbidity, elevation.max(0.0)).luminance() / outside;
-        colour::clip_negative(through) * (self.outside_lux() * visible_fraction(elevation))
+        let whole = colour::clip_negative(through) * self.outside_lux();
+        let angular_radius = self.angular_diameter_deg().to_radians() / 2.0;
+        let solid_angle = PI * angular_radius.sin().powi(2);
+        Moonlight {
+            direction: self.direction(),
+            illuminance: whole * visible_fraction(elevation),
+            luminance: whole / (solid_angle * phase_function(self.phase_angle_deg)),
+            sunward: self.sunward,
+            angular_radius,
+        }
     }
 
     /// Whether the upper limb is above the apparent horizon.
     fn is_up(&self) -> bool {
         self.apparent_elevation_deg + self.angular_diameter_deg() / 2.0 > 0.0
     }
+}
+
+/// The moon's light on the ground.
+///
+/// It has the sun's spectrum: that the moon is a little redder is left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moonlight {
+    /// Unit vector toward the apparent centre.
+    pub direction: DVec3,
+    /// Illuminance at normal incidence, linear BT.709 RGB, lux; 0 once the disc has set.
+    pub illuminance: DVec3,
+    /// Luminance of the disc where sunlight and line of sight are equally inclined to the surface, as everywhere on the full
+    /// moon: linear BT.709 RGB, cd/m².
+    pub luminance: DVec3,
+    /// Unit vector from the moon toward the sun.
+    pub sunward: DVec3,
+    /// Angular radius of the disc, radians.
+    pub angular_radius: f64,
+}
+
+impl Moonlight {
+    /// This light times `factor`.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self {
+            illuminance: self.illuminance * factor,
+            luminance: self.luminance * factor,
+            ..*self
+        }
+    }
+
+    /// Luminance of the disc in the unit direction `dir`, linear BT.709 RGB, cd/m²; 0 beside it and on its dark side.
+    ///
+    /// Lommel and Seeliger's law on a sphere, 2 μ₀ / (μ₀ + μ): μ₀ and μ are the cosines of sun and observer. The full moon is
+    /// as bright at its limb as in its middle, as the true one nearly is.
+    pub fn disc(&self, dir: DVec3) -> DVec3 {
+        let across = self.direction.cross(dir).cross(self.direction) / self.angular_radius.sin();
+        let beside = across.length_squared();
+        if beside >= 1.0 || dir.dot(self.direction) <= 0.0 {
+            return DVec3::ZERO;
+        }
+        let to_eye = (1.0 - beside).sqrt();
+        let to_sun = (across - self.direction * to_eye)
+            .dot(self.sunward)
+            .max(0.0);
+        self.luminance * (2.0 * to_sun / (to_sun + to_eye).max(1e-9))
+    }
+}
+
+/// Light of a sphere of Lommel and Seeliger's law by the phase angle, relative to that of the full one: 1 - sin(α/2) tan(α/2)
+/// ln cot(α/4). Beyond 175°, where the moon is lost beside the sun, its value there.
+fn phase_function(phase_angle_deg: f64) -> f64 {
+    let half = phase_angle_deg.clamp(1e-6, 175.0).to_radians() / 2.0;
+    1.0 + half.sin() * half.tan() * (half / 2.0).tan().ln()
 }
 
 /// Allen 1973 (Krisciunas & Schaefer 1991, eq. 9): visual magnitude of the moon at its mean distance, for the phase angle in
@@ -248,7 +312,7 @@ mod tests {
         let ratio = near.outside_lux() / far.outside_lux();
         assert!((ratio / (406.7f64 / 356.5).powi(2) - 1.0).abs() < 1e-12);
         assert!((near.angular_diameter_deg() - 0.5585).abs() < 1e-3);
-        let ground = colour::luminance(near.illuminance(3.0)) / near.outside_lux();
+        let ground = colour::luminance(near.light(3.0).illuminance) / near.outside_lux();
         assert!((0.5..0.8).contains(&ground), "{ground}");
     }
 
@@ -264,6 +328,37 @@ mod tests {
         let limb = moon.apparent_elevation_deg + moon.angular_diameter_deg() / 2.0;
         assert!(limb.abs() < 0.01, "{limb}");
         assert!(moon.illuminated_fraction() > 0.99);
+    }
+
+    #[test]
+    fn the_disc_sums_up_to_its_illuminance_at_every_phase() {
+        let toward = direction(120.0, 35.0);
+        for phase_angle_deg in [0.0, 20.0, 60.0, 90.0, 120.0, 150.0] {
+            let (sine, cosine) = f64::to_radians(phase_angle_deg).sin_cos();
+            let (side, _) = toward.any_orthonormal_pair();
+            let moon = Moon {
+                azimuth_deg: 120.0,
+                elevation_deg: 35.0,
+                apparent_elevation_deg: 35.0,
+                distance_km: 390_000.0,
+                phase_angle_deg,
+                sunward: side * sine - toward * cosine,
+            };
+            let light = moon.light(3.0);
+            // Rings and columns of equal solid angle within the disc.
+            let (rings, columns, radius) = (300, 400, light.angular_radius.sin());
+            let (right, up) = toward.any_orthonormal_pair();
+            let mut sum = DVec3::ZERO;
+            for i in 0..rings * columns {
+                let r = radius * ((f64::from(i / columns) + 0.5) / f64::from(rings)).sqrt();
+                let (s, c) = (2.0 * PI * f64::from(i % columns) / f64::from(columns)).sin_cos();
+                let dir = toward * (1.0 - r * r).sqrt() + (right * c + up * s) * r;
+                sum += light.disc(dir);
+            }
+            let found = sum * (PI * radius * radius / f64::from(rings * columns));
+            let error = (found / light.illuminance - 1.0).abs().max_element();
+            assert!(error < 2e-3, "{phase_angle_deg} {error}");
+        }
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! A daylight: sun, sky and ground at one moment; finite and not negative for any input.
+//! A daylight: sun, moon, sky and ground at one moment; finite and not negative for any input.
 //!
 //! The models are valid for a sun above the horizon and a range of turbidities. [`Daylight::new`] keeps them within that range
 //! with the numbers of [`Guard`], which a shader applies in the same way:
@@ -16,6 +16,7 @@ use super::colour;
 pub use super::conditions::{Conditions, SkyModel};
 use super::grey_sky::GreySky;
 use super::hosek::Hosek;
+use super::moon::Moonlight;
 use super::perez::AllWeather;
 use super::preetham::Preetham;
 use super::quadrature::horizontal_irradiance;
@@ -78,7 +79,16 @@ pub struct Guard {
     pub night: DVec3,
 }
 
-/// Sun, sky and ground at one moment. Every number is finite and none is negative.
+/// A light from one direction: [`Daylight::direct_light`]. Both discs are taken as wide as the sun's for penumbrae.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DirectLight {
+    /// Unit vector toward its centre, which may be below the horizon.
+    pub direction: DVec3,
+    /// Illuminance at normal incidence, linear BT.709 RGB, lux.
+    pub illuminance: DVec3,
+}
+
+/// Sun, moon, sky and ground at one moment. Every number is finite and none is negative.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Daylight {
     /// Unit vector toward the sun's centre, which may be below the horizon.
@@ -87,13 +97,16 @@ pub struct Daylight {
     pub sun_illuminance: DVec3,
     /// Luminance of the sun's disc, linear BT.709 RGB, cd/m²; 0 once it has set entirely.
     pub sun_luminance: DVec3,
+    /// The moon, if it is above the horizon and no clouds hide it.
+    pub moon: Option<Moonlight>,
     /// Model of the sky.
     pub sky: Sky,
     /// Parameters that extend the model beyond its valid range.
     pub guard: Guard,
     /// Illuminance of the sky on a horizontal plane that faces up, linear BT.709 RGB, lux.
     pub sky_irradiance_up: DVec3,
-    /// Radiance of everything below the horizon, linear BT.709 RGB, cd/m²: albedo/π (E_sun sin el + E_sky).
+    /// Radiance of everything below the horizon, linear BT.709 RGB, cd/m²: albedo/π (E_sun sin el + E_sky), E_sun that of
+    /// [`Daylight::direct_light`].
     pub ground_luminance: DVec3,
     /// Corrections of the conditions, one sentence each.
     pub warnings: Vec<String>,
@@ -116,20 +129,43 @@ impl Daylight {
             (sun_illuminance * sun_share, sun_luminance * sun_share);
         let clouds = DVec3::splat(guard.clouds / OVERCAST_ZENITH_PER_LUX);
         let sky_irradiance_up = own * guard.scale + clouds + guard.night * PI;
-        let sun_on_ground = sun_illuminance * elevation.to_radians().sin().max(0.0);
-        Self {
+        let mut daylight = Self {
             sun_direction: direction(valid.sun_azimuth_deg, elevation),
             sun_illuminance,
             sun_luminance,
+            moon: moonlight(&valid, sun_share),
             sky,
             guard,
             sky_irradiance_up,
-            ground_luminance: (sun_on_ground + sky_irradiance_up) * (valid.ground_albedo / PI),
+            ground_luminance: DVec3::ZERO,
             warnings,
+        };
+        daylight.ground_luminance = daylight.horizontal() * (valid.ground_albedo / PI);
+        daylight
+    }
+
+    /// The directional light, the one that throws shadows: the sun, or the moon while the sun gives none.
+    pub fn direct_light(&self) -> DirectLight {
+        let sun = DirectLight {
+            direction: self.sun_direction,
+            illuminance: self.sun_illuminance,
+        };
+        match self.moon {
+            Some(moon) if self.sun_illuminance == DVec3::ZERO => DirectLight {
+                direction: moon.direction,
+                illuminance: moon.illuminance,
+            },
+            _ => sun,
         }
     }
 
-    /// Radiance in the unit direction `dir`, linear BT.709 RGB, cd/m²: sky without the sun's disc, ground below the horizon.
+    /// Illuminance of open ground by the directional light and the sky, linear BT.709 RGB, lux.
+    pub fn horizontal(&self) -> DVec3 {
+        let direct = self.direct_light();
+        self.sky_irradiance_up + direct.illuminance * direct.direction.y.max(0.0)
+    }
+
+    /// Radiance in the unit direction `dir`, linear BT.709 RGB, cd/m²: sky without the discs of sun and moon, ground below the horizon.
     pub fn radiance(&self, dir: DVec3) -> DVec3 {
         if dir.y < 0.0 {
             self.ground_luminance
@@ -165,6 +201,13 @@ fn sun(valid: &Conditions, factor: f64) -> (DVec3, DVec3) {
         clip(sunlight.illuminance()) * (visible * factor),
         clip(sunlight.luminance()) * factor,
     )
+}
+
+/// The moon through a sky without clouds of its own; `share` is what clouds leave.
+fn moonlight(valid: &Conditions, share: f64) -> Option<Moonlight> {
+    let moon = valid.moon.filter(|_| valid.model.is_clear())?;
+    let light = moon.light(valid.turbidity).scaled(share);
+    (light.illuminance != DVec3::ZERO).then_some(light)
 }
 
 /// The sky, and the factor on the sun's own light that the model's illuminance by the sun asks for.

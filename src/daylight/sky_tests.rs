@@ -99,6 +99,7 @@ fn absurd_inputs_are_replaced_and_named() {
                 sun_elevation_deg: bad,
                 horizontal_illuminance: Some(bad),
                 cloud_cover: bad,
+                moon: None,
                 measured: Measured {
                     direct_normal_w: bad,
                     diffuse_horizontal_w: bad,

@@ -357,6 +357,12 @@ fn the_moon_is_told_with_its_phase_and_light() {
     assert!(ground > 0.2 * outside && ground < 0.7 * outside, "{ground}");
     let sine = numbers(&found, "moon.direction", 3)[1];
     close("moon.direct_horizontal_lux", ground * sine, 1e-12);
+    // It is night there: the moon is the light from one direction, unless it is switched off.
+    let both = at(&found, "sky.diffuse_horizontal_lux") + ground * sine;
+    close("global_horizontal_lux", both, 1e-9);
+    let off = json("--place -0.1807,-78.4678 --when 2026-01-03T10:00Z --moon off");
+    let sky = at(&off, "sky.diffuse_horizontal_lux");
+    assert_eq!(at(&off, "global_horizontal_lux"), sky);
     let below = json("--place 37.0755,15.2866 --when 2026-01-03T10:00Z");
     assert_eq!(at(&below, "moon.illuminance_lux"), 0.0);
     assert!(json("--sun 180,45").get("moon").is_none());

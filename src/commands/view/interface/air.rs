@@ -1,6 +1,7 @@
 //! Sky model, its measured irradiances or clouds, turbidity, ground albedo, refraction.
 
 use egui::{Slider, Ui};
+use glam::DVec3;
 
 use super::choice;
 use crate::commands::view::document::Document;
@@ -31,18 +32,22 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
     ui.add(Slider::new(&mut settings.ground_albedo, 0.0..=1.0).text("ground albedo"))
         .on_hover_text("reflectance of the ground below the horizon, 0 to 1");
     choice(ui, "refraction", &mut settings.refraction);
+    choice(ui, "moon", &mut settings.moon);
+    let is_moonlit = document.job.daylight.moon.is_some()
+        && document.job.daylight.sun_illuminance == DVec3::ZERO;
+    let source = if is_moonlit { "moon" } else { "sun" };
     ui.label(format!(
-        "horizontal: sun {} + sky {}",
+        "horizontal: {source} {} + sky {}",
         illuminance(sun),
         illuminance(sky)
     ));
 }
 
-/// Illuminances of a horizontal plane by sun and sky, lux.
+/// Illuminances of a horizontal plane by sun (or moon) and sky, lux.
 fn horizontal(document: &Document) -> [f64; 2] {
     let light = &document.job.daylight;
-    let sun = luminance(light.sun_illuminance) * light.sun_direction.y.max(0.0);
-    [sun, luminance(light.sky_irradiance_up)]
+    let sky = luminance(light.sky_irradiance_up);
+    [luminance(light.horizontal()) - sky, sky]
 }
 
 /// Formats an illuminance, lux: `12.3 klx`, `0.25 lx`.

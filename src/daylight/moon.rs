@@ -182,7 +182,7 @@ fn phase_function(phase_angle_deg: f64) -> f64 {
     1.0 + half.sin() * half.tan() * (half / 2.0).tan().ln()
 }
 
-/// Allen 1973 (Krisciunas & Schaefer 1991, eq. 9): visual magnitude of the moon at its mean distance, for the phase angle in
+/// Allen 1973 (as Krisciunas & Schaefer 1991 write it): visual magnitude of the moon at its mean distance, for the phase angle in
 /// degrees: -12.73 + 0.026 |α| + 4e-9 α⁴. Its authors state 8 to 23 % for the light; the surge within 7° of full is not in it.
 pub fn magnitude(phase_angle_deg: f64) -> f64 {
     -12.73 + 0.026 * phase_angle_deg.abs() + 4e-9 * phase_angle_deg.powi(4)
@@ -213,7 +213,8 @@ pub fn moon_events(
     let (mut before, mut was_up) = (midnight, is_up(midnight)?);
     for step in 1..=24 * 60 / STEP_MINUTES {
         let now = midnight + Duration::minutes(step * STEP_MINUTES);
-        let up = is_up(now)?;
+        // The last day of all ends within the years: the next midnight is beyond them.
+        let Ok(up) = is_up(now) else { break };
         let event = if up {
             &mut events.rise
         } else {
@@ -282,6 +283,7 @@ fn topocentric_km(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::daylight::sun_position::sun_events;
 
     #[test]
     fn published_phases_have_their_illuminances() {
@@ -318,16 +320,19 @@ mod tests {
 
     #[test]
     fn the_full_moon_rises_when_the_sun_sets() {
-        // Full moon of 2026-01-03 10:03 UTC; Copenhagen: moonrise 15:21, moonset 09:46 (the sun sets at 15:49).
+        // Copenhagen on the day of a full moon.
         let date = NaiveDate::from_ymd_opt(2026, 1, 3).unwrap();
         let offset = FixedOffset::east_opt(3600).unwrap();
         let events = moon_events(date, offset, 55.6761, 12.5683).unwrap();
-        let clock = |t: Option<DateTime<FixedOffset>>| t.unwrap().format("%H:%M").to_string();
-        println!("{} {}", clock(events.rise), clock(events.set));
-        let moon = Moon::at(events.rise.unwrap(), 55.6761, 12.5683).unwrap();
-        let limb = moon.apparent_elevation_deg + moon.angular_diameter_deg() / 2.0;
-        assert!(limb.abs() < 0.01, "{limb}");
-        assert!(moon.illuminated_fraction() > 0.99);
+        let sun = sun_events(date, offset, 55.6761, 12.5683).unwrap();
+        for (moonlit, sunlit) in [(events.rise, sun.sunset), (events.set, sun.sunrise)] {
+            let apart = moonlit.unwrap() - sunlit.unwrap();
+            assert!(apart.num_minutes().abs() < 60, "{apart}");
+            let moon = Moon::at(moonlit.unwrap(), 55.6761, 12.5683).unwrap();
+            let limb = moon.apparent_elevation_deg + moon.angular_diameter_deg() / 2.0;
+            assert!(limb.abs() < 0.01, "{limb}");
+            assert!(moon.illuminated_fraction() > 0.99);
+        }
     }
 
     #[test]

@@ -100,7 +100,7 @@ impl AllWeather {
     }
 }
 
-/// Perez et al. 1993, eqs. 5..8: a..e of a bin of clearness (0..=7), `zenith` in radians.
+/// Perez et al. 1993: a..e of a bin of clearness (0..=7), `zenith` in radians.
 fn distribution(bin: usize, clearness: f64, brightness: f64, zenith: f64) -> Distribution {
     // The paper keeps Δ from below 0.2 between overcast and intermediate skies.
     let is_between = clearness > 1.065 && clearness < 2.8;

@@ -1,10 +1,10 @@
 //! Tables of Perez' all-weather sky: Perez, Seals & Michalsky 1993, *All-weather model for sky luminance distribution* (Solar
 //! Energy 50:235, erratum 51:423), and Perez, Ineichen, Seals, Michalsky & Stewart 1990 (Solar Energy 44:271).
 
-/// Lower limits of the clearness ε of the bins 2..=8 (1990, table 1).
+/// Lower limits of the clearness ε of the bins 2..=8 (1990).
 pub const CLEARNESS: [f64; 7] = [1.065, 1.23, 1.5, 1.95, 2.8, 4.5, 6.2];
 
-/// Per bin, for each of a, b, c, d, e: x₁..x₄ of x₁ + x₂ z + Δ (x₃ + x₄ z) (1993, table 1).
+/// Per bin, for each of a, b, c, d, e: x₁..x₄ of x₁ + x₂ z + Δ (x₃ + x₄ z) (1993).
 pub const COEFFICIENTS: [[[f64; 4]; 5]; 8] = [
     [
         [1.3525, -0.2576, -0.2690, -1.4366],
@@ -64,7 +64,7 @@ pub const COEFFICIENTS: [[[f64; 4]; 5]; 8] = [
     ],
 ];
 
-/// Per bin: a, b, c, d of the efficacy of the sky's light, lm/W (1990, table 4).
+/// Per bin: a, b, c, d of the efficacy of the sky's light, lm/W (1990).
 pub const DIFFUSE_EFFICACY: [[f64; 4]; 8] = [
     [97.24, -0.46, 12.0, -8.91],
     [107.22, 1.15, 0.59, -3.95],
@@ -76,7 +76,7 @@ pub const DIFFUSE_EFFICACY: [[f64; 4]; 8] = [
     [152.23, 0.35, -45.27, -7.98],
 ];
 
-/// Per bin: a, b, c, d of the efficacy of the sun's light, lm/W (1990, table 4).
+/// Per bin: a, b, c, d of the efficacy of the sun's light, lm/W (1990).
 pub const DIRECT_EFFICACY: [[f64; 4]; 8] = [
     [57.20, -4.55, -2.98, 117.12],
     [98.99, -3.46, -1.21, 12.38],

@@ -124,9 +124,27 @@ options! {
             /// Horizontal illuminance of the sky alone, lux: scales the sky to a measured value; by default the model's own.
             #[arg(value_name = "LUX", value_parser = values::sky_illuminance, allow_hyphen_values = true)]
             sky_illuminance: Option<f64>,
+            /// Share of a clear sky that clouds cover, 0 to 1: dims the sun and evens out the sky as Kasten and Czeplak measured in the
+            /// mean; no cloud is drawn. Not for skies that have clouds of their own (perez, overcast, cie-1 to cie-10, cie-16).
+            #[arg(value_name = "COVER", value_parser = values::cloud_cover, allow_hyphen_values = true,
+                  default_value_t = Conditions::default().cloud_cover)]
+            cloud_cover: f64,
+            /// Measured irradiance by the sun at normal incidence, W/m², 0 to 1500 (--sky perez).
+            #[arg(value_name = "W", value_parser = values::irradiance_w, allow_hyphen_values = true)]
+            dni: Option<f64>,
+            /// Measured irradiance by the sky on a horizontal plane, W/m², 0 to 1500 (--sky perez).
+            #[arg(value_name = "W", value_parser = values::irradiance_w, allow_hyphen_values = true)]
+            dhi: Option<f64>,
+            /// Dew point at the ground, °C, -90 to 40: the water in the air for the luminous efficacies (--sky perez); by default that
+            /// of 2 cm of precipitable water, 11 °C.
+            #[arg(value_name = "CELSIUS", value_parser = values::dew_point, allow_hyphen_values = true)]
+            dew_point: Option<f64>,
             /// Whether the air lifts the sun to its apparent elevation (of --place and --solar; --sun is as seen).
             #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
             refraction: Switch,
+            /// Whether the moon shines: its disc in the sky, and its light when the sun gives none (of --place and --when).
+            #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
+            moon: Switch,
             /// Reflectance of the ground below the horizon, 0 to 1; 0 is black.
             #[arg(value_name = "ALBEDO", value_parser = values::ground_albedo, allow_hyphen_values = true,
                   default_value_t = Conditions::default().ground_albedo)]

@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 use super::{Bounces, Choice, choice_enum};
 use crate::daylight::false_colour::Range;
 pub use crate::daylight::moment::When;
+use crate::daylight::perez::{DEW_POINTS, MOST_IRRADIANCE_W};
 pub use crate::daylight::place::Place;
 use crate::frame::FrameSettings;
 
@@ -247,6 +248,9 @@ macro_rules! ranged {
 ranged! {
     turbidity: "turbidity", "", -100.0..=100.0;
     sky_illuminance: "illuminance of the sky", "lux", 0.0..=1e6;
+    cloud_cover: "cloud cover", "", 0.0..=1.0;
+    irradiance_w: "irradiance", "W/m²", 0.0..=MOST_IRRADIANCE_W;
+    dew_point: "dew point", "°C", DEW_POINTS.0..=DEW_POINTS.1;
     ground_albedo: "ground albedo", "", 0.0..=1.0;
     fov: "field of view", "degrees", 1.0..=170.0;
     ev100: "exposure value", "", -20.0..=40.0;

@@ -119,15 +119,16 @@ pub(super) fn trace(
     [sky, sun, reflected]
 }
 
-/// Irradiance of the sun at a point, sampled on its disc, linear RGB, lux.
+/// Irradiance of the sun, or of the moon at night, at a point, sampled on its disc, linear RGB, lux.
 fn sun_at(point: &Point, scene: &TracedScene, lights: &Lights, xi: DVec2) -> DVec3 {
-    let toward = on_disc(lights.daylight.sun_direction.as_vec3(), xi).as_dvec3();
+    let direct = lights.daylight.direct_light();
+    let toward = on_disc(direct.direction.as_vec3(), xi).as_dvec3();
     let cosine = point.normal.as_dvec3().dot(toward);
-    let is_dark = lights.daylight.sun_illuminance == DVec3::ZERO || toward.y <= 0.0;
+    let is_dark = direct.illuminance == DVec3::ZERO || toward.y <= 0.0;
     if cosine <= 0.0 || is_dark || !scene.is_open(point.position, toward.as_vec3()) {
         return DVec3::ZERO;
     }
-    lights.daylight.sun_illuminance * cosine
+    direct.illuminance * cosine
 }
 
 /// Irradiance of the sky at a point, linear RGB, lux: a direction sampled by luminance, weighted against cosine-distributed ones

@@ -633,6 +633,35 @@ fn the_command_line_overrides_the_scene_file() {
 }
 
 #[test]
+fn a_scene_file_has_measured_skies_and_clouds() {
+    let place = Place::new();
+    place.put(
+        "s.toml",
+        "[[mesh]]\nfile = \"m.obj\"\n[sun]\nsun = [120, 30]\n\
+         [sky]\nsky = \"perez\"\ndni = 600\ndhi = 90.5\ndew-point = -3\n\
+         [[moment]]\nname = \"cloudy\"\nsky = \"hosek\"\ncloud-cover = 0.7\n",
+    );
+    let keys = ["sky", "dni", "dhi", "dew-point", "cloud-cover"];
+    for (words, expected) in [
+        (&[][..], ["perez", "600", "90.5", "-3", "0"]),
+        (&["--dni", "20"], ["perez", "20", "90.5", "-3", "0"]),
+        (
+            &["--moment", "cloudy"],
+            ["hosek", "600", "90.5", "-3", "0.7"],
+        ),
+    ] {
+        place
+            .render(&[&["s.toml", "-o", "a.png"], words].concat())
+            .silently();
+        let (texts, ..) = png(&place.path().join("a.png"));
+        assert_eq!(keys.map(|key| texts[key].as_str()), expected);
+    }
+    place.put("t.toml", "[[mesh]]\nfile = \"m.obj\"\n[sky]\ndni = -5\n");
+    let ended = place.render(&["t.toml", "-o", "a.png"]);
+    ended.failed(1, &["dni", "irradiance must be 0 to 1500 W/m²"]);
+}
+
+#[test]
 fn cameras_of_a_scene_file_are_chosen_by_name() {
     let place = Place::new();
     place.put(

@@ -6,7 +6,9 @@ mod common;
 mod model;
 
 mod bounces;
+mod grey_skies;
 mod irradiance;
+mod moon;
 mod reference;
 mod rooms;
 mod sampling;

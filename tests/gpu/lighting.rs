@@ -196,14 +196,14 @@ fn files_are_in_candelas_and_carry_their_parameters() {
 }
 
 /// A scene outside the view.
-fn out_of_view() -> Scene {
+pub fn out_of_view() -> Scene {
     Model::default()
         .square([0.0, -50.0, 0.0], 1.0, &matt(0.5))
         .build()
 }
 
 /// A close view of the sun.
-fn toward(direction: DVec3) -> Camera {
+pub fn toward(direction: DVec3) -> Camera {
     Camera {
         fov_deg: 2.0,
         ..camera([0.0; 3], direction.as_vec3().to_array())
@@ -211,7 +211,7 @@ fn toward(direction: DVec3) -> Camera {
 }
 
 /// Solid angle of a pixel, sr: its area on the plane at distance 1 times the cube of the cosine.
-fn solid_angle(camera: &Camera, size: [usize; 2], pixel: [usize; 2]) -> f64 {
+pub fn solid_angle(camera: &Camera, size: [usize; 2], pixel: [usize; 2]) -> f64 {
     let tan = (0.5 * f64::from(camera.fov_deg)).to_radians().tan();
     let edge = 2.0 * tan / size[1] as f64;
     let forward = (camera.target - camera.eye).as_dvec3().normalize();

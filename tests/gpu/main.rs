@@ -19,6 +19,7 @@ mod furnace;
 mod golden;
 mod irradiance;
 mod lighting;
+mod moon;
 mod moving_light;
 mod penumbra;
 mod probe;

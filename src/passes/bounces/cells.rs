@@ -20,7 +20,7 @@ use crate::gpu::{
     Sampler, shaders,
 };
 use crate::gpu_struct;
-use crate::passes::bounces::change::{change, horizontal, ratio};
+use crate::passes::bounces::change::{change, ratio};
 use crate::passes::bounces::tree::Tree;
 use crate::passes::view::{View, ViewBlock};
 use crate::passes::{compute, kilo};
@@ -308,12 +308,13 @@ impl Cells {
 
     /// The shader's block.
     pub(in crate::passes) fn block(&self, view: &View, daylight: &Daylight) -> SceneBlock {
+        let direct = daylight.direct_light();
         SceneBlock {
             eye: view.camera.eye,
             cell: self.cell,
             near: self.cell * NEAR_CELLS,
-            sun_direction: daylight.sun_direction.as_vec3(),
-            sun_illuminance: kilo(daylight.sun_illuminance),
+            sun_direction: direct.direction.as_vec3(),
+            sun_illuminance: kilo(direct.illuminance),
             sun_tan_radius: SUN_ANGULAR_RADIUS.tan() as f32,
             seed: self.seed,
             frame: self.round,
@@ -425,6 +426,6 @@ fn update_push(old: Option<&Held>, new: &Held) -> UpdatePush {
         first: u32::MAX,
         most: kept.map_or(f32::MAX, |paths| paths as f32),
         sky_change: factor(|day| day.sky_irradiance_up),
-        bounce_change: factor(horizontal),
+        bounce_change: factor(Daylight::horizontal),
     }
 }

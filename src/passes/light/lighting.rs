@@ -329,7 +329,7 @@ impl Lighting {
         SunBlock {
             shadow_from_world: shadow.shadow_from_world.to_cols_array_2d(),
             direction: light.sun_direction,
-            illuminance: kilo(light.daylight.sun_illuminance),
+            illuminance: kilo(light.daylight.direct_light().illuminance),
             depth_bias: BIAS_TEXELS * shadow.texel_depth,
             max_radiance: self.settings.precision.max_radiance(),
             specular_scale: self.settings.specular_scale,

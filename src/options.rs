@@ -240,6 +240,10 @@ options! {
             /// How often surfaces reflect light onto others: all, or a number; 0 is the light of sun and sky alone.
             #[arg(value_name = "N", value_parser = values::bounces, allow_hyphen_values = true, default_value_t)]
             bounces: Bounces,
+            /// Factor on the light that surfaces emit, 0 to 1e9: what a model's unit of emission is, cd/m²; 0 turns lamps off.
+            #[arg(value_name = "SCALE", value_parser = values::emission_scale, allow_hyphen_values = true,
+                  default_value_t = 1.0)]
+            emission_scale: f64,
             /// Where single frames have the light of the sky and of other surfaces from.
             #[arg(value_name = "SOURCE", value_parser = choice::<Ambient>(), default_value_t)]
             ambient: Ambient,

@@ -10,6 +10,7 @@ mod bvh;
 mod cache;
 mod camera;
 mod culling;
+mod emitters;
 mod error;
 mod files;
 mod gltf;
@@ -34,17 +35,19 @@ pub use camera::{Camera, DEFAULT_FOV_DEG};
 pub use culling::bodies::{Bodies, Body};
 pub use culling::clusters::{Cluster, Clusters, Solid};
 pub use culling::layout::Layout;
+pub use emitters::{Emitter, Emitters};
 pub use error::SceneError;
 pub(crate) use error::shown;
 pub use hills::hills;
 pub use load::{LoadOptions, Loaded, load, load_with_progress};
-pub use material::Material;
+pub use material::{MAX_EMISSION, Material};
 pub use progress::Progress;
 pub use reflectance::{Mean, Reflectances};
 pub use scene_file::{NamedCamera, NamedMoment, NamedOptions};
 pub use texture::{Encoding, Texture};
 
 use load::append_model;
+use material::bounded_emission;
 
 /// A scene: one arena of vertices, parts that draw ranges of it, materials and textures.
 #[derive(Debug, Clone, PartialEq)]
@@ -177,6 +180,27 @@ impl Scene {
             material_of[first..first + count].fill(part.material);
         }
         material_of
+    }
+
+    /// Whether any surface emits light.
+    pub fn is_emissive(&self) -> bool {
+        self.materials.iter().any(Material::is_emissive)
+    }
+
+    /// Multiplies the light that surfaces emit. What becomes brighter than [`MAX_EMISSION`] is cut, with a warning.
+    pub fn scale_emission(&mut self, factor: f32) {
+        let mut is_cut = false;
+        for material in &mut self.materials {
+            let scaled = material.emission.map(|v| v * factor);
+            material.emission = bounded_emission(scaled);
+            is_cut |= material.emission != scaled;
+        }
+        if is_cut {
+            let what = format!(
+                "emission above {MAX_EMISSION:e} cd/m² is cut; give a smaller --emission-scale"
+            );
+            self.warnings.push(what);
+        }
     }
 
     /// Number of triangles.

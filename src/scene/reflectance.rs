@@ -1,4 +1,4 @@
-//! Mean reflectance and opacity of triangles, for rays that do not look up textures.
+//! Mean reflectance, emission and opacity of triangles, for rays that do not look up textures.
 
 use glam::Vec2;
 
@@ -12,6 +12,8 @@ const LOOKUPS: u32 = 8;
 pub struct Mean {
     /// Diffuse reflectance ρ_d of what is there, linear RGB, 0..1.
     pub diffuse: [f32; 3],
+    /// Emitted radiance L_e of what is there, linear RGB, cd/m².
+    pub emission: [f32; 3],
     /// Fraction of the area that is there: below 1 for cut-outs.
     pub opacity: f32,
 }
@@ -21,7 +23,7 @@ pub struct Reflectances<'a> {
     scene: &'a Scene,
     /// Material of each triangle.
     material_of: Vec<u32>,
-    /// Mip levels of each texture that maps ρ_d, the finest first.
+    /// Mip levels of each texture that maps ρ_d or L_e, the finest first.
     levels: Vec<Vec<Texture>>,
 }
 
@@ -30,7 +32,7 @@ impl<'a> Reflectances<'a> {
     pub fn new(scene: &'a Scene) -> Self {
         let is_used = |number: usize| {
             let mut materials = scene.materials.iter();
-            materials.any(|m| m.diffuse_texture == Some(number))
+            materials.any(|m| [m.diffuse_texture, m.emissive_texture].contains(&Some(number)))
         };
         let levels = scene.textures.iter().enumerate().map(|(number, texture)| {
             if !is_used(number) {
@@ -51,20 +53,20 @@ impl<'a> Reflectances<'a> {
     pub fn of(&self, triangle: u32) -> Mean {
         let material = &self.scene.materials[self.material_of[triangle as usize] as usize];
         let corners = [0, 1, 2].map(|i| self.scene.indices[3 * triangle as usize + i] as usize);
-        let is_plain = material.diffuse_texture.is_none() && self.scene.colours.is_empty();
-        if is_plain {
+        let maps = [material.diffuse_texture, material.emissive_texture];
+        if maps == [None; 2] && self.scene.colours.is_empty() {
             return Mean {
                 diffuse: material.diffuse,
+                emission: material.emission,
                 opacity: 1.0,
             };
         }
-        let texture = material
-            .diffuse_texture
-            .map(|number| self.level(number, material, corners));
-        let mut sum = [0.0; 3];
+        let maps = maps.map(|map| map.map(|number| self.level(number, material, corners)));
+        let (mut sum, mut emitted) = ([0.0; 3], [0.0; 3]);
         let (mut solid, mut count) = (0.0, 0.0);
         for weights in barycentric_points() {
-            let map = texture.map_or([1.0; 4], |t| nearest(t, self.uv(corners, weights)));
+            let uv = self.uv(corners, weights);
+            let [map, glow] = maps.map(|map| map.map_or([1.0; 4], |t| nearest(t, uv)));
             let colour = self.colour(corners, weights);
             let alpha = material.dissolve * map[3] * colour[3];
             count += 1.0;
@@ -74,10 +76,13 @@ impl<'a> Reflectances<'a> {
             solid += 1.0;
             for i in 0..3 {
                 sum[i] += material.diffuse[i] * map[i] * colour[i];
+                emitted[i] += material.emission[i] * glow[i];
             }
         }
+        let mean = |sum: f32| if solid > 0.0 { sum / solid } else { 0.0 };
         Mean {
-            diffuse: sum.map(|s| if solid > 0.0 { s / solid } else { 0.0 }),
+            diffuse: sum.map(mean),
+            emission: emitted.map(mean),
             opacity: solid / count,
         }
     }

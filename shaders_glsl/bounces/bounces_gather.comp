@@ -35,7 +35,7 @@ vec3 gathered(ivec2 pixel, vec3 ray, vec3 world, uvec3 own, vec3 n) {
     vec3 side = dot(face, n) > SAME_FACE ? face : n;
     vec3 origin = lifted(world, side);
     vec3 emitted = vec3(0.0);
-    if (EMITTERS > 0u) emitted = emission_of_point(origin, n, side, scrambled_sobol(push.index, tea(seed, 2u)));
+    if (EMITTERS > 0u) emitted = emission_of_point(origin, n, side, scrambled_sobol(push.index / 4u, tea(seed, 2u)));
     // Below the face: inside of the body.
     if (is_turned_away(face, n, toward)) return emitted;
     Hit hit = closest(origin, toward, FAR);

@@ -140,6 +140,49 @@ fn nearest(texture: &Texture, uv: Vec2) -> [f32; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Bounds, Encoding, Part};
+
+    /// A triangle over the lower left half of a texture that is bright (sRGB 188, 0.503 in linear light) in its left half.
+    #[test]
+    fn the_mean_emission_is_that_of_the_part_of_the_texture_on_the_triangle() {
+        let texels = (0..32u32 * 32).map(|i| if i % 32 < 16 { 188 } else { 0 });
+        let scene = Scene {
+            positions: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            normals: vec![[0.0, 0.0, 1.0]; 3],
+            texcoords: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+            indices: vec![0, 1, 2],
+            parts: vec![Part {
+                first_index: 0,
+                index_count: 3,
+                material: 0,
+                has_colours: false,
+                bounds: Bounds::EMPTY,
+            }],
+            materials: vec![Material {
+                emission: [100.0, 50.0, 0.0],
+                emissive_texture: Some(0),
+                ..Material::default()
+            }],
+            textures: vec![Texture {
+                name: "left".into(),
+                width: 32,
+                height: 32,
+                rgba8: texels.flat_map(|v: u8| [v, v, v, 255]).collect(),
+                encoding: Encoding::Srgb,
+            }],
+            ..Scene::default()
+        };
+        let mean = Reflectances::new(&scene).of(0);
+        // Three quarters of the triangle are in the left half.
+        let expected = 0.75 * 0.5029 * 100.0;
+        println!("{mean:?}, expected {expected}");
+        assert!((mean.emission[0] / expected - 1.0).abs() < 0.01);
+        assert!((mean.emission[1] / mean.emission[0] - 0.5).abs() < 1e-6);
+        assert_eq!(
+            (mean.emission[2], mean.diffuse, mean.opacity),
+            (0.0, [0.5; 3], 1.0)
+        );
+    }
 
     #[test]
     fn the_points_are_spread_evenly() {

@@ -6,6 +6,7 @@ mod common;
 mod model;
 
 mod bounces;
+mod emission;
 mod irradiance;
 mod reference;
 mod rooms;

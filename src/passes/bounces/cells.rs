@@ -54,6 +54,8 @@ const NEAR_CELLS: f32 = 24.0;
 
 /// Segments of a path before it ends in a cell.
 const SEGMENTS: u32 = 4;
+/// The same where surfaces emit light: rooms that lamps light are closed, and in white ones light is reflected often.
+const SEGMENTS_OF_LAMPS: u32 = 8;
 
 /// Rounds in which new cells are filled, whatever the budget.
 const FIRST_ROUNDS: u32 = 16;
@@ -410,6 +412,7 @@ impl Cells {
 /// does not follow that of the sky.
 fn update_push(old: Option<&Held>, new: &Held, is_emissive: bool) -> UpdatePush {
     let (segments, ends_in_cell) = match new.bounces {
+        Bounces::All if is_emissive => (SEGMENTS_OF_LAMPS, 1),
         Bounces::All => (SEGMENTS, 1),
         Bounces::UpTo(count) => (count, 0),
     };

@@ -39,8 +39,8 @@ fn within_the_box() -> Camera {
 }
 
 /// Settings of a converged picture under a black sky, whose maps need not be fine.
-fn by_lamps(samples: u32) -> FrameSettings {
-    let mut set = converged(48, 32, samples);
+fn by_lamps(width: u32, height: u32, samples: u32) -> FrameSettings {
+    let mut set = converged(width, height, samples);
     set.sampling.dome.directions = 1;
     set.sampling.dome.map_edge = 64;
     set
@@ -64,9 +64,9 @@ fn a_glowing_box_has_the_light_of_all_bounces_and_of_few() {
             Bounces::All => 1.0 / (1.0 - rho),
             Bounces::UpTo(n) => (1.0 - rho.powi(n as i32 + 1)) / (1.0 - rho),
         };
-        let set = with_bounces(bounces, by_lamps(32));
+        let set = with_bounces(bounces, by_lamps(24, 16, 32));
         let rays = mean(&device.picture(&scene, set, &day, &view)) / expected;
-        let set = with_bounces(bounces, single(48, 32));
+        let set = with_bounces(bounces, single(24, 16));
         let cells = mean(&previewed(&mut device, &scene, set, &view, 64)) / expected;
         println!(
             "reflectance {reflectance}, {bounces:?}: {expected:.4} kcd/m2; rays {rays:.5}, cells {cells:.5} of it"
@@ -100,9 +100,11 @@ fn a_square_lights_a_plane_as_lambert_says() {
         });
         let expected =
             |p: DVec3| 1e-3 * f64::from(emission) * polygon_irradiance(&corners, p, DVec3::Y);
-        let set = showing(Show::Irradiance, by_lamps(256));
+        // One bounce: the light is that of the rays alone, without a share of the cells.
+        let set = with_bounces(Bounces::UpTo(1), by_lamps(96, 64, 128));
+        let set = showing(Show::Irradiance, set);
         let rays = device.picture(&scene, set, &day, &view);
-        let set = showing(Show::Irradiance, single(48, 32));
+        let set = showing(Show::Irradiance, single(96, 64));
         let cells = previewed(&mut device, &scene, set, &view, 64);
         // A cell looks from two of its points, not from all.
         for (what, picture, limit) in [("rays", rays, 0.02), ("cells", cells, 0.06)] {
@@ -110,9 +112,9 @@ fn a_square_lights_a_plane_as_lambert_says() {
                 "blocks of pixels on the plane against Lambert's formula",
                 limit,
             );
-            for at in [[4, 20], [12, 24], [20, 18], [22, 26], [32, 22], [40, 28]] {
+            for at in [[8, 40], [24, 48], [40, 36], [44, 52], [64, 44], [80, 56]] {
                 let (mut lit, mut due) = (0.0, 0.0);
-                for [x, y] in (0..16).map(|i| [at[0] + i % 4, at[1] + i / 4]) {
+                for [x, y] in (0..64).map(|i| [at[0] + i % 8, at[1] + i / 8]) {
                     let point = on_ground(&view, picture.size, [x, y]).expect("the plane");
                     lit += luminance(picture.at(x, y));
                     due += expected(point);

@@ -31,11 +31,14 @@ vec3 gathered(ivec2 pixel, vec3 ray, vec3 world, uvec3 own, vec3 n) {
     vec3 face = view.world_from_view * face_normal(own.z, ray.xy, 0.5 * size / view.ray_scale);
     ivec2 whole = pixel + push.origin;
     uint seed = tea(uint(whole.x) | uint(whole.y) << 16, scene.seed);
-    vec3 toward = cosine_direction(n, scrambled_sobol(push.index, seed));
+    // A pixel gets every fourth set of rays. Every fourth point of a Sobol sequence is in one quarter of the first dimension: a ring of
+    // the hemisphere. So each takes its points one after the other.
+    uint number = push.index / 4u;
+    vec3 toward = cosine_direction(n, scrambled_sobol(number, seed));
     vec3 side = dot(face, n) > SAME_FACE ? face : n;
     vec3 origin = lifted(world, side);
     vec3 emitted = vec3(0.0);
-    if (EMITTERS > 0u) emitted = emission_of_point(origin, n, side, scrambled_sobol(push.index / 4u, tea(seed, 2u)));
+    if (EMITTERS > 0u) emitted = emission_of_point(origin, n, side, scrambled_sobol(number, tea(seed, 2u)));
     // Below the face: inside of the body.
     if (is_turned_away(face, n, toward)) return emitted;
     Hit hit = closest(origin, toward, FAR);

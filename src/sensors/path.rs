@@ -101,18 +101,9 @@ pub(super) fn trace(
         let local = cosine_hemisphere(numbers.pair());
         let direction = tangent_frame::to_world(local, point.normal.as_dvec3());
         let next = scene.first(point.position, direction.as_vec3());
-        let density = local.z / PI;
-        if let Some(next) = &next {
-            let weight = density / (density + next.emitter_density);
-            from_surfaces += PI * weight * next.emission;
-        } else {
-            if direction.y < 0.0 {
-                from_surfaces += PI * lights.daylight.ground_luminance;
-            } else {
-                let weight = density / (density + lights.sampler.density(direction));
-                from_sky += weight * PI * lights.daylight.sky_radiance(direction);
-            }
-        }
+        let [seen_sky, seen_surface] = seen(next.as_ref(), direction, local.z / PI, lights);
+        from_sky += seen_sky;
+        from_surfaces += seen_surface;
         if bounce == 0 {
             (sky, sun, reflected) = (from_sky, from_sun, from_surfaces);
         } else {
@@ -130,6 +121,20 @@ pub(super) fn trace(
         point = next;
     }
     [sky, sun, reflected]
+}
+
+/// Irradiance of what a ray in a direction of this density meets, linear RGB, lux: of the sky, of a surface that emits or the ground.
+fn seen(next: Option<&Point>, direction: DVec3, density: f64, lights: &Lights) -> [DVec3; 2] {
+    if let Some(next) = next {
+        let weight = density / (density + next.emitter_density);
+        return [DVec3::ZERO, PI * weight * next.emission];
+    }
+    if direction.y < 0.0 {
+        return [DVec3::ZERO, PI * lights.daylight.ground_luminance];
+    }
+    let weight = density / (density + lights.sampler.density(direction));
+    let sky = weight * PI * lights.daylight.sky_radiance(direction);
+    [sky, DVec3::ZERO]
 }
 
 /// Irradiance of the sun at a point, sampled on its disc, linear RGB, lux.

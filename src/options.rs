@@ -188,7 +188,7 @@ options! {
             #[arg(value_name = "WHAT", value_parser = choice::<Show>(), default_value_t,
                   default_value_if("false_colour", name(Quantity::Illuminance), name(Show::Irradiance)))]
             show: Show,
-            /// Write every addend (sun, sky, bounces ..), V, A, normal, depth and albedo as named layers (render to .exr only).
+            /// Write every addend (sun, sky, bounces, emission ..), V, A, normal, depth and albedo as named layers (render to .exr only).
             layers: bool,
             /// Defaults of the lecture: its sun, sky, sampling and scale, ambient occlusion, no bounces; other options override them.
             #[arg(value_name = "NAME", value_parser = choice::<Preset>())]
@@ -255,9 +255,13 @@ options! {
         }
 
         "Light" ["light"] {
-            /// How often surfaces reflect light onto others: all, or a number; 0 is the light of sun and sky alone.
+            /// How often surfaces reflect light onto others: all, or a number; 0 is the light of sun and sky alone, and lamps light nothing.
             #[arg(value_name = "N", value_parser = values::bounces, allow_hyphen_values = true, default_value_t)]
             bounces: Bounces,
+            /// Factor on the light that surfaces emit, 0 to 1e9: how many cd/m² a model's unit of emission is; 0 turns lamps off.
+            #[arg(value_name = "SCALE", value_parser = values::emission_scale, allow_hyphen_values = true,
+                  default_value_t = 1.0)]
+            emission_scale: f64,
             /// Where single frames have the light of the sky and of other surfaces from.
             #[arg(value_name = "SOURCE", value_parser = choice::<Ambient>(), default_value_t)]
             ambient: Ambient,

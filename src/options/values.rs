@@ -262,6 +262,7 @@ ranged! {
     irradiance_error: "error", "percent", 0.0..=100.0;
     ao_radius: "radius", "metres", 0.0..=1000.0;
     specular: "specular scale", "", 0.0..=100.0;
+    emission_scale: "emission scale", "", 0.0..=1e9;
     crease: "crease angle", "degrees", 0.0..=180.0;
 }
 

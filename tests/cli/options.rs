@@ -344,12 +344,13 @@ fn the_addends_of_layers_sum_to_the_picture() {
     let ended = place
         .render(&["-o", "a.exr", "--layers", "--samples", "3"])
         .silently();
-    assert!(ended.stdout.contains("13 layer"), "{}", ended.stdout);
+    assert!(ended.stdout.contains("14 layer"), "{}", ended.stdout);
     let exr = exr(&place.path().join("a.exr"));
     let addends = [
         "sun",
         "sky",
         "bounces",
+        "emission",
         "sun-specular",
         "sky-specular",
         "background",
@@ -367,7 +368,7 @@ fn the_addends_of_layers_sum_to_the_picture() {
     names.sort();
     let found: Vec<_> = exr.channels.keys().cloned().collect();
     assert_eq!(found, names);
-    let mut seen = [false; 6];
+    let mut seen = [false; 7];
     for c in ["R", "G", "B"] {
         let layers = addends.map(|layer| &exr.channels[&format!("{layer}.{c}")]);
         for (i, whole) in exr.channels[c].iter().enumerate() {
@@ -379,8 +380,8 @@ fn the_addends_of_layers_sum_to_the_picture() {
             }
         }
     }
-    let expected = addends.map(|addend| addend != "bounces");
-    assert_eq!(seen, expected, "all but bounces are seen: {addends:?}");
+    let expected = addends.map(|addend| !["bounces", "emission"].contains(&addend));
+    assert_eq!(seen, expected, "the others are seen: {addends:?}");
 }
 
 #[test]

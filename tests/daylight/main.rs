@@ -6,6 +6,7 @@ mod common;
 mod model;
 
 mod bounces;
+mod emission;
 mod grey_skies;
 mod irradiance;
 mod moon;

@@ -17,7 +17,7 @@ use skylight::scene::{Camera, Material, Scene};
 use std::f64::consts::PI;
 
 /// Settings of a single frame that has all its light but the sun's from the cells.
-fn single(width: u32, height: u32) -> FrameSettings {
+pub fn single(width: u32, height: u32) -> FrameSettings {
     let mut set = settings(width, height);
     set.bounces = Bounces::All;
     // All cells in every frame.
@@ -27,7 +27,7 @@ fn single(width: u32, height: u32) -> FrameSettings {
 }
 
 /// Settings of a converged picture with all bounces.
-fn converged(width: u32, height: u32, samples: u32) -> FrameSettings {
+pub fn converged(width: u32, height: u32, samples: u32) -> FrameSettings {
     let mut set = single(width, height);
     set.samples = samples;
     set.sampling.visibility = Visibility::Dome;
@@ -35,14 +35,14 @@ fn converged(width: u32, height: u32, samples: u32) -> FrameSettings {
     set
 }
 
-fn with_bounces(bounces: Bounces, settings: FrameSettings) -> FrameSettings {
+pub fn with_bounces(bounces: Bounces, settings: FrameSettings) -> FrameSettings {
     FrameSettings {
         bounces,
         ..settings
     }
 }
 
-fn mean(picture: &Picture) -> f64 {
+pub fn mean(picture: &Picture) -> f64 {
     picture.pixels().map(|(_, l)| luminance(l)).sum::<f64>() / picture.texels.len() as f64
 }
 

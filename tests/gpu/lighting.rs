@@ -5,8 +5,8 @@ use std::process::Command;
 
 use crate::common::Worst;
 use crate::gpu::{
-    Device, Model, Picture, camera, clear_day, constant_sky, matt, on_ground, pixel_ray, settings,
-    showing,
+    Device, Model, Picture, camera, clear_day, constant_sky, glowing, matt, on_ground, pixel_ray,
+    settings, showing,
 };
 use crate::truth::Exr;
 use glam::DVec3;
@@ -28,7 +28,7 @@ fn mirror() -> Material {
     }
 }
 
-/// A glossy checkered ground with a white sphere and a mirror-like cube on it.
+/// A glossy checkered ground with a white sphere that glows in squares and a mirror-like cube on it.
 pub fn glossy_scene() -> Scene {
     let chequered = Material {
         specular: [0.2, 0.3, 0.4],
@@ -37,9 +37,13 @@ pub fn glossy_scene() -> Scene {
         specular_texture: Some(1),
         ..matt(0.8)
     };
+    let lantern = Material {
+        emissive_texture: Some(1),
+        ..glowing(0.9, 700.0)
+    };
     let mut scene = Model::default()
         .ground(6.0, &chequered)
-        .sphere([0.9, 0.7, 0.0], 0.7, 24, &matt(0.9))
+        .sphere([0.9, 0.7, 0.0], 0.7, 24, &lantern)
         .cube([-1.0, 0.6, 0.2], 0.6, &mirror())
         .build();
     let texture = |name: &str, shade: fn(u8) -> [u8; 4]| Texture {

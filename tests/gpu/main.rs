@@ -15,6 +15,7 @@ mod convergence;
 mod culling;
 mod details;
 mod dome;
+mod emission;
 mod furnace;
 mod golden;
 mod irradiance;

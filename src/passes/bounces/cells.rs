@@ -54,6 +54,8 @@ const NEAR_CELLS: f32 = 24.0;
 
 /// Segments of a path before it ends in a cell.
 const SEGMENTS: u32 = 4;
+/// The same where surfaces emit light: rooms that lamps light are closed, and in white ones light is reflected often.
+const SEGMENTS_OF_LAMPS: u32 = 8;
 
 /// Rounds in which new cells are filled, whatever the budget.
 const FIRST_ROUNDS: u32 = 16;
@@ -219,7 +221,11 @@ impl Cells {
             cell: CELL.min(bounds.extent().length() / CELLS_ACROSS).max(1e-6),
             claim: pipeline("cells: seed", &shaders::CELLS_SEED_COMP, &traces)?,
             place: pipeline("cells: place", &shaders::CELLS_PLACE_COMP, &traces)?,
-            update: pipeline("cells: update", &shaders::CELLS_UPDATE_COMP, &traces)?,
+            update: pipeline(
+                "cells: update",
+                &shaders::CELLS_UPDATE_COMP,
+                &tree.constants_with_emitters(),
+            )?,
             publish: pipeline("cells: publish", &shaders::CELLS_PUBLISH_COMP, &[])?,
             prints: buffer("prints of cells", SLOTS)?,
             live: buffer("live cells", SLOTS + 1)?,
@@ -293,7 +299,7 @@ impl Cells {
             Work::Paths(paths) => (1, (paths / PATH_POINTS).clamp(1, PATHS), Some(paths)),
         };
         for _ in 0..rounds {
-            let mut update = update_push(self.held.as_ref(), &held);
+            let mut update = update_push(self.held.as_ref(), &held, around.tree.is_emissive());
             if let Some(paths) = paths {
                 update.paths = paths;
                 update.first = self.round.wrapping_mul(paths);
@@ -370,7 +376,7 @@ impl Cells {
 
     fn update(&self, recorder: &mut Recorder, around: &Surroundings<'_>, push: &UpdatePush) {
         let pass = recorder.pass("cells: update", &self.update);
-        let pass = around.tree.bound_to(pass);
+        let pass = around.tree.bound_with_emitters(pass);
         self.bound_to(pass)
             .uniform("scene", &self.block(around.view, around.daylight))
             .sample("sky_radiance", around.sky_radiance, Sampler::Linear)
@@ -407,9 +413,11 @@ impl Cells {
     }
 }
 
-/// The update that brings cells from the light that they hold to a new one.
-fn update_push(old: Option<&Held>, new: &Held) -> UpdatePush {
+/// The update that brings cells from the light that they hold to a new one. `is_emissive`: lamps light the scene, and their light
+/// does not follow that of the sky.
+fn update_push(old: Option<&Held>, new: &Held, is_emissive: bool) -> UpdatePush {
     let (segments, ends_in_cell) = match new.bounces {
+        Bounces::All if is_emissive => (SEGMENTS_OF_LAMPS, 1),
         Bounces::All => (SEGMENTS, 1),
         Bounces::UpTo(count) => (count, 0),
     };
@@ -426,6 +434,10 @@ fn update_push(old: Option<&Held>, new: &Held) -> UpdatePush {
         first: u32::MAX,
         most: kept.map_or(f32::MAX, |paths| paths as f32),
         sky_change: factor(|day| day.sky_irradiance_up),
-        bounce_change: factor(Daylight::horizontal),
+        bounce_change: if is_emissive {
+            Vec3::ONE
+        } else {
+            factor(Daylight::horizontal)
+        },
     }
 }

@@ -174,6 +174,6 @@ mod tests {
         check::<ToneCurve>();
         check::<IrradianceMethod>();
         assert_eq!(name(Visibility::Progressive), "dome");
-        assert_eq!(Show::VALUES.len(), 14);
+        assert_eq!(Show::VALUES.len(), 15);
     }
 }

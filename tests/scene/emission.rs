@@ -6,8 +6,8 @@ use skylight::scene::{LoadOptions, MAX_EMISSION, Scene, load};
 
 /// A picture of one pixel: BMP, 24 bits.
 const LAMP: &[u8] = &[
-    b'B', b'M', 58, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 24,
-    0, 0, 0, 0, 0, 4, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10, 20, 30, 0,
+    b'B', b'M', 58, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0,
+    24, 0, 0, 0, 0, 0, 4, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10, 20, 30, 0,
 ];
 
 /// Loads a triangle with texture coordinates and a material.
@@ -37,7 +37,9 @@ fn with_material(folder: &Path, material: &str) -> Scene {
 fn emission_of_gltf_is_factor_times_strength_times_texture() {
     let folder = tempfile::tempdir().expect("a folder");
     let strength = |s: &str| {
-        format!(r#""extensions": {{"KHR_materials_emissive_strength": {{"emissiveStrength": {s}}}}}"#)
+        format!(
+            r#""extensions": {{"KHR_materials_emissive_strength": {{"emissiveStrength": {s}}}}}"#
+        )
     };
     let texture = r#""emissiveTexture": {"index": 0}"#;
     let factor = |f: &str| format!(r#""emissiveFactor": {f}"#);
@@ -47,13 +49,22 @@ fn emission_of_gltf_is_factor_times_strength_times_texture() {
         (vec![texture.to_owned()], [0.0; 3], false, 0),
         (vec![factor("[1, 0.6, 0.1]")], [1.0, 0.6, 0.1], false, 0),
         (
-            vec![factor("[1, 0.5, 0.25]"), strength("5000"), texture.to_owned()],
+            vec![
+                factor("[1, 0.5, 0.25]"),
+                strength("5000"),
+                texture.to_owned(),
+            ],
             [5000.0, 2500.0, 1250.0],
             true,
             0,
         ),
         (vec![factor("[1, 1, -1]")], [1.0, 1.0, 0.0], false, 1),
-        (vec![factor("[1, 1, 0]"), strength("-3")], [0.0; 3], false, 1),
+        (
+            vec![factor("[1, 1, 0]"), strength("-3")],
+            [0.0; 3],
+            false,
+            1,
+        ),
         (
             vec![factor("[1, 0, 0]"), strength("1e30")],
             [MAX_EMISSION, 0.0, 0.0],

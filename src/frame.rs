@@ -113,7 +113,7 @@ impl Frame {
             let lighting = scope.spawn(move || settings.lighting(device));
             let background = scope.spawn(move || settings.background(device));
             Ok(Self {
-                ambient: AmbientPasses::new(device, &geometry, &settings)?,
+                ambient: AmbientPasses::new(device, &settings)?,
                 gbuffer: settings.gbuffer(device, &geometry)?,
                 average: Average::new(device, &geometry, &tree, &settings)?,
                 cells: settings.cells(device, &tree, &geometry)?,
@@ -172,9 +172,7 @@ impl Frame {
         let sky_cube = remade(sky_edge != old.sky_edge, || SkyCube::new(device, sky_edge))?;
         let gbuffer = remade(is_new_gbuffer, || new.gbuffer(device, geometry))?;
         let is_new_ambient = is_resized || AmbientNeed::of(&new) != AmbientNeed::of(old);
-        let ambient = remade(is_new_ambient, || {
-            AmbientPasses::new(device, geometry, &new)
-        })?;
+        let ambient = remade(is_new_ambient, || AmbientPasses::new(device, &new))?;
         let shadow = remade(is_new_shadow, || new.shadow(device, geometry))?;
         let lighting = remade(is_lit, || new.lighting(device))?;
         let background = remade(new.lighting != old.lighting, || new.background(device))?;
@@ -253,7 +251,6 @@ impl Frame {
             &surfaces.normal_material
         } else {
             let inputs = AmbientInputs {
-                geometry,
                 surfaces,
                 daylight,
                 view: &view,
@@ -321,12 +318,12 @@ impl Frame {
     /// # Errors
     /// Fails when the device is out of memory.
     pub fn take_occlusion(&mut self) -> Result<Option<Image>> {
-        let AmbientPasses::Screen(screen) = &mut self.ambient else {
+        let AmbientPasses::Screen(ssao) = &mut self.ambient else {
             return Ok(None);
         };
         let size = self.settings.size.to_array();
         let next = Ssao::new(&self.context, size, self.settings.ssao)?;
-        Ok(Some(std::mem::replace(&mut screen.ssao, next).into_image()))
+        Ok(Some(std::mem::replace(&mut **ssao, next).into_image()))
     }
 
     /// Uses the ambient occlusion of the whole picture for tiles from now on, one image per sample.

@@ -4,34 +4,23 @@
 // Columns of the table, set by every pipeline that reads it.
 layout(constant_id = 30) const uint MATERIAL_COLUMNS = 1u;
 
-/// Packs a surface's material number and the upper half of the bits of its body's thickness (metres).
-uint material_word(uint number, float thickness) {
-    return number | (floatBitsToUint(thickness) & 0xffff0000u);
-}
-
-/// Unpacks the thickness of the body behind the surface, metres.
-float material_thickness(uint word) {
-    return uintBitsToFloat(word & 0xffff0000u);
-}
-
-/// One of the three table rows of a word's material.
-vec4 material_row(sampler2D materials, uint word, uint row) {
-    uint number = word & 0xffffu;
+/// One of the three table rows of a material.
+vec4 material_row(sampler2D materials, uint number, uint row) {
     return texel_at(materials, vec2(number % MATERIAL_COLUMNS, 3u * (number / MATERIAL_COLUMNS) + row));
 }
 
 /// The second row; rgb: rho_s; a: shininess p.
-vec4 material_specular(sampler2D materials, uint word) {
-    return material_row(materials, word, 1u);
+vec4 material_specular(sampler2D materials, uint number) {
+    return material_row(materials, number, 1u);
 }
 
 /// L_e, kcd/m^2, without its map.
-vec3 material_emission(sampler2D materials, uint word) {
-    return material_row(materials, word, 2u).rgb;
+vec3 material_emission(sampler2D materials, uint number) {
+    return material_row(materials, number, 2u).rgb;
 }
 
 /// rgb: rho_d of a pixel; a: factor on rho_s. From an image, or from the material if the scene has no maps.
-vec4 pixel_albedo(bool from_image, sampler2D albedo, sampler2D materials, uint word, vec2 uv) {
+vec4 pixel_albedo(bool from_image, sampler2D albedo, sampler2D materials, uint number, vec2 uv) {
     if (from_image) return textureLod(albedo, uv, 0.0);
-    return vec4(material_row(materials, word, 0u).rgb, 1.0);
+    return vec4(material_row(materials, number, 0u).rgb, 1.0);
 }

@@ -1,8 +1,13 @@
 // Texels of the ambient occlusion: the distance along the view axis (m) in the upper 22 bits, with a relative error of 3e-5, and
-// ten bits of payload. One lookup instead of two, and no conversion from half floats.
+// ten bits of A. One lookup instead of two, and no conversion from half floats.
 
 /// Distance of pixels without a surface, metres: beyond any radius.
 const float NOWHERE = 1e18;
+
+/// Distance along the view axis of a reversed depth, metres.
+float distance_of_depth(float d, float near) {
+    return d > 0.0 ? near / d : NOWHERE;
+}
 
 uint distance_pack(float distance) {
     return ((floatBitsToUint(distance) + 0x100u) >> 9) << 10;
@@ -11,17 +16,6 @@ uint distance_pack(float distance) {
 /// Distance along the view axis, metres.
 float packed_distance(uint word) {
     return uintBitsToFloat((word >> 1) & 0x7ffffe00u);
-}
-
-/// Packs a surface's distance and the thickness of the body behind it (m), with a relative error of 1/8.
-uint occluder_pack(float distance, float thickness) {
-    return distance_pack(distance) | floatBitsToUint(thickness) >> 21;
-}
-
-/// Thickness of the body behind the surface, metres.
-float occluder_thickness(uint word) {
-    // The distance's last bit ends up as the sign.
-    return abs(uintBitsToFloat(word << 21));
 }
 
 // A is stored as 1 minus a multiple of this: single slices go down to 1 - pi/2. A word of 0 is A = 1 at distance 0.

@@ -93,8 +93,8 @@ void main() {
     vec3 world = view.eye + world_ray * distance;
     uvec3 own = textureLod(normal_material, uv, 0.0).xyz;
     vec3 n = normal_unpack(own.x);
-    uint word = own.y;
-    vec4 surface = pixel_albedo(ALBEDO_IMAGE, albedo, materials, word, uv);
+    uint material = own.y;
+    vec4 surface = pixel_albedo(ALBEDO_IMAGE, albedo, materials, material, uv);
     float n_dot_l = dot(n, sun.direction);
 
     float V = 0.0;
@@ -127,12 +127,12 @@ void main() {
     if (SKY) sum += surface.rgb / PI * light.sky;
     if (BOUNCES) sum += surface.rgb / PI * light.bounce;
     if (EMISSION) {
-        vec3 emitted = material_emission(materials, word);
+        vec3 emitted = material_emission(materials, material);
         if (EMISSION_IMAGE) emitted *= textureLod(emission, uv, 0.0).rgb;
         sum += emitted;
     }
     if (SUN_SPECULAR || SKY_SPECULAR) {
-        vec4 m = material_specular(materials, word);
+        vec4 m = material_specular(materials, material);
         vec3 rho_s = m.rgb * (surface.a * sun.specular_scale);
         vec3 toward = normalize(world_ray);
         if (FRESNEL && any(greaterThan(rho_s, vec3(0.0)))) rho_s = grazing(rho_s, m.a, -dot(toward, n));

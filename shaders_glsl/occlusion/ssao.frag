@@ -9,7 +9,8 @@
 // Therrien et al. 2023, "Screen Space Indirect Lighting with Visibility Bitmask": a slice through the view direction is divided
 // into sectors, and each sample blocks those between its front and its back. As in Jimenez et al. 2016, "Practical Realtime
 // Strategies for Accurate Indirect Occlusion" (GTAO), directions are cosine-weighted; here all sectors have equal weight.
-// Extensions: backs from the thickness of bodies, samples as wide as their step, and extrapolation past the picture's edge.
+// Every surface has the same thickness, as in Therrien et al. Extensions: samples as wide as their step, and extrapolation past
+// the picture's edge.
 
 layout(location = 0) out uint occlusion; // A and the distance along the view axis, packed
 
@@ -17,11 +18,9 @@ layout(constant_id = 0) const int STEPS = 1;     // on each side of the slice
 layout(constant_id = 1) const int DOWNSCALE = 1; // pixels of the G-buffer per occluder, along each axis
 layout(constant_id = 2) const int SPACING = 1;   // occluders per point at which A is computed, along each axis
 
-layout(set = 0, binding = 0) uniform usampler2D occluders;
+layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform usampler2D normal_material;
 layout(set = 0, binding = 2, scalar) uniform View { VIEW_BLOCK } view;
-
-layout(set = 0, binding = 5) uniform sampler2D depth;
 
 layout(push_constant, scalar) uniform Push {
     float radius; // metres
@@ -32,6 +31,10 @@ const float SECTORS = 32.0;
 // Sine of the elevation above the receiving face below which a sample belongs to the face and does not occlude: samples lie at
 // pixel centres, beside the slice, where a plane seen at a grazing angle would look like a horizon.
 const float FLAT = 0.02;
+// How far every surface reaches behind its front along the view ray, metres: a wall of one brick, 24 cm, or a floor slab. What is
+// thicker hides too little of the sky from the ground behind it; a fence or a wall modelled as a sheet hides a strip that is
+// narrow beside the radius.
+const float THICKNESS = 0.25;
 
 // The receiving point.
 vec3 p;        // view space, metres
@@ -41,7 +44,6 @@ vec3 face;     // normal of the face itself, unit: with smooth normals, parts of
 vec2 origin;   // texels
 vec2 ray_step; // per texel, for rays with z = -1
 vec2 ray_base; // of texel 0
-vec2 texel_size; // of the picture's
 vec2 pixel_size; // of the G-buffer's
 
 vec3 point(vec2 texel, float distance) {
@@ -50,10 +52,6 @@ vec3 point(vec2 texel, float distance) {
 
 // Like `texel_at`, with precomputed sizes.
 
-uint occluder_at(vec2 texel) {
-    return textureLod(occluders, (texel + 0.5) * texel_size, 0.0).r;
-}
-
 vec3 normal_at(vec2 texel) {
     return normal_unpack(textureLod(normal_material, (texel * float(DOWNSCALE) + 0.5) * pixel_size, 0.0).r) * view.world_from_view;
 }
@@ -61,6 +59,11 @@ vec3 normal_at(vec2 texel) {
 /// Depth of a pixel, clamped to the picture's edge.
 float depth_at(vec2 pixel) {
     return textureLod(depth, (pixel + 0.5) * pixel_size, 0.0).r;
+}
+
+/// Distance of an occluder along the view axis, metres.
+float distance_at(vec2 texel) {
+    return distance_of_depth(depth_at(texel * float(DOWNSCALE)), view.near);
 }
 
 /// Relative change of depth per pixel, toward the neighbour with the smaller change, which is assumed to be on the same face.
@@ -124,15 +127,14 @@ uint between(float a, float b, float dither) {
 
 /// The sectors that one sample blocks: a box, as seen from p, from the sample's front to its back and as wide as the step.
 uint blocked_by(vec2 texel, Side side, float half_width, float dither) {
-    uint word = occluder_at(texel);
-    float distance = packed_distance(word);
+    float distance = distance_at(texel);
     vec3 delta = point(texel, distance) - p;
     float r2 = dot(delta, delta);
     float over_face = dot(delta, face);
     vec2 q = vec2(abs(dot(delta, side.axis)), dot(delta, v));
     // The back is clamped to the sphere of the radius, with a parabola for sqrt(1 - t) of its circle.
     float t = min(q.x * q.x / (push.radius * push.radius), 1.0);
-    float back = max(q.y - occluder_thickness(word), -push.radius * (1.0 - t * (0.5 + 0.5 * t)));
+    float back = max(q.y - THICKNESS, -push.radius * (1.0 - t * (0.5 + 0.5 * t)));
     float h = half_width * distance;
     float front_at = sectors_to(vec2(max(q.x - sign(q.y) * h, 0.0), q.y), side);
     float back_at = sectors_to(vec2(max(q.x + sign(back) * h, 0.0), back), side);
@@ -143,7 +145,7 @@ uint blocked_by(vec2 texel, Side side, float half_width, float dither) {
 /// The sectors blocked past the picture's edge, where the surface at the edge is extrapolated as a plane up to the radius.
 uint blocked_past(vec2 texel, Side side, float dither) {
     vec3 m = normal_at(texel);
-    vec3 delta = point(texel, packed_distance(occluder_at(texel))) - p;
+    vec3 delta = point(texel, distance_at(texel)) - p;
     vec2 q = vec2(dot(delta, side.axis), dot(delta, v));
     vec2 away = vec2(dot(m, v), -dot(m, side.axis));
     float room = push.radius * push.radius - dot(q, q);
@@ -159,7 +161,7 @@ uint blocked_past(vec2 texel, Side side, float dither) {
 
 /// The sectors blocked by surfaces on one side.
 uint blocked_sectors(Side side, float jitter, float dither) {
-    vec2 size = vec2(textureSize(occluders, 0));
+    vec2 size = vec2((textureSize(depth, 0) + DOWNSCALE - 1) / DOWNSCALE);
     vec2 room = abs((mix(vec2(0.5), size - 0.5, greaterThan(side.stride, vec2(0.0))) - origin) / side.stride);
     float last = min(room.x, room.y);
     float first = 1.5 * inversesqrt(dot(side.stride, side.stride));
@@ -174,8 +176,6 @@ uint blocked_sectors(Side side, float jitter, float dither) {
     if (last < 1.0) sectors |= blocked_past(floor(origin + side.stride * last), side, dither);
     return sectors;
 }
-
-#include "height_map.glsl"
 
 /// 1 - A from the slice at the angle `turn` (0..1, in half turns).
 float slice_occlusion(float turn, float jitter, float dither, float distance) {
@@ -193,9 +193,8 @@ float slice_occlusion(float turn, float jitter, float dither, float distance) {
     vec2 stride = (axis.xy - axis.z * p.xy / p.z) * push.radius / (distance * ray_step);
     Side plus = Side(axis, slice_n, stride, SECTORS * plus_weight / both, SECTORS / both);
     Side minus = Side(-axis, vec2(-slice_n.x, slice_n.y), -stride, SECTORS * minus_weight / both, SECTORS / both);
-    uvec2 sectors = uvec2(blocked_sectors(plus, jitter, dither), blocked_sectors(minus, jitter, dither));
-    sectors |= roofed_sectors(plus, minus, jitter, dither);
-    return length_n * both * float(bitCount(sectors.x) + bitCount(sectors.y)) / SECTORS;
+    uint before = blocked_sectors(plus, jitter, dither), after = blocked_sectors(minus, jitter, dither);
+    return length_n * both * float(bitCount(before) + bitCount(after)) / SECTORS;
 }
 
 void main() {
@@ -204,10 +203,9 @@ void main() {
     vec2 full_size = vec2(textureSize(normal_material, 0));
     ray_step = 2.0 * float(DOWNSCALE) / full_size * view.ray_scale;
     ray_base = view_ray(0.5 / full_size, view.ray_scale, view.ray_offset).xy;
-    texel_size = 1.0 / vec2(textureSize(occluders, 0));
     pixel_size = 1.0 / full_size;
     // The depth test passes only points with a surface.
-    float distance = packed_distance(occluder_at(texel));
+    float distance = distance_at(texel);
     p = point(texel, distance);
     v = normalize(-p);
     n = normal_at(texel);

@@ -8,7 +8,8 @@
 
 layout(location = 0) out uint occlusion; // A and the distance along the view axis, packed
 
-layout(constant_id = 0) const int SPACING = 1; // occluders per texel, along each axis
+layout(constant_id = 1) const int DOWNSCALE = 1; // pixels of the G-buffer per occluder, along each axis
+layout(constant_id = 2) const int SPACING = 1;   // occluders per texel, along each axis
 
 // A depth edge is a change of distance by more than this fraction of it ..
 const float EDGE = 0.01;
@@ -16,10 +17,14 @@ const float EDGE = 0.01;
 const float PLANE = 3.0;
 
 layout(set = 0, binding = 0) uniform usampler2D noisy_occlusion;
-layout(set = 0, binding = 1) uniform usampler2D occluders;
+layout(set = 0, binding = 1) uniform sampler2D depth;
+
+layout(push_constant, scalar) uniform Push {
+    float near; // metres
+} push;
 
 float distance_at(vec2 texel) {
-    return packed_distance(texel_at(occluders, texel).r);
+    return distance_of_depth(texel_at(depth, texel * float(DOWNSCALE)).r, push.near);
 }
 
 void main() {

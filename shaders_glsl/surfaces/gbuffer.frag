@@ -10,15 +10,13 @@
 // Variant: DETAILED ALBEDO EMISSION
 #include "gbuffer.glsl"
 #include "face_of_fragment.glsl"
-#include "materials.glsl"
 #include "octahedral.glsl"
 
 layout(location = 0) in vec3 from_eye;
 layout(location = 1) in vec3 shading_normal;
 layout(location = 2) in vec2 surface_uv;
-layout(location = 3) flat in float thickness; // of the body behind the surface, metres
 
-// x: world normal, octahedral; y: material and thickness, see materials.glsl; z: slopes of the face, see face.glsl
+// x: world normal, octahedral; y: number of the material; z: slopes of the face, see face.glsl
 layout(location = 0) out uvec4 normal_material;
 #ifdef ALBEDO
 layout(location = 1) out vec4 albedo; // rgb: rho_d; a: factor on rho_s
@@ -50,8 +48,8 @@ layout(constant_id = 2) const bool NORMAL_MAP = true;
 
 layout(set = 0, binding = 3) uniform sampler2D normal_map;
 
-layout(location = 4) in vec4 surface_colour;  // linear RGBA
-layout(location = 5) in vec4 surface_tangent; // w: sign of the bitangent
+layout(location = 3) in vec4 surface_colour;  // linear RGBA
+layout(location = 4) in vec4 surface_tangent; // w: sign of the bitangent
 
 /// The map's normal in the tangent frame of the surface (Mikkelsen 2008: interpolated, not normalized).
 vec3 mapped_normal(vec3 n) {
@@ -94,5 +92,5 @@ void main() {
     if (EMISSIVE_MAP) emission = texture(emissive_map, surface_uv, -camera.sharpen);
 #endif
     if (CUT_OUT && diffuse.a < push.cutoff) discard;
-    normal_material = uvec4(normal_pack(n), material_word(push.material, thickness), FACES ? face_slopes() : 0u, 0u);
+    normal_material = uvec4(normal_pack(n), push.material, FACES ? face_slopes() : 0u, 0u);
 }

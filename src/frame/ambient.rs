@@ -8,10 +8,8 @@ use crate::gpu::{Context, Image, Recorder, Result};
 use crate::passes::bounces::ambient::CellLight;
 use crate::passes::bounces::cells::Cells;
 use crate::passes::light::lighting::Ambient;
-use crate::passes::occlusion::height_map::HeightMap;
 use crate::passes::occlusion::ssao::{Ssao, SsaoSettings};
 use crate::passes::surfaces::gbuffer::Surfaces;
-use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::view::View;
 
 /// The passes of one of the sources.
@@ -19,15 +17,9 @@ pub(super) enum AmbientPasses {
     /// There are no single frames.
     None,
     /// Screen-space ambient occlusion of the unoccluded sky.
-    Screen(Box<Screen>),
+    Screen(Box<Ssao>),
     /// The cells.
     Cells(Box<CellLight>),
-}
-
-/// The passes of screen-space ambient occlusion.
-pub(super) struct Screen {
-    pub heights: HeightMap,
-    pub ssao: Ssao,
 }
 
 /// What the passes depend on besides the size of the picture.
@@ -53,7 +45,6 @@ impl AmbientNeed {
 
 /// The images that may be read for it.
 pub(super) struct AmbientInputs<'a> {
-    pub geometry: &'a Geometry,
     pub surfaces: &'a Surfaces,
     pub daylight: &'a Daylight,
     pub view: &'a View,
@@ -72,29 +63,20 @@ impl AmbientPasses {
             (Self::Cells(pass), Some(cells)) => {
                 pass.record(rec, cells, surfaces, inputs.daylight, view)
             }
-            (Self::Screen(screen), _) => inputs.of_picture.unwrap_or_else(|| {
-                let radius = screen.ssao.radius();
-                let above = screen.heights.record(rec, inputs.geometry, radius);
-                screen.ssao.record(rec, surfaces, view, above, inputs.phase)
-            }),
+            (Self::Screen(ssao), _) => inputs
+                .of_picture
+                .unwrap_or_else(|| ssao.record(rec, surfaces, view, inputs.phase)),
             _ => &surfaces.normal_material,
         }
     }
 
     /// # Errors
     /// Fails when the device cannot create the resources.
-    pub fn new(
-        context: &Arc<Context>,
-        geometry: &Geometry,
-        settings: &FrameSettings,
-    ) -> Result<Self> {
+    pub fn new(context: &Arc<Context>, settings: &FrameSettings) -> Result<Self> {
         let size = settings.size.to_array();
         Ok(match AmbientNeed::of(settings) {
             AmbientNeed::None => Self::None,
-            AmbientNeed::Screen(ssao) => Self::Screen(Box::new(Screen {
-                heights: HeightMap::new(context, geometry)?,
-                ssao: Ssao::new(context, size, ssao)?,
-            })),
+            AmbientNeed::Screen(ssao) => Self::Screen(Box::new(Ssao::new(context, size, ssao)?)),
             AmbientNeed::Cells => Self::Cells(Box::new(CellLight::new(context, size)?)),
         })
     }

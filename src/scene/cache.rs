@@ -20,14 +20,14 @@ use crate::scene::texture::{Encoding, Texture};
 use crate::scene::{Bvh, Layout, LoadOptions, Loaded, Node, Part, Scene};
 
 /// Version of the entry format and of the result of loading a model.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 /// Minimum size of a cached model, bytes. Smaller models load as fast as a cache entry.
 pub(super) const MIN_MODEL_BYTES: u64 = 4 << 20;
 /// Limit on the total size of all entries, bytes.
 const MAX_BYTES: u64 = 4 << 30;
 
 /// Number of arrays in an entry, not counting textures.
-const ARRAYS: usize = 11;
+const ARRAYS: usize = 10;
 
 /// Header of an entry, followed by its arrays.
 #[derive(Serialize, Deserialize)]
@@ -42,8 +42,8 @@ struct Head {
     options: Vec<NamedOptions>,
     cameras: Vec<NamedOptions>,
     moments: Vec<NamedOptions>,
-    /// Lengths of the arrays: positions, normals, texture coordinates, colours, tangents, indices, then clusters, parts and
-    /// thicknesses of the layout, nodes and triangles of the hierarchy.
+    /// Lengths of the arrays: positions, normals, texture coordinates, colours, tangents, indices, then clusters and parts
+    /// of the layout, nodes and triangles of the hierarchy.
     lengths: [usize; ARRAYS],
 }
 
@@ -180,7 +180,7 @@ pub(super) fn write(entry: &Path, loaded: &Loaded, mut files: Vec<ReadFile>) -> 
 /// The bytes and the element count of each array.
 fn arrays<'s>(
     scene: &'s Scene,
-    layout: &'s FlatLayout<'s>,
+    layout: &'s FlatLayout,
     bvh: &'s FlatBvh<'s>,
 ) -> [(&'s [u8], usize); ARRAYS] {
     fn array<T: bytemuck::Pod>(values: &[T]) -> (&[u8], usize) {
@@ -195,7 +195,6 @@ fn arrays<'s>(
         array(&scene.indices),
         array(&layout.clusters),
         array(&layout.of_part),
-        array(layout.thickness),
         array(bvh.nodes),
         array(&bvh.order),
     ]
@@ -263,7 +262,6 @@ impl Head {
             layout: Some(Layout {
                 clusters: clusters(&entry.numbers(lengths[6])?),
                 of_part: ranges(&entry.numbers(lengths[7])?),
-                thickness: entry.numbers(lengths[8])?,
             }),
             parts: self.parts.clone(),
             materials: self.materials.clone(),
@@ -271,7 +269,7 @@ impl Head {
             warnings: self.warnings.clone(),
             ..Scene::default()
         };
-        let (nodes, order) = (entry.numbers(lengths[9])?, entry.numbers(lengths[10])?);
+        let (nodes, order) = (entry.numbers(lengths[8])?, entry.numbers(lengths[9])?);
         let textures = self.textures.iter().map(|picture| picture.read(entry));
         scene.textures = textures.collect::<Option<_>>()?;
         Some((scene, nodes, order))

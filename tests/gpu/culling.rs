@@ -22,11 +22,9 @@ fn unculled(scene: &Scene) -> Scene {
         // Selects the pipeline that derives the facing from derivatives, so that the lean one is compared with it as well.
         normals_match_winding: false,
     };
-    let arranged = scene.layout.as_ref().expect("an arranged scene");
     let layout = Layout {
         clusters: scene.parts.iter().map(cluster).collect(),
         of_part: (0..scene.parts.len()).map(|i| i..i + 1).collect(),
-        thickness: arranged.thickness.clone(),
     };
     Scene {
         layout: Some(layout),

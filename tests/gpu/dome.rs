@@ -142,7 +142,7 @@ fn at_rest_the_picture_goes_over_to_the_truth_without_a_jump() {
     let list = means(&mut device, &mut frame, &day, &view, 128);
     for (i, now) in list.iter().enumerate() {
         assert!(
-            // Ambient occlusion is off by a quarter: it counts the ground in front of a wall as occluded sky.
+            // Ambient occlusion is off by an eighth: it counts the ground in front of a wall as occluded sky.
             (now / last - 1.0).abs() < 0.01,
             "frame {i}: {last} to {now}"
         );

@@ -106,7 +106,7 @@ impl Probe {
         let [r, g, b, illuminance] = read(picked.picture);
         let (words, depth) = (read(picked.words), read(picked.depth)[0]);
         // `words` holds the halves of the 32-bit words.
-        let material = words[2] as u32;
+        let material = words[2] as u32 | (words[3] as u32) << 16;
         let [diffuse, emission] = of_material(material);
         let texel = |texel: Texel| Vec3::from_slice(&read(texel));
         let albedo = picked.albedo.map_or(diffuse, texel);

@@ -7,14 +7,13 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
-use crate::passes::occlusion::height_map::HeightMap;
+use crate::passes::fullscreen_at;
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::view::View;
-use crate::passes::{fullscreen, fullscreen_at};
 
 gpu_struct! {
-    /// Push constants of the occluders.
-    pub struct PackPush: push of SSAO_OCCLUDERS_FRAG {
+    /// Push constants of the blur.
+    pub struct BlurPush: push of SSAO_BLUR_FRAG {
         near: f32,
     }
 }
@@ -40,9 +39,6 @@ pub struct SsaoSettings {
 
 /// Occluders per point at which A is computed, along each axis.
 const SPACING: u32 = 2;
-/// Factor on the thickness of bodies, because surfaces behind a body occlude too. Chosen for the least bias against path-traced
-/// views. For a solid, whose thickness is 0.8 mean chords, it gives 1.52 mean chords; a sphere's diameter is 1.5.
-const CHORDS: f32 = 1.9;
 
 impl SsaoSettings {
     /// Pixels per texel of A, along each axis.
@@ -64,11 +60,9 @@ impl Default for SsaoSettings {
 /// The occlusion passes and their images.
 pub struct Ssao {
     settings: SsaoSettings,
-    pack: Pipeline,
     select: Pipeline,
     trace: Pipeline,
     blur: Pipeline,
-    occluders: Image,
     /// Depth at the points where A is computed; 0 is background.
     points: Image,
     noisy: Image,
@@ -87,14 +81,10 @@ impl Ssao {
     /// # Errors
     /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, size: [u32; 2], settings: SsaoSettings) -> Result<Self> {
-        let constants = [
-            ("STEPS", settings.steps),
-            ("DOWNSCALE", settings.downscale),
-            ("SPACING", SPACING),
-        ];
-        let [width, height] = size.map(|edge| edge.div_ceil(settings.downscale));
-        let image = |name, size| Image::new(context, &ImageDesc::flat(name, FORMAT, size));
-        let points = [width, height].map(|edge| edge.div_ceil(SPACING));
+        let spacing = [("DOWNSCALE", settings.downscale), ("SPACING", SPACING)];
+        let constants = [("STEPS", settings.steps), spacing[0], spacing[1]];
+        let points = size.map(|edge| edge.div_ceil(settings.pixels_per_texel()));
+        let image = |name| Image::new(context, &ImageDesc::flat(name, FORMAT, points));
         let writes = Depth::Write {
             format: DEPTH,
             slope_bias: 0.0,
@@ -114,31 +104,11 @@ impl Ssao {
                 &[("PIXELS_PER_POINT", settings.pixels_per_texel())],
             )?,
             trace: on_points("SSAO", &shaders::SSAO_FRAG, &constants)?,
-            blur: on_points(
-                "SSAO blur",
-                &shaders::SSAO_BLUR_FRAG,
-                &[("SPACING", SPACING)],
-            )?,
-            pack: fullscreen(
-                context,
-                "SSAO occluders",
-                &shaders::SSAO_OCCLUDERS_FRAG,
-                FORMAT,
-                &[
-                    ("DOWNSCALE", settings.downscale),
-                    ("CHORDS", CHORDS.to_bits()),
-                ],
-            )?,
-            occluders: image("occluders", [width, height])?,
+            blur: on_points("SSAO blur", &shaders::SSAO_BLUR_FRAG, &spacing)?,
             points: Image::new(context, &ImageDesc::flat("points", DEPTH, points))?,
-            noisy: image("occlusion, noisy", points)?,
-            smooth: image("occlusion", points)?,
+            noisy: image("occlusion, noisy")?,
+            smooth: image("occlusion")?,
         })
-    }
-
-    /// Radius, metres.
-    pub fn radius(&self) -> f32 {
-        self.settings.radius
     }
 
     /// The last computed A; consumes the passes.
@@ -152,7 +122,6 @@ impl Ssao {
         recorder: &mut Recorder,
         surfaces: &Surfaces,
         view: &View,
-        heights: &HeightMap,
         phase: f32,
     ) -> &Image {
         if self.settings.radius <= 0.0 {
@@ -161,26 +130,12 @@ impl Ssao {
             return &self.smooth;
         }
         recorder
-            .pass("SSAO occluders", &self.pack)
-            .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .sample(
-                "normal_material",
-                &surfaces.normal_material,
-                Sampler::Nearest,
-            )
-            .push(&PackPush {
-                near: view.camera.near,
-            })
-            .color(&self.occluders, Load::Discard)
-            .draw();
-        recorder
             .pass("SSAO points", &self.select)
             .sample("depth", &surfaces.depth, Sampler::Nearest)
             .depth(&self.points, Load::Clear([0.0; 4]))
             .draw();
         recorder
             .pass("SSAO", &self.trace)
-            .sample("occluders", &self.occluders, Sampler::Nearest)
             .sample(
                 "normal_material",
                 &surfaces.normal_material,
@@ -188,8 +143,6 @@ impl Ssao {
             )
             .sample("depth", &surfaces.depth, Sampler::Nearest)
             .uniform("view", &view.block())
-            .sample("height_map", heights.image(), Sampler::Nearest)
-            .uniform("height", &heights.block(view, self.settings.radius))
             .push(&Push {
                 radius: self.settings.radius,
                 phase,
@@ -200,7 +153,10 @@ impl Ssao {
         recorder
             .pass("SSAO blur", &self.blur)
             .sample("noisy_occlusion", &self.noisy, Sampler::Nearest)
-            .sample("occluders", &self.occluders, Sampler::Nearest)
+            .sample("depth", &surfaces.depth, Sampler::Nearest)
+            .push(&BlurPush {
+                near: view.camera.near,
+            })
             .color(&self.smooth, Load::Clear(OPEN))
             .depth_test(&self.points)
             .draw();

@@ -55,10 +55,9 @@ impl Push {
 
 /// The images of the G-buffer.
 pub struct Surfaces {
-    /// First word: the world normal on the viewer's side (octahedral encoding, 16 bits per component). Second word: the material
-    /// number (lower half) and the thickness of the body behind the surface (upper half of a float's bits, metres), see
-    /// `include/materials.glsl`. Converging frames have a third word, the slopes of the face, see `include/face.glsl`, and a
-    /// fourth as padding.
+    /// First word: the world normal on the viewer's side (octahedral encoding, 16 bits per component). Second word: the number of
+    /// the material. Converging frames have a third word, the slopes of the face, see `include/face.glsl`, and a fourth as
+    /// padding.
     pub normal_material: Image,
     /// ρ_d, and a factor on ρ_s; `None` for a scene without maps, where the table of materials has ρ_d.
     pub albedo: Option<Image>,
@@ -162,10 +161,10 @@ pub struct Gbuffer {
     surfaces: Surfaces,
 }
 
-/// Position, normal with thickness, texture coordinates; for detailed surfaces also colour and tangent.
+/// Position, normal, texture coordinates; for detailed surfaces also colour and tangent.
 const VERTEX: [Format; 5] = [
     Format::R32G32B32_SFLOAT,
-    Format::R32G32B32A32_SFLOAT,
+    Format::R32G32B32_SFLOAT,
     Format::R32G32_SFLOAT,
     Format::R16G16B16A16_UNORM,
     Format::R16G16B16A16_SNORM,

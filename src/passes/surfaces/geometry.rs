@@ -9,9 +9,7 @@ use crate::gpu::{Buffer, BufferKind, Draws, Image, Recorder, Result, upload_buff
 use crate::scene::{self, Bounds, Cluster, Layout, Scene};
 
 use crate::passes::surfaces::culling::{Cull, Runs};
-use crate::passes::surfaces::upload::{
-    normals_and_thickness, surface, upload, upload_details, upload_materials, white,
-};
+use crate::passes::surfaces::upload::{surface, upload, upload_details, upload_materials, white};
 use crate::passes::view::View;
 
 /// The geometry of one material.
@@ -108,7 +106,6 @@ pub struct Bound<'g> {
 /// The uploaded scene.
 pub struct Geometry {
     positions: Buffer,
-    /// Normal, and thickness of the body behind the surface, metres.
     normals: Buffer,
     texcoords: Buffer,
     indices: Buffer,
@@ -139,7 +136,6 @@ impl Geometry {
         let vertex = |recorder: &mut Recorder, name, bytes| {
             upload_buffer(recorder, name, BufferKind::Vertex, bytes)
         };
-        let normals = normals_and_thickness(scene, &layout);
         let surfaces: Vec<Surface> = scene.materials.iter().map(surface).collect();
         let textures: Result<Vec<Image>> = scene
             .textures
@@ -159,7 +155,7 @@ impl Geometry {
                 "positions",
                 bytemuck::cast_slice(&scene.positions),
             )?,
-            normals: vertex(recorder, "normals", bytemuck::cast_slice(&normals))?,
+            normals: vertex(recorder, "normals", bytemuck::cast_slice(&scene.normals))?,
             texcoords: vertex(
                 recorder,
                 "texcoords",

@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::gpu::{
     Buffer, BufferKind, Format, Image, ImageDesc, Recorder, Result, upload_buffer, upload_texture,
 };
-use crate::scene::{Encoding, Layout, Material, Scene, Texture};
+use crate::scene::{Encoding, Material, Scene, Texture};
 
 use crate::passes::kilo;
 use crate::passes::surfaces::geometry::Surface;
@@ -34,13 +34,6 @@ pub(in crate::passes) fn upload_details(
         upload_buffer(recorder, "colours", BufferKind::Vertex, colours)?,
         upload_buffer(recorder, "tangents", BufferKind::Vertex, tangents)?,
     ])
-}
-
-pub(in crate::passes) fn normals_and_thickness(scene: &Scene, layout: &Layout) -> Vec<[f32; 4]> {
-    let vertices = scene.normals.iter().zip(&layout.thickness);
-    vertices
-        .map(|([x, y, z], thickness)| [*x, *y, *z, *thickness])
-        .collect()
 }
 
 /// Materials per row of the table of materials.

@@ -1,4 +1,4 @@
-//! Connected surfaces (bodies) of a scene: their thickness, and whether they are closed.
+//! Connected surfaces (bodies) of a scene: their bounds, and whether they are closed.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -12,34 +12,10 @@ use crate::scene::{Bounds, Scene};
 pub struct Body {
     /// Bounds of its triangles, metres.
     pub bounds: Bounds,
-    /// Mean chord length, metres: 4 volume / area (Cauchy). The volume of an open surface is that of the cone from the centre
-    /// of its bounds. The mean chord of a thin wall is twice its thickness.
-    pub mean_chord: f32,
     /// Whether the surface is closed and its triangles wind counter-clockwise seen from outside. No back face is then visible
     /// from outside.
     pub is_solid: bool,
 }
-
-impl Body {
-    /// Thickness behind the surface for ambient occlusion, metres: the mean chord, scaled by a constant for solids. A sheet has
-    /// no measurable thickness; the middle extent of its bounds is used.
-    pub fn thickness(&self) -> f32 {
-        let mut extents = self.bounds.extent().to_array();
-        extents.sort_by(f32::total_cmp);
-        let [_, middle, large] = extents;
-        if self.mean_chord > FLAT * large {
-            self.mean_chord * if self.is_solid { SOLID } else { 1.0 }
-        } else {
-            middle
-        }
-    }
-}
-
-/// Thickness of a solid for ambient occlusion, as a fraction of its mean chord.
-const SOLID: f32 = 0.8;
-
-/// Bodies with a smaller ratio of mean chord to largest extent are sheets.
-const FLAT: f32 = 1e-3;
 
 /// The bodies of a scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -155,9 +131,6 @@ struct Sums {
     /// Apex of the tetrahedra whose volumes are summed, metres. A corner of the body, for precision.
     origin: Option<DVec3>,
     six_volumes: f64,
-    /// Sum of the doubled area vectors of the triangles, m²; zero for a closed surface.
-    two_areas: DVec3,
-    two_area: f64,
     /// Sum of the hashes of the directed edges. Opposite edges cancel, so it is zero if all edges are paired.
     unpaired: u64,
 }
@@ -168,8 +141,6 @@ impl Default for Sums {
             bounds: Bounds::EMPTY,
             origin: None,
             six_volumes: 0.0,
-            two_areas: DVec3::ZERO,
-            two_area: 0.0,
             unpaired: 0,
         }
     }
@@ -187,18 +158,11 @@ impl Sums {
         let origin = *self.origin.get_or_insert(positions[0].as_dvec3());
         let [a, b, c] = positions.map(|p| p.as_dvec3() - origin);
         self.six_volumes += a.dot(b.cross(c));
-        let two_area = (b - a).cross(c - a);
-        self.two_areas += two_area;
-        self.two_area += two_area.length();
     }
 
     fn body(&self) -> Body {
-        let origin = self.origin.unwrap_or_default();
-        let centre = self.bounds.centre().as_dvec3() - origin;
-        let volume = (self.six_volumes - centre.dot(self.two_areas)) / 6.0;
         Body {
             bounds: self.bounds,
-            mean_chord: (4.0 * volume.abs() / (0.5 * self.two_area).max(1e-12)) as f32,
             is_solid: self.unpaired == 0 && self.six_volumes > 0.0,
         }
     }
@@ -247,10 +211,7 @@ mod tests {
             cuboid(s, Vec3::new(3.0, 0.0, 0.0), size, 6, false);
         });
         assert_eq!(apart.len(), 2);
-        // 4 volume / area.
-        let chord = SOLID * 4.0 * 0.1 / 2.5;
-        let near = |b: &Body| (b.thickness() - chord).abs() < 1e-6;
-        assert!(apart.iter().all(|b| b.is_solid && near(b)));
+        assert!(apart.iter().all(|b| b.is_solid));
         assert_eq!(apart[0].bounds.max, size);
         let touching = bodies(|s| {
             cuboid(s, Vec3::ZERO, size, 6, false);
@@ -271,11 +232,5 @@ mod tests {
         cuboid(&mut scene, at, Vec3::ONE, 6, false);
         scene.indices.swap(0, 1);
         assert!(!Bodies::of(&scene).list[0].is_solid, "one triangle turned");
-    }
-
-    #[test]
-    fn a_sheet_is_as_thick_as_its_smaller_side_is_long() {
-        let sheet = bodies(|s| cuboid(s, Vec3::ZERO, Vec3::new(0.0, 3.0, 8.0), 1, false));
-        assert_eq!(sheet[0].thickness(), 3.0);
     }
 }

@@ -1,12 +1,12 @@
-//! The draw layout of a scene: triangles in cluster order, and the thickness of the bodies. It depends only on the mesh and
-//! takes about as long to compute as the mesh takes to read, so the cache stores it too.
+//! The draw layout of a scene: triangles in cluster order. It depends only on the mesh and takes about as long to compute as the
+//! mesh takes to read, so the cache stores it too.
 
 use std::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-use crate::scene::{Bodies, Body, Bounds, Cluster, Clusters, Scene, Solid};
+use crate::scene::{Bodies, Bounds, Cluster, Clusters, Scene, Solid};
 
 /// Data derived from the mesh of a scene for drawing.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -15,8 +15,6 @@ pub struct Layout {
     pub clusters: Vec<Cluster>,
     /// For each part, its range in `clusters`.
     pub of_part: Vec<Range<usize>>,
-    /// For each vertex, the thickness of its body, metres.
-    pub thickness: Vec<f32>,
 }
 
 impl Layout {
@@ -29,12 +27,9 @@ impl Layout {
             .map(|part| (part.first_index, part.index_count))
             .collect();
         let built = Clusters::of(scene, &bodies, &runs);
-        let thickness: Vec<f32> = bodies.list.iter().map(Body::thickness).collect();
-        let of_vertex = bodies.of_vertex.iter();
         let layout = Self {
             clusters: built.list,
             of_part: built.of_run,
-            thickness: of_vertex.map(|body| thickness[*body as usize]).collect(),
         };
         (built.indices, layout)
     }
@@ -44,27 +39,24 @@ impl Layout {
         let within =
             |c: &Cluster| u64::from(c.first) + u64::from(c.count) <= scene.indices.len() as u64;
         let known = |r: &Range<usize>| r.start <= r.end && r.end <= self.clusters.len();
-        self.thickness.len() == scene.positions.len()
-            && self.of_part.len() == scene.parts.len()
+        self.of_part.len() == scene.parts.len()
             && self.of_part.iter().all(known)
             && self.clusters.iter().all(within)
     }
 }
 
 /// A layout as stored in the cache: arrays of plain numbers.
-pub struct FlatLayout<'l> {
+pub struct FlatLayout {
     pub clusters: Vec<FlatCluster>,
     pub of_part: Vec<[u32; 2]>,
-    pub thickness: &'l [f32],
 }
 
-impl<'l> FlatLayout<'l> {
-    pub fn of(layout: &'l Layout) -> Self {
+impl FlatLayout {
+    pub fn of(layout: &Layout) -> Self {
         let ends = |range: &Range<usize>| [range.start as u32, range.end as u32];
         Self {
             clusters: layout.clusters.iter().map(FlatCluster::of).collect(),
             of_part: layout.of_part.iter().map(ends).collect(),
-            thickness: &layout.thickness,
         }
     }
 }

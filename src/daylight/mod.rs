@@ -6,7 +6,7 @@
 //!    [`place`] and [`moment`] parse both; [`cities`] has places by name; [`sun_path`] has the lines of a sun-path diagram.
 //! 2. [`sunlight`]: the sun's spectrum times five transmittances of the air gives the luminance of its disc in cd/m² and its
 //!    illuminance in lux. [`spectrum`] integrates, [`colour`] turns XYZ into linear BT.709 RGB.
-//! 3. [`preetham`], [`hosek`], [`cie`]: the sky's radiance in a direction.
+//! 3. [`preetham`], [`hosek`], [`cie`]: the sky's radiance in a direction. [`atmosphere`]: the same by solving the scattering of light in the air.
 //! 4. [`sky`]: sun, sky and the ground below the horizon as one [`Daylight`]; finite and not negative for any input.
 //! 5. [`cube`]: cube maps in Vulkan's convention. [`irradiance`]: E(n) of a radiance, by four methods, with the points of
 //!    [`sampling`] in the bases of [`tangent_frame`]; [`quadrature`] is their reference, [`convergence`] compares them, and
@@ -23,6 +23,7 @@
 // A test may panic.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+pub mod atmosphere;
 pub mod cie;
 pub mod cities;
 pub mod colour;

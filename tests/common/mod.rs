@@ -25,7 +25,7 @@ pub fn is_soaking() -> bool {
     std::env::var("SKYLIGHT_SOAK").is_ok_and(|value| value == "1")
 }
 
-/// A CSV file of `shared/reference`: lines that begin with '#' are comments, the first other line names the columns.
+/// A CSV file of `shared`: lines that begin with '#' are comments, the first other line names the columns.
 pub struct Table {
     name: String,
     columns: Vec<String>,
@@ -33,9 +33,14 @@ pub struct Table {
 }
 
 impl Table {
-    /// Reads `name`; `None` if the folder is absent. A missing file or an empty table is a failure.
+    /// Reads `name` in `shared/reference`; `None` if the folder is absent. A missing file or an empty table is a failure.
     pub fn read(name: &str) -> Option<Self> {
-        let path = shared()?.join("reference").join(name);
+        Self::read_in("reference", name)
+    }
+
+    /// Reads `name` in another folder of `shared`.
+    pub fn read_in(folder: &str, name: &str) -> Option<Self> {
+        let path = shared()?.join(folder).join(name);
         let text =
             std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         let mut lines = text

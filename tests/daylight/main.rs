@@ -5,6 +5,7 @@ mod common;
 #[path = "../common/model.rs"]
 mod model;
 
+mod atmosphere;
 mod bounces;
 mod irradiance;
 mod reference;
@@ -12,3 +13,4 @@ mod rooms;
 mod sampling;
 mod sun_position;
 mod tone_curves_and_frames;
+mod wavelengths;

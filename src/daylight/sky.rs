@@ -9,13 +9,16 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
+use super::atmosphere::air::Air;
+use super::atmosphere::scattered_sky::ScatteredSky;
+use super::atmosphere::{Atmosphere, sun_share};
 use super::cie::{CieClear, Overcast, SkyCover, daylight_availability};
 use super::colour;
 use super::hosek::{self, Hosek};
 use super::preetham::{self, Preetham};
 use super::quadrature::horizontal_irradiance;
 use super::sun_position::direction;
-use super::sunlight::{Sunlight, visible_fraction};
+use super::sunlight::{SUN_SOLID_ANGLE, Sunlight, visible_fraction};
 
 /// Luminance of the night sky without moon and light pollution, cd/m²: 252 µcd/m² of airglow and stars
 /// (Cinzano, Falchi & Elvidge 2001).
@@ -38,6 +41,8 @@ pub enum SkyModel {
     Overcast,
     /// CIE standard clear sky, white.
     CieClear,
+    /// Clear sky with all orders of scattering on the sphere, from noon to night: [`super::atmosphere`].
+    Atmosphere,
 }
 
 impl SkyModel {
@@ -45,7 +50,9 @@ impl SkyModel {
     pub fn turbidity_range(self) -> (f64, f64) {
         match self {
             Self::Preetham => preetham::TURBIDITY_RANGE,
-            Self::Hosek | Self::Overcast | Self::CieClear => hosek::TURBIDITY_RANGE,
+            Self::Hosek | Self::Overcast | Self::CieClear | Self::Atmosphere => {
+                hosek::TURBIDITY_RANGE
+            }
         }
     }
 }
@@ -63,6 +70,11 @@ pub struct Conditions {
     pub sun_azimuth_deg: f64,
     /// Apparent elevation of the sun's centre, degrees in -90..=90.
     pub sun_elevation_deg: f64,
+    /// How far the air lifts the sun, degrees: apparent minus true elevation. [`SkyModel::Atmosphere`] lights the air by the true sun; the
+    /// others know the apparent one alone.
+    pub refraction_deg: f64,
+    /// The air of [`SkyModel::Atmosphere`], with [`Conditions::ground_albedo`] instead of its own.
+    pub air: Air,
     /// Horizontal diffuse illuminance to which the sky is scaled, lux. `None` uses the model's own (for the CIE skies
     /// [`daylight_availability`]). A measured value is used unchanged, without twilight fade.
     pub horizontal_illuminance: Option<f64>,
@@ -77,13 +89,15 @@ impl Default for Conditions {
             ground_albedo: 0.2,
             sun_azimuth_deg: 180.0,
             sun_elevation_deg: 45.0,
+            refraction_deg: 0.0,
+            air: Air::default(),
             horizontal_illuminance: None,
         }
     }
 }
 
 /// A sky model with evaluated coefficients.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Sky {
     /// See [`Preetham`].
     Preetham(Preetham),
@@ -93,6 +107,8 @@ pub enum Sky {
     Overcast(Overcast),
     /// See [`CieClear`].
     CieClear(CieClear),
+    /// See [`ScatteredSky`].
+    Atmosphere(ScatteredSky),
 }
 
 impl Sky {
@@ -103,6 +119,17 @@ impl Sky {
             Self::Hosek(sky) => sky.radiance(dir),
             Self::Overcast(sky) => sky.radiance(dir),
             Self::CieClear(sky) => sky.radiance(dir),
+            Self::Atmosphere(sky) => sky.radiance(dir),
+        }
+    }
+
+    /// Illuminance of a horizontal plane by the clipped model, linear BT.709 RGB, lux.
+    fn irradiance_up(&self) -> DVec3 {
+        match self {
+            Self::Atmosphere(sky) => {
+                colour::clip_negative(sky.atmosphere.diffuse_illuminance(sky.sun.y))
+            }
+            _ => horizontal_irradiance(|dir| colour::clip_negative(self.radiance(dir))),
         }
     }
 }
@@ -115,7 +142,8 @@ pub struct Guard {
     /// Factor on the model's radiance: 1 by day, falling with [`twilight_illuminance`] in twilight. With a given horizontal
     /// illuminance, the ratio of that to the model's.
     pub scale: f64,
-    /// Added radiance, linear BT.709 RGB, cd/m²: 0 by day, [`NIGHT_LUMINANCE`] (white) after twilight, (1 - `scale`) of it between.
+    /// Added radiance, linear BT.709 RGB, cd/m²: 0 by day, [`NIGHT_LUMINANCE`] (white) after twilight, (1 - `scale`) of it between; with
+    /// [`SkyModel::Atmosphere`] always the whole.
     pub night: DVec3,
 }
 
@@ -149,8 +177,9 @@ impl Daylight {
         let (sun_illuminance, sun_luminance) = sun(&valid);
         let above = direction(valid.sun_azimuth_deg, elevation.max(0.0));
         let sky = sky_of(&valid, above);
-        let guard = guard_of(&valid, &sky, above);
-        let sky_irradiance_up = horizontal_irradiance(|dir| guarded(&sky, &guard, dir));
+        let own = sky.irradiance_up();
+        let guard = guard_of(&valid, colour::luminance(own), above);
+        let sky_irradiance_up = own * guard.scale + guard.night * PI;
         let sun_on_ground = sun_illuminance * elevation.to_radians().sin().max(0.0);
         Self {
             sun_direction: direction(valid.sun_azimuth_deg, elevation),
@@ -166,11 +195,24 @@ impl Daylight {
 
     /// Radiance in the unit direction `dir`, linear BT.709 RGB, cd/m²: sky without the sun's disc, ground below the horizon.
     pub fn radiance(&self, dir: DVec3) -> DVec3 {
-        if dir.y < 0.0 {
-            self.ground_luminance
-        } else {
-            self.sky_radiance(dir)
+        match &self.sky {
+            Sky::Atmosphere(sky) if sky.view().is_ground(dir) => {
+                let (scale, added) = self.ground_of(sky);
+                colour::clip_negative(sky.radiance(dir)) * scale + added
+            }
+            Sky::Atmosphere(_) => guarded(&self.sky, &self.guard, dir),
+            _ if dir.y < 0.0 => self.ground_luminance,
+            _ => self.sky_radiance(dir),
         }
+    }
+
+    /// How the ground that an atmosphere shows becomes [`Self::ground_luminance`] at the observer: a factor, and what the night adds, cd/m².
+    pub fn ground_of(&self, sky: &ScatteredSky) -> (f64, DVec3) {
+        let added = self.guard.night * sky.atmosphere.medium.ground_albedo;
+        let own = colour::luminance(colour::clip_negative(sky.atmosphere.ground_rgb(sky.sun.y)));
+        let here = colour::luminance(self.ground_luminance - added).max(0.0);
+        let scale = if own > 1e-9 { here / own } else { 1.0 };
+        (scale, added)
     }
 
     /// Radiance of the sky alone, linear BT.709 RGB, cd/m²; black below the horizon.
@@ -193,12 +235,33 @@ fn sun(valid: &Conditions) -> (DVec3, DVec3) {
     if valid.model == SkyModel::Overcast || visible == 0.0 {
         return (DVec3::ZERO, DVec3::ZERO);
     }
-    let sunlight = Sunlight::new(valid.turbidity, valid.sun_elevation_deg);
     let clip = colour::clip_negative;
+    if valid.model == SkyModel::Atmosphere {
+        return sun_through_air(valid);
+    }
+    let sunlight = Sunlight::new(valid.turbidity, valid.sun_elevation_deg);
     (
         clip(sunlight.illuminance()) * visible,
         clip(sunlight.luminance()),
     )
+}
+
+/// The same through the air of the conditions: along the apparent direction, in which the eye sees it.
+fn sun_through_air(valid: &Conditions) -> (DVec3, DVec3) {
+    let atmosphere = atmosphere_of(valid);
+    let sine = valid.sun_elevation_deg.to_radians().sin();
+    let illuminance = colour::clip_negative(atmosphere.sun_illuminance(sine));
+    let share = sun_share(atmosphere.observer(), sine);
+    let luminance = illuminance / (share.max(1e-9) * SUN_SOLID_ANGLE);
+    (illuminance, luminance)
+}
+
+fn atmosphere_of(valid: &Conditions) -> Atmosphere {
+    let ground_albedo = valid.ground_albedo;
+    Atmosphere::of(&Air {
+        ground_albedo,
+        ..valid.air
+    })
 }
 
 fn sky_of(valid: &Conditions, sun_direction: DVec3) -> Sky {
@@ -214,29 +277,32 @@ fn sky_of(valid: &Conditions, sun_direction: DVec3) -> Sky {
         SkyModel::CieClear => {
             Sky::CieClear(CieClear::new(available(SkyCover::Clear), sun_direction))
         }
+        SkyModel::Atmosphere => {
+            let true_deg = valid.sun_elevation_deg - valid.refraction_deg;
+            let sun = direction(valid.sun_azimuth_deg, true_deg.clamp(-90.0, 90.0));
+            Sky::Atmosphere(ScatteredSky::new(atmosphere_of(valid), sun))
+        }
     }
 }
 
-fn guard_of(valid: &Conditions, sky: &Sky, sun_direction: DVec3) -> Guard {
-    let own = || horizontal_irradiance(|dir| colour::clip_negative(sky.radiance(dir)));
-    if let Some(lux) = valid.horizontal_illuminance {
-        let scale = lux / colour::luminance(own());
-        return Guard {
-            sun_direction,
-            scale,
-            night: DVec3::ZERO,
-        };
-    }
-    let scale = if valid.sun_elevation_deg < 0.0 {
-        let sunset = colour::luminance(own());
-        twilight_illuminance(valid.sun_elevation_deg, sunset) / sunset
-    } else {
-        1.0
-    };
-    Guard {
+/// `own_lux` is the horizontal illuminance of the clipped model.
+fn guard_of(valid: &Conditions, own_lux: f64, sun_direction: DVec3) -> Guard {
+    let guard = |scale, night| Guard {
         sun_direction,
         scale,
-        night: DVec3::splat(NIGHT_LUMINANCE * (1.0 - scale)),
+        night: DVec3::splat(night),
+    };
+    let elevation = valid.sun_elevation_deg;
+    match valid.horizontal_illuminance {
+        Some(lux) if own_lux > 0.0 => guard(lux / own_lux, 0.0),
+        Some(_) => guard(1.0, 0.0),
+        // It has its own twilight.
+        None if valid.model == SkyModel::Atmosphere => guard(1.0, NIGHT_LUMINANCE),
+        None if elevation < 0.0 => {
+            let scale = twilight_illuminance(elevation, own_lux) / own_lux;
+            guard(scale, NIGHT_LUMINANCE * (1.0 - scale))
+        }
+        None => guard(1.0, 0.0),
     }
 }
 
@@ -293,6 +359,18 @@ fn validated(conditions: &Conditions, warnings: &mut Vec<String>) -> Conditions 
     );
     if let Some(lux) = &mut valid.horizontal_illuminance {
         limit("horizontal illuminance", lux, (0.0, 1e6), 0.0);
+    }
+    limit(
+        "refraction",
+        &mut valid.refraction_deg,
+        (0.0, 1.0),
+        fallback.refraction_deg,
+    );
+    if valid.model == SkyModel::Atmosphere {
+        let (air, moved) = valid.air.clamped();
+        valid.air = air;
+        warnings.extend(moved);
+        return valid;
     }
     if valid.sun_elevation_deg < 0.0 && valid.horizontal_illuminance.is_none() {
         let elevation = valid.sun_elevation_deg;
@@ -397,6 +475,11 @@ mod tests {
                     ground_albedo: bad,
                     sun_azimuth_deg: bad,
                     sun_elevation_deg: bad,
+                    refraction_deg: bad,
+                    air: Air {
+                        aod: bad,
+                        ..Air::default()
+                    },
                     horizontal_illuminance: Some(bad),
                 };
                 let day = Daylight::new(&given);

@@ -135,6 +135,7 @@ choices! {
         Hosek = "hosek": "Clear sky of Hošek & Wilkie 2012",
         Overcast = "overcast": "CIE standard overcast sky; no sun",
         CieClear = "cie-clear": "CIE standard clear sky, white",
+        Atmosphere = "atmosphere": "Clear sky of all orders of scattering in air, aerosol and ozone on the sphere, from noon to night: --aod, --ozone, --altitude ..",
     }
     SunPositionMethod {
         Spa = "spa": "NREL's Solar Position Algorithm (Reda & Andreas 2004): 0.0003°",

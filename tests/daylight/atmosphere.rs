@@ -13,7 +13,7 @@ use skylight::daylight::atmosphere::{Atmosphere, solve::Effort};
 use skylight::daylight::colour::{clip_negative, luminance, xyz_from_rgb};
 use skylight::daylight::sun_position::direction;
 
-use crate::common::{Row, Table, Worst};
+use crate::common::{Row, Table, Worst, at_share};
 
 type Shared = Arc<OnceLock<Arc<Atmosphere>>>;
 
@@ -37,11 +37,6 @@ fn observer(row: Row, solved: &Atmosphere) -> Atmosphere {
     let mut atmosphere = solved.clone();
     atmosphere.air.altitude_m = 1000.0 * row.get("altitude_km");
     atmosphere
-}
-
-fn at_share(values: &mut [f64], share: f64) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[((values.len() - 1) as f64 * share).round() as usize]
 }
 
 /// u', v' of CIE 1976.

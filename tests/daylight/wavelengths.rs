@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+use crate::common::at_share;
 use glam::{DMat4, DVec3, DVec4};
 use skylight::daylight::atmosphere::air::{Aerosol, Air};
 use skylight::daylight::atmosphere::colour::{WAVELENGTHS, XYZ, all_wavelengths, xyz, xyz_of_all};
@@ -86,11 +87,6 @@ fn samples(i: usize) -> Vec<Sample> {
 fn chromaticity(xyz: DVec3) -> [f64; 2] {
     let sum = xyz.x + 15.0 * xyz.y + 3.0 * xyz.z;
     [4.0 * xyz.x / sum, 9.0 * xyz.y / sum]
-}
-
-fn at_share(values: &mut [f64], share: f64) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[((values.len() - 1) as f64 * share).round() as usize]
 }
 
 /// Prints errors of luminance and of u'v' (median, 95 %, largest) and returns those of 95 %.

@@ -60,7 +60,7 @@ fn conditions() -> Vec<Conditions> {
                         ground_albedo,
                         sun_azimuth_deg,
                         sun_elevation_deg,
-                        horizontal_illuminance: None,
+                        ..Conditions::default()
                     });
                 }
             }

@@ -16,11 +16,11 @@ pub const COEFFICIENTS: usize = 10;
 /// The lowest logarithm that is kept: e^-50 of the sun's irradiance is far darker than any night.
 pub const LEAST_LN: f64 = -50.0;
 /// Sine of the lowest elevation of the sun in the table, -21.1°; the light that is left below it is far less than the night's.
-const LEAST_SUN: f64 = -0.36;
+pub const LEAST_SUN: f64 = -0.36;
 /// Sine of the elevation of the sun above which the table is coarser, 10.1°.
-const HIGH_SUN: f64 = 0.175;
+pub const HIGH_SUN: f64 = 0.175;
 /// Slope of the grid at [`HIGH_SUN`] over its mean above.
-const HIGH_SLOPE: f64 = 0.25;
+pub const HIGH_SLOPE: f64 = 0.25;
 
 /// Sizes of the tables of the field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -19,9 +19,10 @@ pub const TOP_RADIUS: f64 = GROUND_RADIUS + THICKNESS;
 const NUMBER_DENSITY: f64 = 2.546_899e25;
 /// Molecules of ozone in a Dobson unit, 1/m².
 const DOBSON_UNIT: f64 = 2.687e20;
-/// Ozone lies between 10 and 40 km with its peak at 25 km; the tent holds as much as 15 km of the peak.
-const OZONE_PEAK: f64 = 25.0;
-const OZONE_HALF_WIDTH: f64 = 15.0;
+/// Ozone lies between 10 and 40 km with its peak at this altitude, km; the tent holds as much as 15 km of the peak.
+pub const OZONE_PEAK: f64 = 25.0;
+/// Half of the tent, km.
+pub const OZONE_HALF_WIDTH: f64 = 15.0;
 /// Altitudes where the profile of ozone has kinks, km.
 pub const OZONE_KINKS: [f64; 3] = [
     OZONE_PEAK - OZONE_HALF_WIDTH,

@@ -3,7 +3,8 @@
 //! 1. [`air`]: what the user says about the air. [`medium`]: its coefficients at four wavelengths, from which [`colour`] makes XYZ.
 //! 2. [`columns`]: table A, columns of each species to the top of the air.
 //! 3. [`solve`]: the scattered light order by order; [`field`]: the tables B and C that it fills.
-//! 4. [`Atmosphere`]: radiance by one more march along [`path`], where the first order is exact. [`sky_view`]: table D, the sky of one sun.
+//! 4. [`Atmosphere`]: radiance by one more march along [`path`], where the first order is exact.
+//! 5. [`sky_view`]: table D, the whole view under one sun; [`scattered_sky`]: the sky that is read from it.
 
 pub mod air;
 pub mod colour;
@@ -11,10 +12,12 @@ pub mod columns;
 pub mod field;
 pub mod medium;
 pub mod path;
+pub mod scattered_sky;
 pub mod sky_view;
 pub mod solve;
 
 use std::f64::consts::PI;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{DVec3, DVec4};
 
@@ -71,15 +74,39 @@ pub struct Atmosphere {
     /// Its coefficients.
     pub medium: Medium,
     /// Table A.
-    pub columns: Columns,
+    pub columns: Arc<Columns>,
     /// Tables B and C.
-    pub field: Field,
+    pub field: Arc<Field>,
 }
+
+/// Airs whose tables are kept.
+const KEPT: usize = 4;
+/// The atmospheres that were asked for last, the newest first; at sea level.
+static SOLVED: Mutex<Vec<Atmosphere>> = Mutex::new(Vec::new());
 
 impl Atmosphere {
     /// The tables of `air`, which is [`Air::clamped`] first.
     pub fn new(air: &Air) -> Self {
         Self::with(air, colour::WAVELENGTHS, &Effort::FULL)
+    }
+
+    /// The same, from the tables of the last airs that were asked for if it is one of them: the observer's altitude changes no table.
+    pub fn of(air: &Air) -> Self {
+        let (air, _) = air.clamped();
+        let at_sea_level = Air {
+            altitude_m: 0.0,
+            ..air
+        };
+        // A thread that panicked left whole atmospheres.
+        let mut solved = SOLVED.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = solved.iter().position(|kept| kept.air == at_sea_level);
+        let found = match known {
+            Some(i) => solved.remove(i),
+            None => Self::new(&at_sea_level),
+        };
+        solved.truncate(KEPT - 1);
+        solved.insert(0, found.clone());
+        Self { air, ..found }
     }
 
     /// The tables at four other wavelengths, nm, and at another effort.
@@ -91,8 +118,8 @@ impl Atmosphere {
         Self {
             air,
             medium,
-            columns,
-            field,
+            columns: Arc::new(columns),
+            field: Arc::new(field),
         }
     }
 
@@ -129,6 +156,11 @@ impl Atmosphere {
     pub fn ground_radiance(&self, sun_sine: f64) -> DVec4 {
         let direct = self.sun_through(GROUND_RADIUS, sun_sine) * sun_sine.max(0.0);
         (direct + self.field.ground_irradiance(sun_sine)) * (self.medium.ground_albedo / PI)
+    }
+
+    /// The same as linear BT.709 RGB, cd/m², not clipped.
+    pub fn ground_rgb(&self, sun_sine: f64) -> DVec3 {
+        rgb_from_xyz(colour::xyz(self.ground_radiance(sun_sine)))
     }
 
     /// Light along `path`, in `cells` steps.

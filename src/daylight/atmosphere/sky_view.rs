@@ -60,6 +60,11 @@ impl SkyView {
         row(j).lerp(row(j + 1), y - j as f64)
     }
 
+    /// Whether the ground is in this direction.
+    pub fn is_ground(&self, dir: DVec3) -> bool {
+        dir.y.atan2(dir.x.hypot(dir.z)) < self.horizon
+    }
+
     /// Entry and row, fractional, of a direction; the row is never between the two halves.
     fn coordinates(&self, dir: DVec3) -> [f64; 2] {
         let horizontal = DVec2::new(dir.x, dir.z);
@@ -87,6 +92,6 @@ fn elevation_of_row(j: usize, horizon: f64) -> (f64, bool) {
 }
 
 /// Horizontal unit vector (x, z) of a direction; south for the zenith.
-fn toward(sun: DVec3) -> DVec2 {
+pub fn toward(sun: DVec3) -> DVec2 {
     DVec2::new(sun.x, sun.z).try_normalize().unwrap_or(DVec2::Y)
 }

@@ -32,6 +32,7 @@ pub use crate::gpu::Optional;
 pub use crate::passes::bounces::cells::Bounces;
 pub use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
 pub use crate::passes::light::lighting::{Ambient, Show};
+use choices::VisibilityParser;
 pub use choices::{Choice, name};
 pub(crate) use choices::{choice, choice_enum, choices};
 pub use given::OptionValues;
@@ -142,7 +143,8 @@ options! {
             /// Horizontal illuminance of the sky alone, lux: scales the sky to a measured value; by default the model's own.
             #[arg(value_name = "LUX", value_parser = values::sky_illuminance, allow_hyphen_values = true)]
             sky_illuminance: Option<f64>,
-            /// Whether the air lifts the sun to its apparent elevation (of --place and --solar; --sun is as seen).
+            /// Whether the air lifts the sun to its apparent elevation (of --place and --solar). With --sky atmosphere the air is lit by the true
+            /// sun, and the disc stands and shines at its apparent elevation. --sun is taken as given for both.
             #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
             refraction: Switch,
             /// Reflectance of the ground below the horizon, 0 to 1; 0 is black.
@@ -183,7 +185,8 @@ options! {
             noise: Option<f64>,
             /// What hides the sky: in single frames what --ambient says, or shadow maps from directions of the sky, which converge to
             /// the truth with the samples. From 16 samples on the default is dome. Given as ssao, so is --ambient.
-            #[arg(value_name = "HOW", value_parser = choice::<Visibility>(), default_value_t)]
+            /// A number is the visibility of the air in km instead: --visual-range.
+            #[arg(value_name = "HOW", value_parser = VisibilityParser, default_value_t)]
             visibility: Visibility,
             /// Spread of the samples in a pixel.
             #[arg(value_name = "FILTER", value_parser = choice::<Filter>(), default_value_t)]

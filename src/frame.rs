@@ -359,7 +359,8 @@ impl Frame {
     /// Returns the pixel of the last [`Frame::pick`], once.
     pub fn picked(&mut self) -> Option<Reading> {
         let geometry = &self.geometry;
-        self.probe.reading(|material| geometry.diffuse(material))
+        self.probe
+            .reading(|material| [geometry.diffuse(material), geometry.emission(material)])
     }
 
     /// The newest picture in kcd/m² (or the quantity shown); for an average, the mean so far.

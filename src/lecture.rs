@@ -31,9 +31,10 @@
 //! | Irradiance environment map | six faces by gl_Layer | [`IrradianceMethod`](crate::daylight::IrradianceMethod) | `sky/cube_faces.geom`: `gl_Layer` | `exact_of_a_64_cube` |
 //! | Irradiance environment map | rnd(t) | [`rnd`](crate::daylight::sampling::rnd), [`tea`](crate::daylight::sampling::tea) | `include/random.glsl`: `rnd` | `rnd_is_uniform` |
 //! | Illumination model | L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r)) | [`Show`](crate::options::Show) | `light/lighting.frag`: `r_dot_l` | `each_addend_is_in_the_picture_once` |
+//! | Rendering equation | L_e | [`Material::emission`](crate::scene::Material::emission) | `light/lighting.frag`: `emitted` | `a_panel_shows_what_it_emits_and_nothing_more_at_night` |
 //! | Rendering equation | ρ_s V(x, r) L_sky(r), V over the lobe around r | [`Reflections::Hidden`](crate::options::Reflections::Hidden) | `dome/dome_specular.frag`: `along_r` | `a_mirror_on_the_floor_shows_the_sky_in_the_opening_and_nowhere_else` |
 //! | Rendering equation | V(x, ω) L_sky(ω) cos θ over the sky | [`SkySampler`](crate::daylight::sky_sampler::SkySampler) | `dome/dome_gather.frag`: `light_of_directions` | `a_room_with_an_opening_gets_the_light_of_its_configuration_factor` |
-//! | Rendering equation | ρ_d/π ∫ L(ω) cos θ dω over what other surfaces reflect | [`Bounces`](crate::options::Bounces) | `bounces/bounces_gather.comp`: `gathered` | `each_addend_is_in_the_picture_once` |
+//! | Rendering equation | ρ_d/π ∫ L(ω) cos θ dω over what other surfaces emit and reflect | [`Bounces`](crate::options::Bounces) | `bounces/bounces_gather.comp`: `gathered` | `each_addend_is_in_the_picture_once` |
 //! | Rendering equation | the same for a sensor, all bounces | [`measure`](crate::sensors::measure) | – | `the_wall_of_a_sphere_with_an_opening_has_the_light_of_all_bounces` |
 //!
 //! # The slips, and what is done instead
@@ -106,8 +107,8 @@
 //! 55° field of view, one linear scale s = 0.025 and γ = 1. Any other option still rules.
 //!
 //! The preset also sets `--ambient ssao --bounces 0`: the picture is then the row "Illumination model" of the map, with A in screen
-//! space. Without the preset it is L = L_e + L_sun + L_sky + L_bounces ([the first page](crate)): the same terms of the sun, the sky by its
-//! true visibility instead of A, and the light that surfaces reflect onto each other. From 16 samples on A is the true visibility with
+//! space, and L_e where surfaces emit, which light no others. Without the preset it is L = L_e + L_sun + L_sky + L_bounces ([the first page](crate)): the same terms of the sun, the sky by its
+//! true visibility instead of A, and the light that surfaces emit and reflect onto each other. From 16 samples on A is the true visibility with
 //! the preset too, unless `--visibility ssao` is given.
 //!
 //! The framework multiplies s with the sky's RGB divided by 683, and with the sun's radiometric RGB: both are luminous values over

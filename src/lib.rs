@@ -24,17 +24,17 @@
 //!
 //! | term | value | in a single frame | in an average with `--visibility dome` |
 //! |---|---|---|---|
-//! | L_e | sky, ground and the sun's disc where no surface is | sky cube, disc | the same |
+//! | L_e | what a surface emits; sky, ground and the sun's disc where no surface is | material; sky cube, disc | the same |
 //! | L_sun | (ρ_d/π (n·l) + ρ_s (r·l)^p) V E_sun | V by the shadow map | V by shadow maps of points of the disc |
 //! | L_sky | ρ_d/π ∫ V(ω) L_sky(ω) cos θ dω + ρ_s L_sky(r) | diffuse: cells | diffuse: dome |
 //! | L_bounces | ρ_d/π E_bounces | cells | gathered rays |
 //!
 //! with E_sun the sun's illuminance at normal incidence, V visibility, L_sky(ω) the sky cube without the sun's disc, and E_bounces the
-//! irradiance of the light that other surfaces reflect. Only diffuse reflection bounces; emission of surfaces is not read.
+//! irradiance of the light that other surfaces emit and reflect. Only diffuse reflection bounces.
 //!
 //! `--ambient ssao --bounces 0`, part of `--preset lecture`, shows the lecture's illumination model in single frames:
 //!
-//! L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r))
+//! L_e + L_r, L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r))
 //!
 //! with A ambient occlusion in screen space (it dims sky light only) and E_sky the irradiance cube (it holds E, not E/π).
 //!

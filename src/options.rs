@@ -143,10 +143,28 @@ options! {
             /// Horizontal illuminance of the sky alone, lux: scales the sky to a measured value; by default the model's own.
             #[arg(value_name = "LUX", value_parser = values::sky_illuminance, allow_hyphen_values = true)]
             sky_illuminance: Option<f64>,
+            /// Share of a clear sky that clouds cover, 0 to 1: dims the sun and evens out the sky as Kasten and Czeplak measured in the
+            /// mean; no cloud is drawn. Not for skies that have clouds of their own (perez, overcast, cie-1 to cie-10, cie-16).
+            #[arg(value_name = "COVER", value_parser = values::cloud_cover, allow_hyphen_values = true,
+                  default_value_t = Conditions::default().cloud_cover)]
+            cloud_cover: f64,
+            /// Measured irradiance by the sun at normal incidence, W/m², 0 to 1500 (--sky perez).
+            #[arg(value_name = "W", value_parser = values::irradiance_w, allow_hyphen_values = true)]
+            dni: Option<f64>,
+            /// Measured irradiance by the sky on a horizontal plane, W/m², 0 to 1500 (--sky perez).
+            #[arg(value_name = "W", value_parser = values::irradiance_w, allow_hyphen_values = true)]
+            dhi: Option<f64>,
+            /// Dew point at the ground, °C, -90 to 40: the water in the air for the luminous efficacies (--sky perez); by default that
+            /// of 2 cm of precipitable water, 11 °C.
+            #[arg(value_name = "CELSIUS", value_parser = values::dew_point, allow_hyphen_values = true)]
+            dew_point: Option<f64>,
             /// Whether the air lifts the sun to its apparent elevation (of --place and --solar). With --sky atmosphere the air is lit by the true
             /// sun, and the disc stands and shines at its apparent elevation. --sun is taken as given for both.
             #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
             refraction: Switch,
+            /// Whether the moon shines: its disc in the sky, and its light when the sun gives none (of --place and --when).
+            #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
+            moon: Switch,
             /// Reflectance of the ground below the horizon, 0 to 1; 0 is black.
             #[arg(value_name = "ALBEDO", value_parser = values::ground_albedo, allow_hyphen_values = true,
                   default_value_t = Conditions::default().ground_albedo)]
@@ -198,7 +216,7 @@ options! {
             #[arg(value_name = "WHAT", value_parser = choice::<Show>(), default_value_t,
                   default_value_if("false_colour", name(Quantity::Illuminance), name(Show::Irradiance)))]
             show: Show,
-            /// Write every addend (sun, sky, bounces ..), V, A, normal, depth and albedo as named layers (render to .exr only).
+            /// Write every addend (sun, sky, bounces, emission ..), V, A, normal, depth and albedo as named layers (render to .exr only).
             layers: bool,
             /// Defaults of the lecture: its sun, sky, sampling and scale, ambient occlusion, no bounces; other options override them.
             #[arg(value_name = "NAME", value_parser = choice::<Preset>())]
@@ -265,9 +283,13 @@ options! {
         }
 
         "Light" ["light"] {
-            /// How often surfaces reflect light onto others: all, or a number; 0 is the light of sun and sky alone.
+            /// How often surfaces reflect light onto others: all, or a number; 0 is the light of sun and sky alone, and lamps light nothing.
             #[arg(value_name = "N", value_parser = values::bounces, allow_hyphen_values = true, default_value_t)]
             bounces: Bounces,
+            /// Factor on the light that surfaces emit, 0 to 1e9: how many cd/m² a model's unit of emission is; 0 turns lamps off.
+            #[arg(value_name = "SCALE", value_parser = values::emission_scale, allow_hyphen_values = true,
+                  default_value_t = 1.0)]
+            emission_scale: f64,
             /// Where single frames have the light of the sky and of other surfaces from.
             #[arg(value_name = "SOURCE", value_parser = choice::<Ambient>(), default_value_t)]
             ambient: Ambient,

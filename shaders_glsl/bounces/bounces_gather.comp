@@ -3,12 +3,13 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "scene_light.glsl"
 #include "surface_hit.glsl"
+#include "emitters.glsl"
 #include "cells.glsl"
 #include "face.glsl"
 #include "half_size.glsl"
 
-// One ray from a pixel of each square of two by two: the irradiance of the light that the surface it meets reflects. Rays that meet
-// none see the sky, which the dome adds.
+// One ray from a pixel of each square of two by two: the irradiance of the light that the surface it meets emits and reflects. Rays
+// that meet none see the sky, which the dome adds. A second ray goes to a point that emits light, if there is any.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -24,23 +25,30 @@ layout(push_constant, scalar) uniform Push {
     float share;  // of the rays in the light, 0..1; the rest is from the cells around the pixel
 } push;
 
-/// Irradiance that a ray from a pixel brings, klx.
+/// Irradiance that the rays from a pixel bring, klx.
 vec3 gathered(ivec2 pixel, vec3 ray, vec3 world, uvec3 own, vec3 n) {
     vec2 size = vec2(textureSize(depth, 0));
     vec3 face = view.world_from_view * face_normal(own.z, ray.xy, 0.5 * size / view.ray_scale);
     ivec2 whole = pixel + push.origin;
     uint seed = tea(uint(whole.x) | uint(whole.y) << 16, scene.seed);
-    vec3 toward = cosine_direction(n, scrambled_sobol(push.index, seed));
+    // A pixel gets every fourth set of rays. Every fourth point of a Sobol sequence is in one quarter of the first dimension: a ring of
+    // the hemisphere. So each takes its points one after the other.
+    uint number = push.index / 4u;
+    vec3 toward = cosine_direction(n, scrambled_sobol(number, seed));
+    vec3 side = dot(face, n) > SAME_FACE ? face : n;
+    vec3 origin = lifted(world, side);
+    vec3 emitted = vec3(0.0);
+    if (EMITTERS > 0u) emitted = emission_of_point(origin, n, side, scrambled_sobol(number, tea(seed, 2u)));
     // Below the face: inside of the body.
-    if (is_turned_away(face, n, toward)) return vec3(0.0);
-    vec3 origin = lifted(world, dot(face, n) > SAME_FACE ? face : n);
+    if (is_turned_away(face, n, toward)) return emitted;
     Hit hit = closest(origin, toward, FAR);
-    if (hit.distance == FAR) return vec3(0.0);
+    if (hit.distance == FAR) return emitted;
     Surface surface = surface_of(hit, origin, toward);
     uint state = tea(seed, push.index);
     vec3 sun = sun_irradiance_at(surface.position, surface.normal, vec2(rnd(state), rnd(state)));
     Cached here = cached(surface.position, surface.normal);
-    return surface.albedo * (sun + here.sky + here.bounce) + PI * surface.emission;
+    emitted += emission_of_ray(surface, dot(n, toward), toward, hit.distance);
+    return surface.albedo * (sun + here.sky + here.bounce) + emitted;
 }
 
 void main() {

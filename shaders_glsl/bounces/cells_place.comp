@@ -38,18 +38,18 @@ uint hidden_neighbours(Point anchor, float edge) {
     return hidden;
 }
 
-/// The plane of what stands between a point and the anchor of its cell, as the `walls` of cells.glsl; 0 if there is nothing.
-vec4 wall_between(Point point, vec3 anchor, float edge) {
+/// The plane of what stands between a point and the anchor of its cell; 0 if there is nothing.
+uvec2 wall_between(Point point, vec3 anchor, float edge) {
     vec3 n = normal_unpack(point.normal);
     vec3 from = point.position + n * (SIGHT * edge), way = anchor - point.position;
     float far = length(way);
     Hit hit = closest(from, way / far, far);
-    if (hit.distance == FAR) return vec4(0.0);
+    if (hit.distance == FAR) return uvec2(0u);
     vec3 edge1 = uintBitsToFloat(triangle_texel(hit.triangle, 1u).xyz);
     vec3 edge2 = uintBitsToFloat(triangle_texel(hit.triangle, 2u).xyz);
     vec3 normal = normalize(cross(edge1, edge2));
     if (dot(normal, way) < 0.0) normal = -normal;
-    return vec4(normal, dot(normal, from + way / far * hit.distance));
+    return wall_pack(normal, from + way / far * hit.distance);
 }
 
 void main() {
@@ -65,11 +65,11 @@ void main() {
         atomicOr(prints[candidate.slot], DIVIDED);
         return;
     }
-    points[first + contest] = candidate.point;
-    if (contest != 0u) return;
-    // A new cell: its other point is the anchor too until another one comes.
     points[first + 1u] = candidate.point;
+    if ((prints[candidate.slot] & ANCHORED) != 0u) return;
+    // A new cell: its second point is the anchor too until another one comes.
+    points[first] = candidate.point;
     uint hidden = hidden_pack(hidden_neighbours(candidate.point, edge), level);
-    sums[candidate.slot] = Sum(vec3(0.0), vec3(0.0), 0.0, hidden);
+    sums[candidate.slot] = Sum(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, hidden);
     atomicOr(prints[candidate.slot], ANCHORED);
 }

@@ -4,6 +4,7 @@
 #include "scene_light.glsl"
 #include "cell_grid.glsl"
 #include "cell_table.glsl"
+#include "cell_gradient.glsl"
 #include "shared_exponent.glsl"
 
 // Copies the live cells to the images that lookups read, and opens the contests for their points again. Cells with few paths are
@@ -19,7 +20,7 @@ WALLS;
 SUMS;
 
 layout(set = 0, binding = 8, rgba32ui) uniform writeonly uimage2DArray cells;
-layout(set = 0, binding = 9, rgba32f) uniform writeonly image2DArray cell_walls;
+layout(set = 0, binding = 9, rgba32ui) uniform writeonly uimage2DArray cell_planes;
 
 layout(push_constant, scalar) uniform Push {
     uint paths; // as those of the update
@@ -47,13 +48,26 @@ uint slot_at(ivec3 at, uint side, int level, vec3 p) {
 struct Mean {
     vec3 sky;
     vec3 bounce;
+    vec3 sky_gradient;
+    vec3 bounce_gradient;
     float weight;
 };
+
+const Mean NO_LIGHT = Mean(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
 
 void add(inout Mean mean, Sum sum, float weight) {
     mean.sky += weight * sum.sky;
     mean.bounce += weight * sum.bounce;
+    mean.sky_gradient += weight * sum.sky_gradient;
+    mean.bounce_gradient += weight * sum.bounce_gradient;
     mean.weight += weight;
+}
+
+void scale(inout Mean mean, float factor) {
+    mean.sky *= factor;
+    mean.bounce *= factor;
+    mean.sky_gradient *= factor;
+    mean.bounce_gradient *= factor;
 }
 
 /// The light of a cell and its neighbours along the surface.
@@ -62,7 +76,7 @@ Mean smoothed(Sum own, vec3 p, vec3 n, int level) {
     vec3 place = turned(in_grid(p, n, cell_edge(level)), axis), slope = turned(n, axis);
     float fade = own.samples / SMOOTHED;
     float spread = 1.0 / (1.0 + fade * fade);
-    Mean mean = Mean(vec3(0.0), vec3(0.0), 0.0);
+    Mean mean = NO_LIGHT;
     add(mean, own, own.samples);
     for (int i = 0; i < 8; ++i) {
         vec2 way = floor(place.xy) + vec2(NEIGHBOURS[i]) + 0.5 - place.xy;
@@ -80,7 +94,7 @@ Mean interpolated(vec3 p, vec3 n, int level) {
     vec3 place = turned(in_grid(p, n, cell_edge(level)), axis), slope = turned(n, axis);
     vec2 f = fract(place.xy) - 0.5;
     vec2 w[3] = vec2[](0.5 * (0.5 - f) * (0.5 - f), 0.75 - f * f, 0.5 * (0.5 + f) * (0.5 + f));
-    Mean mean = Mean(vec3(0.0), vec3(0.0), 0.0);
+    Mean mean = NO_LIGHT;
     for (int i = 0; i < 9; ++i) {
         ivec2 k = ivec2(i % 3, i / 3);
         uint slot = slot_at(cell_beside(place, slope, vec2(k - 1) - f, axis), side, level, p);
@@ -96,16 +110,15 @@ Sum published(uint slot) {
     int level = int(own.hidden >> 8);
     vec3 p = anchor.position, n = normal_unpack(anchor.normal);
     Mean fine = smoothed(own, p, n, level);
-    float scale = fine.weight > 0.0 ? 1.0 / fine.weight : 0.0;
-    vec3 sky = fine.sky * scale, bounce = fine.bounce * scale;
+    scale(fine, fine.weight > 0.0 ? 1.0 / fine.weight : 0.0);
     // At its outer end a level continues as the next.
     Mean coarse = interpolated(p, n, level + 1);
     float share = smoothstep(1.0 - BAND, 1.0, level_at(distance(p, scene.eye)) - float(level));
     if (coarse.weight > 0.0) {
-        sky = mix(sky, coarse.sky / coarse.weight, share);
-        bounce = mix(bounce, coarse.bounce / coarse.weight, share);
-    }
-    return Sum(sky, bounce, own.samples, own.hidden);
+        scale(coarse, share / coarse.weight);
+        scale(fine, 1.0 - share);
+    } else scale(coarse, 0.0);
+    return Sum(fine.sky + coarse.sky, fine.bounce + coarse.bounce, fine.sky_gradient + coarse.sky_gradient, fine.bounce_gradient + coarse.bounce_gradient, own.samples, own.hidden);
 }
 
 void main() {
@@ -119,6 +132,7 @@ void main() {
     Sum sum = published(slot);
     uint word = uint(sum.samples) | (sum.hidden & 0xffu) << SAMPLE_BITS;
     imageStore(cells, texel, uvec4(prints[slot], shared_exponent_pack(sum.sky), shared_exponent_pack(sum.bounce), word));
-    imageStore(cell_walls, texel, walls[slot]);
-    contests[slot * CONTESTS + 1u] = 0xffffffffu;
+    uvec2 gradients = uvec2(gradient_pack(sum.sky_gradient, luminance(sum.sky), sum.samples), gradient_pack(sum.bounce_gradient, luminance(sum.bounce), sum.samples));
+    imageStore(cell_planes, texel, uvec4(walls[slot], gradients));
+    contests[slot * CONTESTS] = 0xffffffffu;
 }

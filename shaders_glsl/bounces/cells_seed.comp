@@ -68,7 +68,7 @@ uint claim(vec3 p, vec3 n, int level, out uint contest) {
         stamps[slot] = scene.frame;
         uint print = prints[slot];
         if ((print & DIVIDED) != 0u && !is_on_side(walls[slot], p)) continue;
-        contest = (print & ANCHORED) == 0u ? 0u : (print & DIVIDED) != 0u ? 1u : WALL;
+        contest = (print & (ANCHORED | DIVIDED)) == ANCHORED ? WALL : 0u;
         return slot;
     }
     return NONE;
@@ -88,7 +88,7 @@ void enter(uint index, vec3 p, vec3 n, uint hash) {
     uint slot = claim(p, n, level, contest);
     if (slot == NONE) return;
     // What does not see the anchor asks for a wall.
-    if (contest == WALL && !is_divided(p, n, points[slot * POINTS].position, cell_edge(level))) contest = 1u;
+    if (contest == WALL && !is_divided(p, n, points[slot * POINTS].position, cell_edge(level))) contest = 0u;
     uint place = slot * CONTESTS + contest;
     atomicMin(contests[place], hash);
     candidates[index] = Candidate(slot, place, hash, Point(p, normal_pack(n)));

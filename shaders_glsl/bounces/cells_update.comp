@@ -3,6 +3,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "scene_light.glsl"
 #include "surface_hit.glsl"
+#include "emitters.glsl"
 #include "cells.glsl"
 #include "cell_table.glsl"
 
@@ -31,11 +32,10 @@ layout(push_constant, scalar) uniform Push {
 // Paths after which a cell is not updated any more.
 const uint ENOUGH = 4096u;
 
-/// Irradiance of the bounces along a path that starts with a ray from a point, klx.
+/// Irradiance of the bounces along a path that starts with a ray from a point to a surface, klx; what that surface emits is not in it.
 vec3 path_light(Surface surface, inout uint state) {
     vec3 light = vec3(0.0), throughput = vec3(1.0);
     for (uint segment = 1u; segment <= push.segments; ++segment) {
-        light += throughput * PI * surface.emission;
         throughput *= surface.albedo;
         vec3 sun = sun_irradiance_at(surface.position, surface.normal, vec2(rnd(state), rnd(state)));
         Cached here = cached(surface.position, surface.normal);
@@ -50,6 +50,7 @@ vec3 path_light(Surface surface, inout uint state) {
             if (is_last || rnd(state) >= reflected * reflected) return light + throughput * here.bounce;
         }
         if (is_last) break;
+        if (EMITTERS > 0u) light += throughput * emission_of_point(surface.position, surface.normal, surface.normal, vec2(rnd(state), rnd(state)));
         vec3 toward = cosine_direction(surface.normal, vec2(rnd(state), rnd(state)));
         Hit hit = closest(surface.position, toward, FAR);
         if (hit.distance == FAR) {
@@ -57,7 +58,9 @@ vec3 path_light(Surface surface, inout uint state) {
             if (!here.is_found) light += throughput * PI * textureLod(sky_radiance, toward, 0.0).rgb;
             break;
         }
-        surface = surface_of(hit, surface.position, toward);
+        Surface next = surface_of(hit, surface.position, toward);
+        light += throughput * emission_of_ray(next, dot(surface.normal, toward), toward, hit.distance);
+        surface = next;
     }
     return light;
 }
@@ -72,11 +75,18 @@ void add_path(inout Sum sum, uint slot, uint print) {
     Hit hit = closest(point.position, toward, FAR);
     vec3 sky = vec3(0.0), bounce = vec3(0.0);
     if (hit.distance == FAR) sky = PI * textureLod(sky_radiance, toward, 0.0).rgb;
-    else if (push.segments > 0u) bounce = path_light(surface_of(hit, point.position, toward), state);
+    else if (push.segments > 0u) {
+        Surface surface = surface_of(hit, point.position, toward);
+        bounce = emission_of_ray(surface, dot(n, toward), toward, hit.distance) + path_light(surface, state);
+    }
+    if (EMITTERS > 0u && push.segments > 0u) bounce += emission_of_point(point.position, n, n, scrambled_sobol(number, tea(scene.seed, print)));
     // Later paths end in better cells: the weights of their light grow with the cube of their number.
     float k = sum.samples + 1.0;
+    float late = 4.0 * k / ((k + 1.0) * (k + 1.0));
     sum.sky = mix(sum.sky, sky, 1.0 / k);
-    sum.bounce = mix(sum.bounce, bounce, 4.0 * k / ((k + 1.0) * (k + 1.0)));
+    sum.sky_gradient = mix(sum.sky_gradient, gradient_of(luminance(sky), toward, n), 1.0 / k);
+    sum.bounce = mix(sum.bounce, bounce, late);
+    sum.bounce_gradient = mix(sum.bounce_gradient, gradient_of(luminance(bounce), toward, n), late);
     sum.samples = k;
 }
 
@@ -93,6 +103,8 @@ void main() {
     sum.samples = min(sum.samples, push.most);
     sum.sky *= push.sky_change;
     sum.bounce *= push.bounce_change;
+    sum.sky_gradient *= luminance(push.sky_change);
+    sum.bounce_gradient *= luminance(push.bounce_change);
     uint paths = sum.samples < float(ENOUGH) ? clamp(push.paths / live_count, 1u, MOST_PATHS) : 0u;
     for (uint i = 0u; i < paths; ++i) add_path(sum, slot, print & ~FLAGS);
     sums[slot] = sum;

@@ -6,7 +6,7 @@
 // steps and numbers of triangles of the children; lower and upper corners of the children, four bytes a word; first child, first
 // triangle. A child without triangles is a node; those and the triangles follow each other in the order of the children. The box of
 // a child that does not exist is inside out.
-// A triangle is three texels: corner, reflectance; first edge, emission; second edge, opacity.
+// A triangle is three texels: corner, reflectance; first edge, emission (kcd/m^2, see shared_exponent.glsl); second edge, opacity.
 #include "random.glsl"
 #include "texel.glsl"
 

@@ -83,7 +83,13 @@ ivec3 cell_beside(vec3 place, vec3 slope, vec2 way, uint axis) {
     return ivec3(floor(turned_back(vec3(place.xy + way, height), axis)));
 }
 
-/// Whether a point is on the anchor's side of the wall that divides a cell.
-bool is_on_side(vec4 wall, vec3 p) {
-    return dot(wall.xyz, p) >= wall.w;
+/// The plane of a wall through a point: its normal, octahedral, and its distance from the origin, metres.
+uvec2 wall_pack(vec3 normal, vec3 p) {
+    uint word = normal_pack(normal);
+    return uvec2(word, floatBitsToUint(dot(normal_unpack(word), p)));
+}
+
+/// Whether a point is on the side of a wall to which its normal points: that of the anchor of the divided cell.
+bool is_on_side(uvec2 wall, vec3 p) {
+    return dot(normal_unpack(wall.x), p) >= uintBitsToFloat(wall.y);
 }

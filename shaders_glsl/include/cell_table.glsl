@@ -16,15 +16,17 @@ struct Candidate {
 struct Sum {
     vec3 sky;      // irradiance of the sky, klx
     vec3 bounce;   // irradiance of the bounces, klx
+    vec3 sky_gradient;    // of the luminance of `sky`, see cell_gradient.glsl, klx
+    vec3 bounce_gradient; // of that of `bounce`
     float samples; // number of paths
     uint hidden;   // neighbours that something hides; from bit 8 on: the level
 };
 
 // Points of a cell: its anchor, and one that new candidates replace.
 const uint POINTS = 2u;
-// Contests of a cell: for its points, and for a wall that divides it.
-const uint CONTESTS = 3u;
-const uint WALL = 2u;
+// Contests of a cell: for one of its points, and for a wall that divides it.
+const uint CONTESTS = 2u;
+const uint WALL = 1u;
 // Most paths of a cell in a round.
 const uint MOST_PATHS = 16u;
 // Points of a path that creates cells.
@@ -36,7 +38,7 @@ const uint PATH_POINTS = 4u;
 #define PLACES layout(set = 0, binding = 3, scalar) buffer Places { Point points[]; }
 #define CONTESTED layout(set = 0, binding = 4, scalar) buffer Contests { uint contests[]; }
 #define CANDIDATES layout(set = 0, binding = 5, scalar) buffer Candidates { Candidate candidates[]; }
-#define WALLS layout(set = 0, binding = 11, scalar) buffer Walls { vec4 walls[]; }
+#define WALLS layout(set = 0, binding = 11, scalar) buffer Walls { uvec2 walls[]; }
 #define STAMPS layout(set = 0, binding = 12, scalar) buffer Stamps { uint stamps[]; }
 #define SUMS layout(set = 0, binding = 6, scalar) buffer Sums { Sum sums[]; }
 

@@ -1,4 +1,4 @@
-// Common to all sky models: twilight, night, ground and gamut clipping, as in `daylight::sky` on the CPU.
+// Common to all sky models: twilight, night, clouds, ground and gamut clipping, as in `daylight::sky` on the CPU.
 #include "colour.glsl"
 #include "cube.glsl"
 
@@ -7,6 +7,7 @@ layout(push_constant, scalar) uniform Push {
     float scale;        // fade through twilight
     vec3 night;         // added radiance, kcd/m^2
     vec3 ground;        // radiance below the horizon, kcd/m^2
+    float clouds;       // luminance of clouds at the zenith, kcd/m^2
 } push;
 
 // Closer to the horizon than this, exp(B / cos theta) is lost in float32; the texel centres of a cube stay above it.
@@ -28,5 +29,7 @@ vec3 clip_negative(vec3 rgb) {
 
 /// Radiance of the sky, or of the ground below the horizon, kcd/m^2. `model` is the model's radiance.
 vec4 guarded(vec3 direction, vec3 model) {
-    return vec4(direction.y > 0.0 ? clip_negative(model) * push.scale + push.night : push.ground, 1.0);
+    if (direction.y <= 0.0) return vec4(push.ground, 1.0);
+    float clouds = push.clouds * (1.0 + 2.0 * direction.y) / 3.0;
+    return vec4(clip_negative(model) * push.scale + push.night + clouds, 1.0);
 }

@@ -38,5 +38,6 @@ vec4 sky(vec3 direction) {
     bool is_ground;
     vec3 radiance = clip_negative(view(direction, is_ground));
     if (is_ground) return vec4(radiance * model.ground_scale + push.ground, 1.0);
-    return vec4(radiance * push.scale + push.night, 1.0);
+    float clouds = push.clouds * (1.0 + 2.0 * max(direction.y, 0.0)) / 3.0;
+    return vec4(radiance * push.scale + push.night + clouds, 1.0);
 }

@@ -1,4 +1,4 @@
-// Preetham et al. 1999, A.2. The CIE clear sky has the same form and uses this shader too.
+// Preetham et al. 1999, A.2.
 #include "sky.glsl"
 
 struct Perez {

@@ -6,7 +6,7 @@ struct Surface {
     vec3 position;   // world, metres, lifted off the surface
     vec3 normal;     // of the face, unit, on the side that was hit
     vec3 albedo;     // rho_d, mean over the triangle
-    vec3 emission;   // radiance, kcd/m^2
+    vec3 emission;   // radiance L_e, kcd/m^2, mean over the triangle
 };
 
 // Offset of ray origins from their surface, relative to the largest coordinate: covers the rounding of float32.

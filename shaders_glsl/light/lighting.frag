@@ -10,7 +10,7 @@
 #include "phong.glsl"
 #include "face.glsl"
 
-// L_sun + L_sky + L_bounces. With CELLS the irradiances of sky and bounces are those of the cells. Otherwise it is the lecture's
+// L_e + L_sun + L_sky + L_bounces. With CELLS the irradiances of sky and bounces are those of the cells. Otherwise it is the lecture's
 // slide "Illumination model for skylight":
 //   L_r = rho_d/pi ((n.l) V E_sun + A E_sky(n)) + rho_s ((r.l)^p V E_sun + L_sky(r))
 
@@ -45,6 +45,9 @@ layout(constant_id = 16) const bool PCSS = false;
 // The light of the sky and of other surfaces is in the cells; otherwise it is A E_sky.
 layout(constant_id = 21) const bool CELLS = false;
 layout(constant_id = 22) const bool BOUNCES = true;
+// L_e of surfaces, from the table of materials; with EMISSION_IMAGE times a factor per pixel.
+layout(constant_id = 23) const bool EMISSION = false;
+layout(constant_id = 24) const bool EMISSION_IMAGE = false;
 // Energy-conserving specular lobe for both sun and sky.
 layout(constant_id = 17) const bool NORMALIZED = false;
 
@@ -68,6 +71,7 @@ layout(set = 0, binding = 8, scalar) uniform Sun {
 } sun;
 
 layout(set = 0, binding = 9) uniform sampler2D materials; // see materials.glsl
+layout(set = 0, binding = 10) uniform sampler2D emission;  // with EMISSION_IMAGE; else any
 
 #include "sun_shadow.glsl"
 
@@ -122,6 +126,11 @@ void main() {
     if (SUN) sum += surface.rgb / PI * sun_irradiance;
     if (SKY) sum += surface.rgb / PI * light.sky;
     if (BOUNCES) sum += surface.rgb / PI * light.bounce;
+    if (EMISSION) {
+        vec3 emitted = material_emission(materials, word);
+        if (EMISSION_IMAGE) emitted *= textureLod(emission, uv, 0.0).rgb;
+        sum += emitted;
+    }
     if (SUN_SPECULAR || SKY_SPECULAR) {
         vec4 m = material_specular(materials, word);
         vec3 rho_s = m.rgb * (surface.a * sun.specular_scale);

@@ -1,10 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-// ALBEDO: with a render target for rho_d. DETAILED: surfaces with alpha test, normal maps or vertex colours.
+// ALBEDO: with a render target for rho_d. EMISSION: and one for the factor on L_e. DETAILED: surfaces with alpha test, normal maps or
+// vertex colours.
 // Variant: ALBEDO
+// Variant: ALBEDO EMISSION
 // Variant: DETAILED
 // Variant: DETAILED ALBEDO
+// Variant: DETAILED ALBEDO EMISSION
 #include "gbuffer.glsl"
 #include "face_of_fragment.glsl"
 #include "materials.glsl"
@@ -19,6 +22,13 @@ layout(location = 3) flat in float thickness; // of the body behind the surface,
 layout(location = 0) out uvec4 normal_material;
 #ifdef ALBEDO
 layout(location = 1) out vec4 albedo; // rgb: rho_d; a: factor on rho_s
+#endif
+#ifdef EMISSION
+layout(location = 2) out vec4 emission; // rgb: factor on L_e
+
+layout(constant_id = 6) const bool EMISSIVE_MAP = true;
+
+layout(set = 0, binding = 4) uniform sampler2D emissive_map;
 #endif
 
 layout(constant_id = 0) const bool DIFFUSE_MAP = true;
@@ -78,6 +88,10 @@ void main() {
     float gloss = 1.0;
     if (SPECULAR_MAP) gloss = dot(texture(specular_map, surface_uv, -camera.sharpen).rgb, vec3(1.0 / 3.0));
     albedo = vec4(diffuse.rgb, gloss);
+#endif
+#ifdef EMISSION
+    emission = vec4(1.0);
+    if (EMISSIVE_MAP) emission = texture(emissive_map, surface_uv, -camera.sharpen);
 #endif
     if (CUT_OUT && diffuse.a < push.cutoff) discard;
     normal_material = uvec4(normal_pack(n), material_word(push.material, thickness), FACES ? face_slopes() : 0u, 0u);

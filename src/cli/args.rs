@@ -71,6 +71,9 @@ pub struct SkyArgs {
     /// Draw the sun's spectra (or the study) as an SVG file.
     #[arg(long, value_name = "FILE.svg", value_parser = named(&["svg"]))]
     pub plot: Option<PathBuf>,
+    /// Instead: every model of the sky at this moment, with the levels that standards publish.
+    #[arg(long, conflicts_with_all = ["irradiance_study", "directions", "plot"])]
+    pub compare: bool,
     /// Instead: error against samples for each way of computing the irradiance of this sky.
     #[arg(long)]
     pub irradiance_study: bool,

@@ -114,7 +114,8 @@ impl Job {
         let settings = Options::resolve(user, &loaded)?;
         let sun = sun_position(&settings)?;
         let daylight = Daylight::new(&conditions(&settings, &sun));
-        let scene = std::mem::take(&mut loaded.scene);
+        let mut scene = std::mem::take(&mut loaded.scene);
+        scene.scale_emission(settings.emission_scale as f32);
         let camera = settings.camera(&scene.bounds);
         let name = path.map_or("bundled".to_owned(), |p| p.display().to_string());
         Ok(Self {

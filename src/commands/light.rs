@@ -1,6 +1,8 @@
 //! Resolves options into a sun position and a daylight. `sky` and `bake` need nothing else.
 
 use crate::daylight::atmosphere::air::{Air, aod_of_turbidity, aod_of_visibility};
+use crate::daylight::moon::Moon;
+use crate::daylight::perez::Measured;
 use crate::daylight::sky::{Conditions, Daylight};
 use crate::daylight::sun_position::{SunPosition, lecture};
 use crate::error::Result;
@@ -42,6 +44,12 @@ impl Light {
             conditions,
         })
     }
+
+    /// Turbidity used by the model. A warning reports when it differs from the option.
+    pub fn turbidity(&self) -> f64 {
+        let (low, high) = self.conditions.model.turbidity_range();
+        self.conditions.turbidity.clamp(low, high)
+    }
 }
 
 /// Position of the sun according to the options. Images use its apparent elevation.
@@ -73,6 +81,24 @@ pub fn sun_position(settings: &Options) -> Result<SunPosition> {
     Ok(sun)
 }
 
+/// The moon of the place and the moment; `None` without them, without an ephemeris for them, or if it is switched off.
+fn moon(settings: &Options) -> Option<Moon> {
+    let SunInput::Place {
+        latitude,
+        longitude,
+        when,
+    } = settings.sun
+    else {
+        return None;
+    };
+    let is_on = settings.moon == Switch::On;
+    let mut moon = is_on.then(|| Moon::at(when, latitude, longitude).ok())??;
+    if settings.refraction == Switch::Off {
+        moon.apparent_elevation_deg = moon.elevation_deg;
+    }
+    Some(moon)
+}
+
 /// Inputs of the daylight for this position of the sun.
 pub fn conditions(settings: &Options, sun: &SunPosition) -> Conditions {
     Conditions {
@@ -86,6 +112,14 @@ pub fn conditions(settings: &Options, sun: &SunPosition) -> Conditions {
         refraction_deg: sun.apparent_elevation_deg - sun.elevation_deg,
         air: air(settings),
         horizontal_illuminance: settings.sky_illuminance,
+        cloud_cover: settings.cloud_cover,
+        moon: moon(settings),
+        measured: Measured {
+            direct_normal_w: settings.dni.unwrap_or_default(),
+            diffuse_horizontal_w: settings.dhi.unwrap_or_default(),
+            dew_point_c: settings.dew_point,
+            day_of_year: settings.sun.day_of_year(),
+        },
     }
 }
 

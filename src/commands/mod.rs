@@ -16,6 +16,8 @@ mod plot_study;
 mod render;
 mod samples;
 mod sky;
+mod sky_almanac;
+mod sky_compare;
 mod sky_report;
 mod sky_table;
 mod startup;

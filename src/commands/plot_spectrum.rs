@@ -61,8 +61,7 @@ type Curve = (Vec<(f64, f64)>, String, RGBColor);
 /// The curves of the figure.
 fn curves(light: &Light) -> [Curve; 3] {
     let elevation = light.conditions.sun_elevation_deg;
-    let (low, high) = light.conditions.model.turbidity_range();
-    let turbidity = light.conditions.turbidity.clamp(low, high);
+    let turbidity = light.turbidity();
     let mass = air_mass(elevation);
     let table = SUN_RANGE_NM.map(f64::from);
     let body = (250..=1200).map(f64::from);

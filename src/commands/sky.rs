@@ -1,10 +1,10 @@
-//! `skylight sky`: figures of a daylight, its spectra, and the convergence of irradiance methods. Needs no device.
+//! `skylight sky`: figures of a daylight, all models beside each other, its spectra, and the convergence of irradiance methods. Needs no device.
 
 use serde_json::json;
 
 use super::light::Light;
 use super::sky_report::SkyReport;
-use super::{plot_spectrum, plot_study};
+use super::{plot_spectrum, plot_study, sky_compare};
 use crate::cli::SkyArgs;
 use crate::daylight::IrradianceMethod;
 use crate::daylight::convergence::{Convergence, exponent, study};
@@ -31,6 +31,8 @@ pub fn run(args: &SkyArgs, mut options: OptionValues) -> Result<()> {
     let light = Light::new(&options)?;
     let (text, drawing) = if args.irradiance_study {
         study_text(args, &light)
+    } else if args.compare {
+        (sky_compare::text(&light, args.json), None)
     } else {
         report_text(args, &light)?
     };

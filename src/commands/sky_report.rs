@@ -6,10 +6,13 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::light::Light;
+use super::sky_almanac::{Almanac, rfc3339};
 use crate::daylight::colour::{
     chromaticity, correlated_colour_temperature, luminance, xyz_from_rgb,
 };
 use crate::daylight::irradiance::IrradianceEstimator;
+use crate::daylight::perez::AllWeather;
+use crate::daylight::sky::SkyModel;
 use crate::daylight::sun_position::{self, Polar, SunEvents, sun_events};
 use crate::daylight::sunlight::{Sunlight, air_mass};
 use crate::error::Result;
@@ -34,10 +37,13 @@ pub struct SkyReport {
     /// The options that reproduce this daylight.
     pub inputs: BTreeMap<String, String>,
     pub sun: SunReport,
+    /// The times of the date and the moon; absent without a place and a moment.
+    #[serde(flatten)]
+    pub almanac: Option<Almanac>,
     pub sky: SkyPart,
     /// Radiance of all directions below the horizon.
     pub ground: GroundPart,
-    /// Illuminance of a horizontal plane by sun and sky, lux.
+    /// Illuminance of a horizontal plane by sky and sun, or moon while the sun gives no light, lux.
     pub global_horizontal_lux: f64,
     pub warnings: Vec<String>,
 }
@@ -76,6 +82,9 @@ pub struct SkyPart {
     /// Turbidity used, clamped to the model's range.
     pub turbidity: f64,
     pub ground_albedo: f64,
+    /// Only of the measured sky.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<MeasuredPart>,
     pub zenith_luminance: f64,
     pub zenith_rgb: [f64; 3],
     pub zenith_chromaticity: [f64; 2],
@@ -89,6 +98,20 @@ pub struct SkyPart {
     pub irradiance: BTreeMap<&'static str, [f64; 3]>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub samples: Vec<Sample>,
+}
+
+/// What Perez' model makes of the irradiances.
+#[derive(Debug, Serialize)]
+pub struct MeasuredPart {
+    /// ε, 1 to 12.
+    pub clearness: f64,
+    /// Δ, 0.01 to 0.6.
+    pub brightness: f64,
+    /// Precipitable water, cm.
+    pub water_cm: f64,
+    /// Luminous efficacies of the light of sky and sun, lm/W.
+    pub diffuse_efficacy: f64,
+    pub direct_efficacy: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -121,7 +144,8 @@ impl SkyReport {
                 luminance: luminance(daylight.ground_luminance),
                 rgb: daylight.ground_luminance.to_array(),
             },
-            global_horizontal_lux: sun.direct_horizontal_lux + sky.diffuse_horizontal_lux,
+            almanac: Almanac::new(light)?,
+            global_horizontal_lux: luminance(daylight.horizontal()),
             sun,
             sky,
             warnings: daylight.warnings.clone(),
@@ -133,9 +157,6 @@ impl SunReport {
     fn new(light: &Light) -> Result<Self> {
         let daylight = &light.daylight;
         let events = events(light)?;
-        let moment = |t: Option<chrono::DateTime<chrono::FixedOffset>>| {
-            t.map(|t| t.format("%Y-%m-%dT%H:%M:%S%:z").to_string())
-        };
         let illuminance = luminance(daylight.sun_illuminance);
         let apparent = light.sun.apparent_elevation_deg;
         Ok(Self {
@@ -152,9 +173,9 @@ impl SunReport {
             cct_k: (illuminance > 0.0)
                 .then(|| sun_temperature(light))
                 .flatten(),
-            sunrise: moment(events.and_then(|e| e.sunrise)),
-            solar_noon: moment(events.and_then(|e| e.noon)),
-            sunset: moment(events.and_then(|e| e.sunset)),
+            sunrise: rfc3339(events.and_then(|e| e.sunrise)),
+            solar_noon: rfc3339(events.and_then(|e| e.noon)),
+            sunset: rfc3339(events.and_then(|e| e.sunset)),
             polar: events.and_then(|e| polar(light, &e)),
         })
     }
@@ -163,18 +184,13 @@ impl SunReport {
 /// Correlated colour temperature of the sun, from its spectrum before gamut mapping to BT.709.
 fn sun_temperature(light: &Light) -> Option<f64> {
     let elevation = light.conditions.sun_elevation_deg.max(0.0);
-    let xyz = Sunlight::new(turbidity(light), elevation).luminance_xyz;
+    let xyz = Sunlight::new(light.turbidity(), elevation).luminance_xyz;
     temperature(xyz)
 }
 
-fn temperature(xyz: DVec3) -> Option<f64> {
+/// Correlated colour temperature, K; `None` if it is bluer than any black body.
+pub(super) fn temperature(xyz: DVec3) -> Option<f64> {
     correlated_colour_temperature(xyz).filter(|kelvin| *kelvin < HOTTEST)
-}
-
-/// Turbidity used by the model. A warning reports when it differs from the option.
-fn turbidity(light: &Light) -> f64 {
-    let (low, high) = light.conditions.model.turbidity_range();
-    light.conditions.turbidity.clamp(low, high)
 }
 
 fn events(light: &Light) -> Result<Option<SunEvents>> {
@@ -215,8 +231,9 @@ impl SkyPart {
             IrradianceEstimator::new(settings.irradiance, radiance, settings.irradiance_samples);
         Self {
             model: settings.sky.to_string(),
-            turbidity: turbidity(light),
+            turbidity: light.turbidity(),
             ground_albedo: settings.ground_albedo,
+            measured: measured(light),
             zenith_luminance: luminance(zenith),
             zenith_rgb: zenith.to_array(),
             zenith_chromaticity: chromaticity(xyz_from_rgb(zenith)),
@@ -228,6 +245,20 @@ impl SkyPart {
             samples: directions.iter().map(|d| sample(light, *d)).collect(),
         }
     }
+}
+
+fn measured(light: &Light) -> Option<MeasuredPart> {
+    let conditions = &light.conditions;
+    (conditions.model == SkyModel::Perez).then(|| {
+        let weather = AllWeather::new(&conditions.measured, conditions.sun_elevation_deg);
+        MeasuredPart {
+            clearness: weather.clearness,
+            brightness: weather.brightness,
+            water_cm: conditions.measured.precipitable_water_cm(),
+            diffuse_efficacy: weather.diffuse_efficacy,
+            direct_efficacy: weather.direct_efficacy,
+        }
+    })
 }
 
 fn sample(light: &Light, at: Direction) -> Sample {

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::sky_report::{AXES, SkyPart, SkyReport, SunReport};
+use super::sky_report::{AXES, MeasuredPart, SkyPart, SkyReport, SunReport};
 use crate::daylight::colour::luminance;
 
 impl Display for SkyReport {
@@ -12,10 +12,13 @@ impl Display for SkyReport {
         }
         writeln!(f)?;
         self.sun.fmt(f)?;
+        if let Some(almanac) = &self.almanac {
+            almanac.fmt(f)?;
+        }
         writeln!(f)?;
         self.sky.fmt(f)?;
         let total = self.global_horizontal_lux;
-        line(f, "sun and sky, horizontal", with_unit(total, "lux"))?;
+        line(f, "all light, horizontal", with_unit(total, "lux"))?;
         line(f, "ground", with_unit(self.ground.luminance, "cd/m²"))?;
         if !self.sky.samples.is_empty() {
             writeln!(f)?;
@@ -93,6 +96,9 @@ impl Display for SkyPart {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let [x, y] = self.zenith_chromaticity;
         let blue = "none: bluer than any black body";
+        if let Some(measured) = &self.measured {
+            measured.fmt(f)?;
+        }
         line(f, "zenith", colour(self.zenith_rgb, "cd/m²"))?;
         line(
             f,
@@ -118,7 +124,18 @@ impl Display for SkyPart {
     }
 }
 
-fn line(f: &mut Formatter<'_>, name: &str, value: impl Display) -> fmt::Result {
+impl Display for MeasuredPart {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        line(f, "clearness ε", format!("{:.3}", self.clearness))?;
+        line(f, "brightness Δ", format!("{:.4}", self.brightness))?;
+        line(f, "water in the air", format!("{:.2} cm", self.water_cm))?;
+        let (sky, sun) = (self.diffuse_efficacy, self.direct_efficacy);
+        let both = format!("{sky:.1} lm/W (sky), {sun:.1} lm/W (sun)");
+        line(f, "luminous efficacies", both)
+    }
+}
+
+pub(super) fn line(f: &mut Formatter<'_>, name: &str, value: impl Display) -> fmt::Result {
     writeln!(f, "{name:<26}{value}")
 }
 
@@ -128,7 +145,7 @@ fn colour(rgb: [f64; 3], unit: &str) -> String {
     format!("{:<18} RGB {r} {g} {b}", with_unit(total, unit))
 }
 
-fn with_unit(value: f64, unit: &str) -> String {
+pub(super) fn with_unit(value: f64, unit: &str) -> String {
     format!("{} {unit}", number(value))
 }
 
@@ -137,7 +154,7 @@ fn kelvin(value: Option<f64>, none: &str) -> String {
 }
 
 /// Formats with four significant digits, or with all integer digits if there are more (below 10⁷).
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     let digits = 3 - value.abs().max(1e-300).log10().floor() as i32;
     match digits {
         _ if value == 0.0 => "0".to_owned(),

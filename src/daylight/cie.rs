@@ -1,23 +1,20 @@
-//! Standard skies of the CIE: overcast (Moon & Spencer 1942) and clear (Kittler 1967).
+//! Standard skies of the CIE: the fifteen general skies and the traditional overcast one (ISO 15469:2004 = CIE S 011/E:2003).
 //!
 //! They define relative luminances only; a horizontal diffuse illuminance in lux scales them. If none is measured,
-//! [`daylight_availability`] estimates one from the sun's elevation. Both skies are white (D65, R = G = B).
+//! [`daylight_availability`] estimates one from the sun's elevation and the cover that the standard's name of the sky tells.
 
 use std::f64::consts::PI;
 
-use glam::DVec3;
+use super::grey_sky::Distribution;
 
-use super::colour::D65_WHITE;
-use super::preetham::{PerezSky, angle_between, perez};
-use super::quadrature::horizontal_irradiance;
-
-/// Sky types of the IES Lighting Handbook, "Daylight availability" (Gillette, Pierpoint & Treado 1984): horizontal diffuse
-/// illuminance by the sun's elevation.
+/// Sky types of the IES, "Recommended practice for the calculation of daylight availability" (1984).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SkyCover {
-    /// 800 + 15 500 √(sin el) lux.
+    /// 800 + 15 500 √(sin el) lux; the sun shines.
     Clear,
-    /// 300 + 21 000 sin el lux.
+    /// 300 + 45 000 sin el lux; the sun shines through gaps and thin clouds, see [`partly_cloudy_sun`].
+    PartlyCloudy,
+    /// 300 + 21 000 sin el lux; no sun.
     Overcast,
 }
 
@@ -26,97 +23,102 @@ pub fn daylight_availability(cover: SkyCover, elevation_deg: f64) -> f64 {
     let sine = elevation_deg.clamp(0.0, 90.0).to_radians().sin();
     match cover {
         SkyCover::Clear => 800.0 + 15_500.0 * sine.sqrt(),
+        SkyCover::PartlyCloudy => 300.0 + 45_000.0 * sine,
         SkyCover::Overcast => 300.0 + 21_000.0 * sine,
     }
 }
 
-/// CIE standard overcast sky (Moon & Spencer 1942): L = L_z (1 + 2 sin el)/3, independent of the sun.
+/// IES 1984: illuminance of the sun at normal incidence in a partly cloudy sky, lux: 127 500 exp(-0.80 m), m the air mass.
+pub fn partly_cloudy_sun(air_mass: f64) -> f64 {
+    127_500.0 * (-0.80 * air_mass).exp()
+}
+
+/// A standard sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Overcast {
-    /// Luminance of the zenith L_z, cd/m²; three times that of the horizon.
-    pub zenith_luminance: f64,
+pub struct StandardSky {
+    /// Relative luminances.
+    pub distribution: Distribution,
+    /// Level of the sky and of the sun.
+    pub cover: SkyCover,
+    /// Whether the sun gives light: not in overcast skies, and not in type 9, "with the obscured sun".
+    pub has_sun: bool,
 }
 
-impl Overcast {
-    /// The sky whose horizontal illuminance is `lux`: E = 7π/9 L_z.
-    pub fn new(lux: f64) -> Self {
-        Self {
-            zenith_luminance: 9.0 * lux / (7.0 * PI),
-        }
-    }
+/// ISO 15469:2004, table 1: a, b, c, d, e of the types 1..=15.
+const GENERAL: [[f64; 5]; 15] = [
+    [4.0, -0.70, 0.0, -1.0, 0.0],
+    [4.0, -0.70, 2.0, -1.5, 0.15],
+    [1.1, -0.8, 0.0, -1.0, 0.0],
+    [1.1, -0.8, 2.0, -1.5, 0.15],
+    [0.0, -1.0, 0.0, -1.0, 0.0],
+    [0.0, -1.0, 2.0, -1.5, 0.15],
+    [0.0, -1.0, 5.0, -2.5, 0.30],
+    [0.0, -1.0, 10.0, -3.0, 0.45],
+    [-1.0, -0.55, 2.0, -1.5, 0.15],
+    [-1.0, -0.55, 5.0, -2.5, 0.30],
+    [-1.0, -0.55, 10.0, -3.0, 0.45],
+    [-1.0, -0.32, 10.0, -3.0, 0.45],
+    [-1.0, -0.32, 16.0, -3.0, 0.30],
+    [-1.0, -0.15, 16.0, -3.0, 0.30],
+    [-1.0, -0.15, 24.0, -2.8, 0.15],
+];
 
-    /// Radiance in the unit direction `dir`, not below the horizon: linear BT.709 RGB, cd/m².
-    pub fn radiance(&self, dir: DVec3) -> DVec3 {
-        DVec3::splat(self.zenith_luminance * (1.0 + 2.0 * dir.y.max(0.0)) / 3.0)
-    }
-}
+/// The sky type whose name the standard gives as "CIE standard clear sky, low illuminance turbidity" (Kittler 1967).
+pub const CLEAR: u8 = 12;
 
-/// CIE standard clear sky (Kittler 1967; CIE S 011/E:2003 type 12 is the same function).
+/// The traditional overcast sky (Moon & Spencer 1942), the standard's type 16: L = L_z (1 + 2 sin el)/3.
+pub const OVERCAST: u8 = 16;
+
+/// The sky of a type, 1..=16; numbers beyond are clamped.
 ///
-/// L/L_z = f(γ) φ(θ) / (f(θ_s) φ(0)), φ = 1 - exp(-0.32 / cos θ), f = 0.91 + 10 exp(-3γ) + 0.45 cos² γ.
-/// Divided by 0.91 (exactly: 1 - 10 exp(-3π/2)), this is Perez' form, so the shader of [`super::preetham`] evaluates it as well.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CieClear {
-    sun_direction: DVec3,
-    perez: PerezSky,
-}
-
-impl CieClear {
-    /// The sky with the sun at `sun_direction` (unit vector, not below the horizon) whose horizontal illuminance is `lux`.
-    pub fn new(lux: f64, sun_direction: DVec3) -> Self {
-        let constant = 1.0 - 10.0 * (-1.5 * PI).exp();
-        let luminance = [-1.0, -0.32, 10.0 / constant, -3.0, 0.45 / constant];
-        let relative = |dir: DVec3| perez(&luminance, dir.y, angle_between(dir, sun_direction));
-        let scale = lux / horizontal_irradiance(|dir| DVec3::splat(relative(dir))).x;
-        let flat = [0.0; 5];
-        let [x, y] = D65_WHITE;
-        Self {
-            sun_direction,
-            perez: PerezSky {
-                coefficients: [luminance, flat, flat],
-                zenith_over_f: [scale, x, y],
-            },
+/// φ(Z) = 1 + a exp(b / cos Z), f(χ) = 1 + c (exp(d χ) - exp(d π/2)) + e cos² χ.
+pub fn standard_sky(number: u8) -> StandardSky {
+    let number = number.clamp(1, OVERCAST);
+    let (gradation, indicatrix) = match GENERAL.get(usize::from(number) - 1) {
+        Some(&[a, b, c, d, e]) => {
+            let constant = 1.0 - c * (d * PI / 2.0).exp();
+            ([a, b, 0.0], [constant, c, d, e])
         }
-    }
-
-    /// The coefficients for a shader; the chromaticity is constant (F = 1).
-    pub fn perez(&self) -> PerezSky {
-        self.perez
-    }
-
-    /// Radiance in the unit direction `dir`, not below the horizon: linear BT.709 RGB, cd/m².
-    pub fn radiance(&self, dir: DVec3) -> DVec3 {
-        let gamma = angle_between(dir, self.sun_direction);
-        DVec3::splat(self.perez.luminance_chromaticity(dir.y, gamma).0)
+        None => ([0.0, -1.0, 2.0], Distribution::UNIFORM.indicatrix),
+    };
+    let cover = match number {
+        1..=5 | OVERCAST => SkyCover::Overcast,
+        6..=10 => SkyCover::PartlyCloudy,
+        _ => SkyCover::Clear,
+    };
+    StandardSky {
+        distribution: Distribution {
+            gradation,
+            indicatrix,
+            // At lower cosines exp(b / cos Z) is 0 for every type.
+            least_cosine: 1e-4,
+        },
+        cover,
+        has_sun: cover != SkyCover::Overcast && number != 9,
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
+    use crate::daylight::grey_sky::GreySky;
+    use crate::daylight::preetham::angle_between;
     use crate::daylight::sun_position::direction;
 
     #[test]
     fn overcast_zenith_is_three_times_the_horizon() {
-        let sky = Overcast::new(10_000.0);
-        let ratio = sky.radiance(DVec3::Y).x / sky.radiance(DVec3::X).x;
-        assert!((ratio - 3.0).abs() < 1e-14);
-    }
-
-    #[test]
-    fn both_skies_give_the_illuminance_they_were_asked_for() {
-        let overcast = Overcast::new(12_345.0);
-        let e = horizontal_irradiance(|dir| overcast.radiance(dir)).x;
-        assert!((e / 12_345.0 - 1.0).abs() < 1e-12, "{e}");
-        let clear = CieClear::new(12_345.0, direction(77.0, 33.0));
-        let e = horizontal_irradiance(|dir| clear.radiance(dir)).x;
-        assert!((e / 12_345.0 - 1.0).abs() < 1e-12, "{e}");
+        let sky = GreySky::new(standard_sky(OVERCAST).distribution, DVec3::Y, 10_000.0);
+        let (up, level) = (sky.radiance(DVec3::Y).x, sky.radiance(DVec3::X).x);
+        assert!((up / level - 3.0).abs() < 1e-12, "{up} {level}");
+        assert!((up / (10_000.0 * 9.0 / (7.0 * PI)) - 1.0).abs() < 1e-12);
     }
 
     #[test]
     fn clear_sky_is_kittlers() {
         let sun = direction(0.0, 40.0);
-        let sky = CieClear::new(10_000.0, sun);
+        let sky = GreySky::new(standard_sky(CLEAR).distribution, sun, 10_000.0);
         let kittler = |dir: DVec3| {
             let f = |g: f64| {
                 1.0 - 10.0 * (-1.5 * PI).exp() + 10.0 * (-3.0 * g).exp() + 0.45 * g.cos().powi(2)
@@ -128,5 +130,19 @@ mod tests {
             let ratio = sky.radiance(dir).x / sky.radiance(DVec3::Y).x;
             assert!((ratio / kittler(dir) - 1.0).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn the_cover_tells_level_and_sun() {
+        let suns = (1..=16).filter(|n| standard_sky(*n).has_sun);
+        assert_eq!(suns.collect::<Vec<_>>(), [6, 7, 8, 10, 11, 12, 13, 14, 15]);
+        let lux = |cover| daylight_availability(cover, 30.0);
+        let [clear, partly, overcast] =
+            [SkyCover::Clear, SkyCover::PartlyCloudy, SkyCover::Overcast].map(lux);
+        assert!(
+            partly > clear && clear > overcast,
+            "{partly} {clear} {overcast}"
+        );
+        assert!((partly_cloudy_sun(1.0) - 57_289.0).abs() < 1.0);
     }
 }

@@ -3,11 +3,15 @@
 //! # Overview, in the order of the light
 //!
 //! 1. [`sun_position`]: the direction of the sun from a place and a moment, by SPA or by the lecture's formulas.
-//!    [`place`] and [`moment`] parse both; [`cities`] has places by name; [`sun_path`] has the lines of a sun-path diagram.
+//!    [`place`] and [`moment`] parse both; [`cities`] has places by name; [`sun_path`] has the lines of a sun-path diagram,
+//!    [`day_times`] the twilights of a day, [`moon`] the position and the light of the moon.
 //! 2. [`sunlight`]: the sun's spectrum times five transmittances of the air gives the luminance of its disc in cd/m² and its
 //!    illuminance in lux. [`spectrum`] integrates, [`colour`] turns XYZ into linear BT.709 RGB.
-//! 3. [`preetham`], [`hosek`], [`cie`]: the sky's radiance in a direction. [`atmosphere`]: the same by solving the scattering of light in the air.
+//! 3. [`preetham`], [`hosek`] and [`grey_sky`]: the sky's radiance in a direction. [`cie`] has the standard skies, [`perez`] the
+//!    sky of measured irradiances, both of them grey skies; [`clouds`] covers a clear one.
+//!    [`atmosphere`] solves the scattering of light in the air, from noon to night.
 //! 4. [`sky`]: sun, sky and the ground below the horizon as one [`Daylight`]; finite and not negative for any input.
+//!    [`conditions`] has the inputs and their ranges.
 //! 5. [`cube`]: cube maps in Vulkan's convention. [`irradiance`]: E(n) of a radiance, by four methods, with the points of
 //!    [`sampling`] in the bases of [`tangent_frame`]; [`quadrature`] is their reference, [`convergence`] compares them, and
 //!    [`sample_count`] has the samples of the device's map.
@@ -26,17 +30,23 @@
 pub mod atmosphere;
 pub mod cie;
 pub mod cities;
+pub mod clouds;
 pub mod colour;
+pub mod conditions;
 pub mod convergence;
 pub mod cube;
 mod data;
+pub mod day_times;
 
 pub mod exposure;
 pub mod false_colour;
 
+pub mod grey_sky;
 pub mod hosek;
 pub mod irradiance;
 pub mod moment;
+pub mod moon;
+pub mod perez;
 pub mod place;
 pub mod preetham;
 pub mod quadrature;

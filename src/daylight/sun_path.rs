@@ -264,7 +264,7 @@ fn turning(
 }
 
 /// `hour` o'clock on a date. Checks the year, so that adding days to the result cannot overflow.
-fn at_hour(
+pub(super) fn at_hour(
     date: NaiveDate,
     offset: FixedOffset,
     hour: u32,

@@ -164,7 +164,7 @@ pub fn spa(
 }
 
 /// Estimate of ΔT, terrestrial minus universal time, seconds, for the month of a date.
-fn delta_t_s(date: NaiveDate) -> Result<f64, SunPositionError> {
+pub(super) fn delta_t_s(date: NaiveDate) -> Result<f64, SunPositionError> {
     let year = date.year();
     if !YEARS.contains(&year) {
         return Err(SunPositionError::Year(year));
@@ -177,14 +177,15 @@ fn delta_t_s(date: NaiveDate) -> Result<f64, SunPositionError> {
 }
 
 /// A leap second as the following second: chrono represents it by nanoseconds beyond the previous second.
-fn without_leap(when: DateTime<FixedOffset>) -> DateTime<FixedOffset> {
+pub(super) fn without_leap(when: DateTime<FixedOffset>) -> DateTime<FixedOffset> {
     let leap = when.nanosecond() / 1_000_000_000;
     let before = when.with_nanosecond(when.nanosecond() % 1_000_000_000);
     let after = before.and_then(|w| w.checked_add_signed(Duration::seconds(i64::from(leap))));
     after.unwrap_or(when)
 }
 
-fn check(latitude: f64, longitude: f64) -> Result<Location, SunPositionError> {
+/// The place, if its coordinates are in range.
+pub(super) fn check(latitude: f64, longitude: f64) -> Result<Location, SunPositionError> {
     if !(-90.0..=90.0).contains(&latitude) {
         return Err(SunPositionError::Latitude(latitude));
     }
@@ -195,6 +196,18 @@ fn check(latitude: f64, longitude: f64) -> Result<Location, SunPositionError> {
         latitude,
         longitude,
     })
+}
+
+/// Spencer 1971: the sun's irradiance outside the air relative to that at its mean distance, 0.967..=1.035, on a day of the
+/// year (1..=366): the inverse square of the distance in astronomical units.
+pub fn distance_factor(day_of_year: u32) -> f64 {
+    let angle = 2.0 * PI * (f64::from(day_of_year) - 1.0) / 365.0;
+    let (twice, once) = (2.0 * angle, angle);
+    1.00011
+        + 0.034221 * once.cos()
+        + 0.00128 * once.sin()
+        + 0.000719 * twice.cos()
+        + 0.000077 * twice.sin()
 }
 
 /// Preetham et al. 1999, A.6 (the lecture's slide "Solar position"), azimuth corrected (see the module).

@@ -68,7 +68,7 @@ const SHARPEN: f32 = 3.0;
 impl Sample {
     /// The sample of frame number `index` of an average. Without a number, or if nothing is averaged: the centres of pixel and sun.
     pub fn of(settings: &FrameSettings, daylight: &Daylight, index: Option<u32>) -> Self {
-        let sun = daylight.sun_direction.as_vec3();
+        let sun = daylight.direct_light().direction.as_vec3();
         let averages = settings.takes_mean() || settings.converges();
         let Some(index) = index.filter(|_| averages) else {
             return Self::central(sun);

@@ -14,7 +14,7 @@ use crate::passes::bounces::tree::Tree;
 use crate::passes::dome::specular::Mirrors;
 use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{
-    Ambient, Lighting, LightingSettings, Precision, Shadows, Show,
+    Ambient, EmissionSource, Lighting, LightingSettings, Precision, Shadows, Show,
 };
 use crate::passes::occlusion::ssao::SsaoSettings;
 use crate::passes::picture::tone_map::{Scale, ToneMap, ToneSettings};
@@ -72,6 +72,7 @@ impl Default for FrameSettings {
                 specular_scale: 1.0,
                 limb_darkening: 0.0,
                 has_albedo: true,
+                emission: EmissionSource::None,
                 occlusion_downscale: ssao.pixels_per_texel(),
                 fresnel: false,
                 shadows: Shadows::default(),
@@ -184,7 +185,7 @@ impl FrameSettings {
         ToneMap::new(context, self.size.to_array(), self.tone)
     }
 
-    /// Adjusts the settings to a scene: no specular lookups without ρ_s, no albedo image without textures, cascades for large scenes.
+    /// Adjusts the settings to a scene: no specular lookups without ρ_s, no albedo image without textures, no emission without L_e, cascades for large scenes.
     pub(super) fn for_scene(mut self, context: &Context, geometry: &Geometry) -> Self {
         let shadows = &mut self.lighting.shadows;
         if shadows.cascades == 0 {
@@ -195,6 +196,7 @@ impl FrameSettings {
             self.lighting.specular_scale = 0.0;
         }
         self.lighting.has_albedo = geometry.has_albedo();
+        self.lighting.emission = geometry.emission_source();
         self
     }
 }

@@ -156,7 +156,8 @@ choices! {
         Beauty = "beauty": "The whole picture, cd/m²",
         Sun = "sun": "ρ_d/π (n·l) V E_sun, cd/m²",
         Sky = "sky": "ρ_d/π A E_sky(n), the light of the visible sky, cd/m²",
-        Bounces = "bounces": "ρ_d/π E_bounces, the light that other surfaces reflect, cd/m²",
+        Bounces = "bounces": "ρ_d/π E_bounces, the light of other surfaces, cd/m²",
+        Emission = "emission": "L_e, the light that surfaces emit, cd/m²",
         SunSpecular = "sun-specular": "ρ_s (r·l)^p V E_sun, cd/m²",
         SkySpecular = "sky-specular": "ρ_s L_sky(r), cd/m²",
         Background = "background": "Sky, ground and the sun's disc where no surface is, cd/m²",
@@ -171,9 +172,26 @@ choices! {
     SkyModel {
         Preetham = "preetham": "Clear sky of Preetham, Shirley & Smits 1999 (the lecture's)",
         Hosek = "hosek": "Clear sky of Hošek & Wilkie 2012",
-        Overcast = "overcast": "CIE standard overcast sky; no sun",
-        CieClear = "cie-clear": "CIE standard clear sky, white",
         Atmosphere = "atmosphere": "Clear sky of all orders of scattering in air, aerosol and ozone on the sphere, from noon to night: --aod, --ozone, --altitude ..",
+        Overcast = "overcast": "CIE standard overcast sky; no sun (cie-16)",
+        CieClear = "cie-clear": "CIE standard clear sky, white (cie-12)",
+        Perez = "perez": "Sky of measured irradiances, Perez et al. 1993, white: --dni and --dhi",
+        Cie1 = "cie-1": "CIE general sky (ISO 15469): overcast, steep gradation; this and the following white",
+        Cie2 = "cie-2": "Overcast, steep gradation, slightly brighter toward the sun",
+        Cie3 = "cie-3": "Overcast, moderate gradation",
+        Cie4 = "cie-4": "Overcast, moderate gradation, slightly brighter toward the sun",
+        Cie5 = "cie-5": "Uniform luminance",
+        Cie6 = "cie-6": "Partly cloudy, slightly brighter toward the sun",
+        Cie7 = "cie-7": "Partly cloudy, brighter around the sun",
+        Cie8 = "cie-8": "Partly cloudy, distinct corona of the sun",
+        Cie9 = "cie-9": "Partly cloudy with gradation, the sun obscured",
+        Cie10 = "cie-10": "Partly cloudy with gradation, brighter around the sun",
+        Cie11 = "cie-11": "White-blue, distinct corona of the sun",
+        Cie12 = "cie-12": "Clear, little turbidity",
+        Cie13 = "cie-13": "Clear, polluted air",
+        Cie14 = "cie-14": "Cloudless and turbid, broad corona of the sun",
+        Cie15 = "cie-15": "White-blue and turbid, broad corona of the sun",
+        Cie16 = "cie-16": "Traditional overcast; no sun",
     }
     SunPositionMethod {
         Spa = "spa": "NREL's Solar Position Algorithm (Reda & Andreas 2004): 0.0003°",
@@ -212,6 +230,6 @@ mod tests {
         check::<ToneCurve>();
         check::<IrradianceMethod>();
         assert_eq!(name(Visibility::Progressive), "dome");
-        assert_eq!(Show::VALUES.len(), 14);
+        assert_eq!(Show::VALUES.len(), 15);
     }
 }

@@ -4,9 +4,11 @@ use clap::parser::ValueSource;
 use glam::Vec3;
 
 use super::{
-    Ambient, OptionValues, Options, OptionsError, Preset, Reflections, Visibility, all_tables,
-    long, name, tables,
+    Ambient, OptionValues, Options, OptionsError, Preset, Reflections, SkyModel, Visibility,
+    all_tables, long, name, tables,
 };
+use crate::daylight::atmosphere::air::Air;
+use crate::daylight::sky::Conditions;
 use crate::scene::{
     Bounds, Camera, DEFAULT_FOV_DEG, LoadOptions, Loaded, NamedOptions, SceneError,
 };
@@ -93,8 +95,20 @@ impl Options {
         if asks_for_screen && is_default("ambient") {
             options.ambient = Ambient::Ssao;
         }
+        options.complete_air();
         options.check()?;
         Ok(options)
+    }
+
+    /// Sets the default of the air's one number if it has none, in the word that the sky is used with.
+    fn complete_air(&mut self) {
+        if self.turbidity.is_none() && self.aod.is_none() && self.visual_range.is_none() {
+            if self.sky == SkyModel::Atmosphere {
+                self.aod = Some(Air::default().aod);
+            } else {
+                self.turbidity = Some(Conditions::default().turbidity);
+            }
+        }
     }
 
     /// Fails if the options contradict each other.
@@ -103,6 +117,7 @@ impl Options {
             let what = "--eye and --target are the same point; move one";
             return Err(OptionsError(what.to_owned()));
         }
+        self.check_measured()?;
         // Occlusion in reflections comes from the dome's shadow maps.
         if self.reflections == Reflections::Hidden && self.visibility == Visibility::Ssao {
             let what =
@@ -116,6 +131,23 @@ impl Options {
             ))),
             _ => Ok(()),
         }
+    }
+
+    /// Fails if the measured sky lacks its irradiances, or if there are none like them.
+    fn check_measured(&self) -> Result<(), OptionsError> {
+        if self.sky != SkyModel::Perez {
+            return Ok(());
+        }
+        let what = match (self.dni, self.dhi) {
+            (Some(dni), Some(dhi)) if dni > 0.0 && dhi == 0.0 => {
+                "--dni above 0 with --dhi 0: no sky has the one without the other; give both as measured"
+            }
+            (Some(_), Some(_)) => return Ok(()),
+            _ => {
+                "--sky perez needs --dni and --dhi, the measured irradiances in W/m², each 0 to 1500"
+            }
+        };
+        Err(OptionsError(what.to_owned()))
     }
 
     /// Limits and settings for loading a scene, without a cache.

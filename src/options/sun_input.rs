@@ -1,6 +1,6 @@
 //! The source of the sun's position: a place and a moment, the lecture's inputs, or a direction.
 
-use chrono::{DateTime, FixedOffset};
+use chrono::{DateTime, Datelike, FixedOffset};
 use clap::error::ErrorKind;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
@@ -64,6 +64,15 @@ options! {
 }
 
 impl SunInput {
+    /// Day of the year, 1..=366, at the place's own clock; `None` for a direction.
+    pub fn day_of_year(&self) -> Option<u32> {
+        match *self {
+            Self::Place { when, .. } => Some(when.ordinal()),
+            Self::Solar { day, .. } => Some(day),
+            Self::Direction { .. } => None,
+        }
+    }
+
     /// The sun input given by the options; an error says what is wrong with it.
     fn of(o: &SunArgs) -> Result<Self, String> {
         let place = o.place;

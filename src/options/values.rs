@@ -9,6 +9,7 @@ use crate::daylight::atmosphere::air::{
 };
 use crate::daylight::false_colour::Range;
 pub use crate::daylight::moment::When;
+use crate::daylight::perez::{DEW_POINTS, MOST_IRRADIANCE_W};
 pub use crate::daylight::place::Place;
 use crate::frame::FrameSettings;
 
@@ -280,6 +281,9 @@ ranged! {
     ozone: "ozone", "Dobson units", OZONE_RANGE_DU;
     altitude: "altitude", "metres", ALTITUDE_RANGE_M;
     sky_illuminance: "illuminance of the sky", "lux", 0.0..=1e6;
+    cloud_cover: "cloud cover", "", 0.0..=1.0;
+    irradiance_w: "irradiance", "W/m²", 0.0..=MOST_IRRADIANCE_W;
+    dew_point: "dew point", "°C", DEW_POINTS.0..=DEW_POINTS.1;
     ground_albedo: "ground albedo", "", 0.0..=1.0;
     fov: "field of view", "degrees", 1.0..=170.0;
     ev100: "exposure value", "", -20.0..=40.0;
@@ -291,6 +295,7 @@ ranged! {
     irradiance_error: "error", "percent", 0.0..=100.0;
     ao_radius: "radius", "metres", 0.0..=1000.0;
     specular: "specular scale", "", 0.0..=100.0;
+    emission_scale: "emission scale", "", 0.0..=1e9;
     crease: "crease angle", "degrees", 0.0..=180.0;
 }
 

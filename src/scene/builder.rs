@@ -1,11 +1,11 @@
 //! A scene under construction.
 
-use std::collections::HashMap;
-use std::path::Path;
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
 
 use crate::scene::error::{SceneError, printable};
 use crate::scene::files::Files;
-use crate::scene::material::{Material, MaterialKey};
+use crate::scene::material::{MAX_EMISSION, Material, MaterialKey, bounded_emission};
 use crate::scene::progress::Reporter;
 use crate::scene::texture::picture::{TextureKey, TextureStore};
 use crate::scene::{LoadOptions, Scene};
@@ -24,6 +24,8 @@ pub(super) struct Builder<'p> {
     /// Number of threads to use, at least 1.
     pub threads: usize,
     materials: HashMap<MaterialKey, u32>,
+    /// Files with emission out of range.
+    bad_emission: HashSet<PathBuf>,
     allow_outside: bool,
     max_triangles: usize,
 }
@@ -38,6 +40,7 @@ impl<'p> Builder<'p> {
             progress,
             threads: threads.map_or(1, usize::from),
             materials: HashMap::new(),
+            bad_emission: HashSet::new(),
             allow_outside: options.allow_outside,
             max_triangles: options.max_triangles,
         }
@@ -132,6 +135,18 @@ impl<'p> Builder<'p> {
                 None
             }
         }
+    }
+
+    /// L_e of a material within its range, cd/m²; the first one of a file that is not is told of.
+    pub fn emission(&mut self, owner: &Path, material: &str, rgb: [f32; 3]) -> [f32; 3] {
+        let bounded = bounded_emission(rgb);
+        if bounded != rgb && self.bad_emission.insert(owner.to_owned()) {
+            let what = format!(
+                "emission of \"{material}\" is outside 0 to {MAX_EMISSION:e} cd/m²; the nearest is used, here and in other materials"
+            );
+            self.warn(owner, &what);
+        }
+        bounded
     }
 
     /// Mean red, green and blue of an image, 0..1 as encoded; 1 (with a warning) if that fails.

@@ -1,8 +1,8 @@
-//! Materials with ρ_d, ρ_s and p of the lecture, and the conversion from metallic-roughness.
+//! Materials with ρ_d, ρ_s and p of the lecture, L_e, and the conversion from metallic-roughness.
 
 use serde::{Deserialize, Serialize};
 
-/// Reflectance of a surface: Lambertian plus a Phong lobe. All surfaces are two-sided.
+/// Reflectance of a surface, Lambertian plus a Phong lobe, and the light that it emits. All surfaces are two-sided.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// Name in the source file.
@@ -25,6 +25,25 @@ pub struct Material {
     pub normal_texture: Option<usize>,
     /// Factor on the slopes of the normal map.
     pub normal_scale: f32,
+    /// Emitted radiance L_e, the same in all directions and on both sides (MTL `Ke`, `emissiveFactor` times strength of glTF), cd/m²,
+    /// linear RGB, 0..[`MAX_EMISSION`]; multiplied by `emissive_texture`. A unit of a file is one cd/m².
+    pub emission: [f32; 3],
+    /// Index of the texture of L_e in [`Scene::textures`](crate::scene::Scene::textures).
+    pub emissive_texture: Option<usize>,
+}
+
+/// Largest emitted radiance, cd/m²: the largest number of the device's colours of 32 bits, and a twentieth of the sun.
+pub const MAX_EMISSION: f32 = 65_408e3;
+
+/// An emitted radiance within its range; black if it is no number.
+pub(super) fn bounded_emission(rgb: [f32; 3]) -> [f32; 3] {
+    rgb.map(|v| {
+        if v.is_nan() {
+            0.0
+        } else {
+            v.clamp(0.0, MAX_EMISSION)
+        }
+    })
 }
 
 /// Default material of models without materials: Lambertian, reflectance 0.5.
@@ -39,6 +58,8 @@ pub(super) const MTL_DEFAULT: Material = Material {
     specular_texture: None,
     normal_texture: None,
     normal_scale: 1.0,
+    emission: [0.0; 3],
+    emissive_texture: None,
 };
 
 impl Default for Material {
@@ -51,9 +72,9 @@ impl Default for Material {
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(super) struct MaterialKey {
     name: String,
-    /// ρ_d, ρ_s, p, opacity, cut-off (negative if none), normal map factor.
-    values: [u32; 10],
-    textures: [Option<usize>; 3],
+    /// ρ_d, ρ_s, p, opacity, cut-off (negative if none), normal map factor, L_e.
+    values: [u32; 13],
+    textures: [Option<usize>; 4],
 }
 
 impl Material {
@@ -71,6 +92,8 @@ impl Material {
             specular_texture,
             normal_texture,
             normal_scale,
+            emission: [er, eg, eb],
+            emissive_texture,
         } = self;
         let cutoff = alpha_cutoff.unwrap_or(-1.0);
         let values = [
@@ -84,12 +107,25 @@ impl Material {
             *dissolve,
             cutoff,
             *normal_scale,
+            *er,
+            *eg,
+            *eb,
         ];
         MaterialKey {
             name: name.clone(),
             values: values.map(f32::to_bits),
-            textures: [*diffuse_texture, *specular_texture, *normal_texture],
+            textures: [
+                *diffuse_texture,
+                *specular_texture,
+                *normal_texture,
+                *emissive_texture,
+            ],
         }
+    }
+
+    /// Whether it emits light.
+    pub fn is_emissive(&self) -> bool {
+        self.emission != [0.0; 3]
     }
 
     /// Whether it is opaque enough to be drawn.

@@ -10,6 +10,7 @@ mod bvh;
 mod cache;
 mod camera;
 mod culling;
+mod emitters;
 mod error;
 mod files;
 mod gltf;
@@ -34,17 +35,22 @@ pub use camera::{Camera, DEFAULT_FOV_DEG};
 pub use culling::bodies::{Bodies, Body};
 pub use culling::clusters::{Cluster, Clusters, Solid};
 pub use culling::layout::Layout;
+pub use emitters::{Emitter, Emitters};
 pub use error::SceneError;
 pub(crate) use error::shown;
 pub use hills::hills;
 pub use load::{LoadOptions, Loaded, load, load_with_progress};
-pub use material::Material;
+pub use material::{MAX_EMISSION, Material};
 pub use progress::Progress;
 pub use reflectance::{Mean, Reflectances};
 pub use scene_file::{NamedCamera, NamedMoment, NamedOptions};
 pub use texture::{Encoding, Texture};
 
 use load::append_model;
+use material::bounded_emission;
+
+/// Emission up to which a model may mean a share of white instead of a luminance, cd/m².
+const UNITLESS: f32 = 1.0;
 
 /// A scene: one arena of vertices, parts that draw ranges of it, materials and textures.
 #[derive(Debug, Clone, PartialEq)]
@@ -179,6 +185,36 @@ impl Scene {
         material_of
     }
 
+    /// Whether any surface emits light.
+    pub fn is_emissive(&self) -> bool {
+        self.materials.iter().any(Material::is_emissive)
+    }
+
+    /// Multiplies the light that surfaces emit. What becomes brighter than [`MAX_EMISSION`] is cut, with a warning. Without a factor,
+    /// light that nobody would see by day is told of: its numbers may have no unit.
+    pub fn scale_emission(&mut self, factor: f32) {
+        let mut is_cut = false;
+        for material in &mut self.materials {
+            let scaled = material.emission.map(|v| v * factor);
+            material.emission = bounded_emission(scaled);
+            is_cut |= material.emission != scaled;
+        }
+        let emitted = self.materials.iter().flat_map(|m| m.emission);
+        let most = emitted.fold(0.0, f32::max);
+        if factor == 1.0 && most > 0.0 && most <= UNITLESS {
+            let what = format!(
+                "surfaces emit at most {most} cd/m², too little to see by day; if that is no luminance, give --emission-scale, for instance 500"
+            );
+            self.warnings.push(what);
+        }
+        if is_cut {
+            let what = format!(
+                "emission above {MAX_EMISSION:e} cd/m² is cut; give a smaller --emission-scale"
+            );
+            self.warnings.push(what);
+        }
+    }
+
     /// Number of triangles.
     pub fn triangles(&self) -> usize {
         self.indices.len() / 3
@@ -217,5 +253,32 @@ mod tests {
         assert_eq!(scene(&[house, sail]).casting(), [true, true]);
         assert_eq!(scene(&[sea]).casting(), [true], "the only part");
         assert_eq!(scene(&[house, sea]).casters().max, Vec3::new(5.0, 6.0, 5.0));
+    }
+
+    #[test]
+    fn emission_is_scaled_and_what_is_odd_is_told() {
+        let scaled = |emission: [f32; 3], factor: f32| {
+            let mut scene = Scene {
+                materials: vec![Material {
+                    emission,
+                    ..Material::default()
+                }],
+                ..Scene::default()
+            };
+            scene.scale_emission(factor);
+            (scene.materials[0].emission, scene.warnings)
+        };
+        assert_eq!(scaled([0.0; 3], 1.0), ([0.0; 3], vec![]));
+        assert_eq!(scaled([2.0, 1.0, 0.0], 500.0).0, [1000.0, 500.0, 0.0]);
+        assert_eq!(scaled([2.0, 1.0, 0.0], 1.0).1, [""; 0]);
+        assert_eq!(scaled([2.0, 1.0, 0.0], 0.0), ([0.0; 3], vec![]));
+        let (bright, told) = scaled([1e4, 1.0, 0.0], 1e6);
+        assert_eq!(bright, [MAX_EMISSION, 1e6, 0.0]);
+        assert!(told[0].contains("is cut") && told.len() == 1, "{told:?}");
+        let told = scaled([0.0, 1.0, 0.2], 1.0).1;
+        assert!(
+            told[0].contains("--emission-scale") && told.len() == 1,
+            "{told:?}"
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! Mean reflectance and opacity of triangles, for rays that do not look up textures.
+//! Mean reflectance, emission and opacity of triangles, for rays that do not look up textures.
 
 use glam::Vec2;
 
@@ -12,6 +12,8 @@ const LOOKUPS: u32 = 8;
 pub struct Mean {
     /// Diffuse reflectance ρ_d of what is there, linear RGB, 0..1.
     pub diffuse: [f32; 3],
+    /// Emitted radiance L_e of what is there, linear RGB, cd/m².
+    pub emission: [f32; 3],
     /// Fraction of the area that is there: below 1 for cut-outs.
     pub opacity: f32,
 }
@@ -21,7 +23,7 @@ pub struct Reflectances<'a> {
     scene: &'a Scene,
     /// Material of each triangle.
     material_of: Vec<u32>,
-    /// Mip levels of each texture that maps ρ_d, the finest first.
+    /// Mip levels of each texture that maps ρ_d or L_e, the finest first.
     levels: Vec<Vec<Texture>>,
 }
 
@@ -30,7 +32,7 @@ impl<'a> Reflectances<'a> {
     pub fn new(scene: &'a Scene) -> Self {
         let is_used = |number: usize| {
             let mut materials = scene.materials.iter();
-            materials.any(|m| m.diffuse_texture == Some(number))
+            materials.any(|m| [m.diffuse_texture, m.emissive_texture].contains(&Some(number)))
         };
         let levels = scene.textures.iter().enumerate().map(|(number, texture)| {
             if !is_used(number) {
@@ -51,20 +53,20 @@ impl<'a> Reflectances<'a> {
     pub fn of(&self, triangle: u32) -> Mean {
         let material = &self.scene.materials[self.material_of[triangle as usize] as usize];
         let corners = [0, 1, 2].map(|i| self.scene.indices[3 * triangle as usize + i] as usize);
-        let is_plain = material.diffuse_texture.is_none() && self.scene.colours.is_empty();
-        if is_plain {
+        let maps = [material.diffuse_texture, material.emissive_texture];
+        if maps == [None; 2] && self.scene.colours.is_empty() {
             return Mean {
                 diffuse: material.diffuse,
+                emission: material.emission,
                 opacity: 1.0,
             };
         }
-        let texture = material
-            .diffuse_texture
-            .map(|number| self.level(number, material, corners));
-        let mut sum = [0.0; 3];
+        let maps = maps.map(|map| map.map(|number| self.level(number, material, corners)));
+        let (mut sum, mut emitted) = ([0.0; 3], [0.0; 3]);
         let (mut solid, mut count) = (0.0, 0.0);
         for weights in barycentric_points() {
-            let map = texture.map_or([1.0; 4], |t| nearest(t, self.uv(corners, weights)));
+            let uv = self.uv(corners, weights);
+            let [map, glow] = maps.map(|map| map.map_or([1.0; 4], |t| nearest(t, uv)));
             let colour = self.colour(corners, weights);
             let alpha = material.dissolve * map[3] * colour[3];
             count += 1.0;
@@ -74,10 +76,13 @@ impl<'a> Reflectances<'a> {
             solid += 1.0;
             for i in 0..3 {
                 sum[i] += material.diffuse[i] * map[i] * colour[i];
+                emitted[i] += material.emission[i] * glow[i];
             }
         }
+        let mean = |sum: f32| if solid > 0.0 { sum / solid } else { 0.0 };
         Mean {
-            diffuse: sum.map(|s| if solid > 0.0 { s / solid } else { 0.0 }),
+            diffuse: sum.map(mean),
+            emission: emitted.map(mean),
             opacity: solid / count,
         }
     }
@@ -135,6 +140,49 @@ fn nearest(texture: &Texture, uv: Vec2) -> [f32; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Bounds, Encoding, Part};
+
+    /// A triangle over the lower left half of a texture that is bright (sRGB 188, 0.503 in linear light) in its left half.
+    #[test]
+    fn the_mean_emission_is_that_of_the_part_of_the_texture_on_the_triangle() {
+        let texels = (0..32u32 * 32).map(|i| if i % 32 < 16 { 188 } else { 0 });
+        let scene = Scene {
+            positions: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            normals: vec![[0.0, 0.0, 1.0]; 3],
+            texcoords: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+            indices: vec![0, 1, 2],
+            parts: vec![Part {
+                first_index: 0,
+                index_count: 3,
+                material: 0,
+                has_colours: false,
+                bounds: Bounds::EMPTY,
+            }],
+            materials: vec![Material {
+                emission: [100.0, 50.0, 0.0],
+                emissive_texture: Some(0),
+                ..Material::default()
+            }],
+            textures: vec![Texture {
+                name: "left".into(),
+                width: 32,
+                height: 32,
+                rgba8: texels.flat_map(|v: u8| [v, v, v, 255]).collect(),
+                encoding: Encoding::Srgb,
+            }],
+            ..Scene::default()
+        };
+        let mean = Reflectances::new(&scene).of(0);
+        // Three quarters of the triangle are in the left half.
+        let expected = 0.75 * 0.5029 * 100.0;
+        println!("{mean:?}, expected {expected}");
+        assert!((mean.emission[0] / expected - 1.0).abs() < 0.01);
+        assert!((mean.emission[1] / mean.emission[0] - 0.5).abs() < 1e-6);
+        assert_eq!(
+            (mean.emission[2], mean.diffuse, mean.opacity),
+            (0.0, [0.5; 3], 1.0)
+        );
+    }
 
     #[test]
     fn the_points_are_spread_evenly() {

@@ -1,4 +1,5 @@
-//! Illuminance at points of a scene, with its standard error: sun, sky and every diffuse bounce, by path tracing on the CPU.
+//! Illuminance at points of a scene, with its standard error: sun, sky, surfaces that emit and every diffuse bounce, by path tracing on
+//! the CPU.
 //!
 //! No device is needed. [`read_grid`] reads the points, [`measure`] lights them.
 
@@ -33,7 +34,7 @@ pub struct Reading {
     pub sky_direct: f64,
     /// From the sun, unreflected.
     pub sun_direct: f64,
-    /// Reflected once or more by surfaces of the scene, or by the ground below the horizon.
+    /// From surfaces: reflected once or more by those of the scene or by the ground below the horizon, or emitted by them.
     pub reflected: f64,
     /// Standard error of the sum.
     pub standard_error: f64,

@@ -1,7 +1,7 @@
-//! One path: from a sensor over diffuse surfaces, with the light of sun and sky at every point of it.
+//! One path: from a sensor over diffuse surfaces, with the light of sun, sky and surfaces that emit at every point of it.
 //!
-//! E(x) = E_sun(x) + E_sky(x) + Σ over bounces of the product of reflectances times E_sun + E_sky at each point (Kajiya 1986, "The
-//! rendering equation", for Lambertian surfaces: with directions of density cos θ/π the factor of a bounce is ρ_d).
+//! E(x) = E_sun(x) + E_sky(x) + E_emitters(x) + Σ over bounces of the product of reflectances times the same sum at each point
+//! (Kajiya 1986, "The rendering equation", for Lambertian surfaces: with directions of density cos θ/π the factor of a bounce is ρ_d).
 
 use std::f64::consts::PI;
 
@@ -47,23 +47,25 @@ struct Numbers {
     index: u32,
     seed: u32,
     dimension: u32,
+    /// Pairs of numbers that come from scrambled sequences.
+    spread: u32,
     state: u32,
 }
 
-/// Pairs of numbers that come from scrambled sequences.
-const SPREAD_PAIRS: u32 = 6;
+/// Bounces whose numbers come from scrambled sequences.
+const SPREAD_BOUNCES: u32 = 2;
 
 impl Numbers {
     fn pair(&mut self) -> DVec2 {
         self.dimension += 1;
-        if self.dimension <= SPREAD_PAIRS {
+        if self.dimension <= self.spread {
             return shuffled_sobol(self.index, tea::<4>(self.seed, self.dimension));
         }
         DVec2::new(rnd(&mut self.state), rnd(&mut self.state))
     }
 }
 
-/// Irradiance estimated by path `index` of a replicate, linear RGB, lux: from the sky, from the sun, reflected.
+/// Irradiance estimated by path `index` of a replicate, linear RGB, lux: from the sky, from the sun, from surfaces.
 pub(super) fn trace(
     sensor: &Sensor,
     scene: &TracedScene,
@@ -71,39 +73,41 @@ pub(super) fn trace(
     index: u32,
     seed: u32,
 ) -> [DVec3; 3] {
+    let has_emitters = scene.is_emissive();
     let mut numbers = Numbers {
         index,
         seed,
         dimension: 0,
+        spread: SPREAD_BOUNCES * if has_emitters { 4 } else { 3 },
         state: tea::<8>(index, seed),
     };
     let mut point = Point {
         position: lifted(sensor.position, sensor.normal),
         normal: sensor.normal,
         reflectance: DVec3::ONE,
+        emission: DVec3::ZERO,
+        emitter_density: 0.0,
     };
     let [mut sky, mut sun, mut reflected] = [DVec3::ZERO; 3];
     let mut throughput = DVec3::ONE;
     for bounce in 0..MAX_BOUNCES {
         let from_sun = sun_at(&point, scene, lights, numbers.pair());
         let mut from_sky = sky_at(&point, scene, lights, numbers.pair());
-        let mut from_ground = DVec3::ZERO;
+        let mut from_surfaces = if has_emitters {
+            emitter_at(&point, scene, numbers.pair())
+        } else {
+            DVec3::ZERO
+        };
         let local = cosine_hemisphere(numbers.pair());
         let direction = tangent_frame::to_world(local, point.normal.as_dvec3());
         let next = scene.first(point.position, direction.as_vec3());
-        if next.is_none() {
-            if direction.y < 0.0 {
-                from_ground = PI * lights.daylight.ground_luminance;
-            } else {
-                let density = local.z / PI;
-                let weight = density / (density + lights.sampler.density(direction));
-                from_sky += weight * PI * lights.daylight.sky_radiance(direction);
-            }
-        }
+        let [seen_sky, seen_surface] = seen(next.as_ref(), direction, local.z / PI, lights);
+        from_sky += seen_sky;
+        from_surfaces += seen_surface;
         if bounce == 0 {
-            (sky, sun, reflected) = (from_sky, from_sun, from_ground);
+            (sky, sun, reflected) = (from_sky, from_sun, from_surfaces);
         } else {
-            reflected += throughput * (from_sky + from_sun + from_ground);
+            reflected += throughput * (from_sky + from_sun + from_surfaces);
         }
         let Some(next) = next else { break };
         throughput *= next.reflectance;
@@ -119,15 +123,30 @@ pub(super) fn trace(
     [sky, sun, reflected]
 }
 
-/// Irradiance of the sun at a point, sampled on its disc, linear RGB, lux.
+/// Irradiance of what a ray in a direction of this density meets, linear RGB, lux: of the sky, of a surface that emits or the ground.
+fn seen(next: Option<&Point>, direction: DVec3, density: f64, lights: &Lights) -> [DVec3; 2] {
+    if let Some(next) = next {
+        let weight = density / (density + next.emitter_density);
+        return [DVec3::ZERO, PI * weight * next.emission];
+    }
+    if direction.y < 0.0 {
+        return [DVec3::ZERO, PI * lights.daylight.ground_luminance];
+    }
+    let weight = density / (density + lights.sampler.density(direction));
+    let sky = weight * PI * lights.daylight.sky_radiance(direction);
+    [sky, DVec3::ZERO]
+}
+
+/// Irradiance of the sun, or of the moon at night, at a point, sampled on its disc, linear RGB, lux.
 fn sun_at(point: &Point, scene: &TracedScene, lights: &Lights, xi: DVec2) -> DVec3 {
-    let toward = on_disc(lights.daylight.sun_direction.as_vec3(), xi).as_dvec3();
+    let direct = lights.daylight.direct_light();
+    let toward = on_disc(direct.direction.as_vec3(), xi).as_dvec3();
     let cosine = point.normal.as_dvec3().dot(toward);
-    let is_dark = lights.daylight.sun_illuminance == DVec3::ZERO || toward.y <= 0.0;
+    let is_dark = direct.illuminance == DVec3::ZERO || toward.y <= 0.0;
     if cosine <= 0.0 || is_dark || !scene.is_open(point.position, toward.as_vec3()) {
         return DVec3::ZERO;
     }
-    lights.daylight.sun_illuminance * cosine
+    direct.illuminance * cosine
 }
 
 /// Irradiance of the sky at a point, linear RGB, lux: a direction sampled by luminance, weighted against cosine-distributed ones
@@ -141,4 +160,16 @@ fn sky_at(point: &Point, scene: &TracedScene, lights: &Lights, xi: DVec2) -> DVe
     let density = lights.sampler.density(light.direction);
     let weight = density / (density + cosine / PI);
     light.illuminance * (cosine * weight)
+}
+
+/// Irradiance of the emitters at a point, linear RGB, lux: a point sampled by power, weighted against cosine-distributed directions.
+fn emitter_at(point: &Point, scene: &TracedScene, xi: DVec2) -> DVec3 {
+    let Some(emitted) = scene.emitter(point.position, xi) else {
+        return DVec3::ZERO;
+    };
+    let cosine = point.normal.as_dvec3().dot(emitted.toward);
+    if cosine <= 0.0 || emitted.density <= 0.0 {
+        return DVec3::ZERO;
+    }
+    emitted.radiance * (cosine / (emitted.density + cosine / PI))
 }

@@ -1,10 +1,10 @@
-//! The surfaces of a scene as paths see them: ray queries, diffuse reflectance, cut-outs.
+//! The surfaces of a scene as paths see them: ray queries, diffuse reflectance, emission, cut-outs.
 
 use std::borrow::Cow;
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
-use crate::scene::{Bvh, Encoding, Hit, Material, Ray, Scene, Texture};
+use crate::scene::{Bvh, Emitters, Encoding, Hit, Material, Ray, Reflectances, Scene, Texture};
 
 /// A scene as paths see it.
 pub struct TracedScene<'a> {
@@ -14,6 +14,20 @@ pub struct TracedScene<'a> {
     material_of: Vec<u32>,
     /// Whether any surface has holes.
     has_cut_outs: bool,
+    emitters: Emitters,
+    /// Density of sampled points on each triangle, per m²; empty if nothing emits.
+    emitter_densities: Vec<f64>,
+}
+
+/// Light that a surface emits toward a point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Emitted {
+    /// Radiance L_e, linear RGB, cd/m².
+    pub radiance: DVec3,
+    /// Unit vector from the receiver.
+    pub toward: DVec3,
+    /// Density of that direction by [`TracedScene::emitter`], per steradian.
+    pub density: f64,
 }
 
 /// A point of a surface.
@@ -25,6 +39,10 @@ pub(super) struct Point {
     pub normal: Vec3,
     /// Diffuse reflectance ρ_d, linear RGB, 0..1.
     pub reflectance: DVec3,
+    /// Radiance L_e, linear RGB, cd/m².
+    pub emission: DVec3,
+    /// Density, by [`TracedScene::emitter`], of the direction of the ray that found it, per steradian.
+    pub emitter_density: f64,
 }
 
 /// Offset of ray origins from their surface, relative to the largest coordinate: covers the rounding of `f32`.
@@ -33,7 +51,10 @@ const OFFSET: f32 = 3e-5;
 impl<'a> TracedScene<'a> {
     /// Builds the hierarchy, unless the scene has one.
     pub fn new(scene: &'a Scene) -> Self {
+        let emitters = emitters(scene);
         Self {
+            emitter_densities: densities(scene, &emitters),
+            emitters,
             bvh: scene.hierarchy(),
             material_of: scene.triangle_materials(),
             has_cut_outs: scene.materials.iter().any(|m| m.alpha_cutoff.is_some()),
@@ -53,11 +74,70 @@ impl<'a> TracedScene<'a> {
             normal
         };
         let position = origin + hit.distance * direction;
+        let cosine = -toward.dot(direction);
         Some(Point {
             position: lifted(position, toward),
             normal: toward,
             reflectance: self.reflectance(&hit),
+            emission: self.emission(&hit),
+            emitter_density: self.density(hit.triangle, hit.distance, cosine),
         })
+    }
+
+    /// Whether any surface emits light.
+    pub(super) fn is_emissive(&self) -> bool {
+        !self.emitters.list().is_empty()
+    }
+
+    /// The light toward `origin` of a point that emits, chosen by `xi`, if nothing hides it.
+    pub(super) fn emitter(&self, origin: Vec3, xi: DVec2) -> Option<Emitted> {
+        let (emitter, barycentrics) = self.emitters.sample(xi)?;
+        let hit = Hit {
+            distance: 0.0,
+            triangle: emitter.triangle,
+            barycentrics,
+        };
+        if !self.is_solid(&hit) {
+            return None;
+        }
+        let [a, b, c] = self.positions(&hit);
+        let target = a + barycentrics[0] * (b - a) + barycentrics[1] * (c - a);
+        let normal = self.normal(&hit);
+        let side = if normal.dot(origin - target) < 0.0 {
+            -normal
+        } else {
+            normal
+        };
+        let way = lifted(target, side) - origin;
+        let (toward, distance) = (way.try_normalize()?, way.length());
+        let ray = Ray {
+            origin,
+            direction: toward,
+        };
+        let is_hidden = self
+            .bvh
+            .any(&ray, 0.0, distance, |hit: &Hit| self.is_solid(hit));
+        (!is_hidden).then(|| Emitted {
+            radiance: self.emission(&hit),
+            toward: toward.as_dvec3(),
+            density: self.density(emitter.triangle, distance, -side.dot(toward)),
+        })
+    }
+
+    /// Density of a direction toward a point of a triangle, per steradian: 0 if it does not emit.
+    fn density(&self, triangle: u32, distance: f32, cosine: f32) -> f64 {
+        let per_area = self.emitter_densities.get(triangle as usize);
+        per_area.map_or(0.0, |density| {
+            density * f64::from(distance).powi(2) / f64::from(cosine).max(1e-6)
+        })
+    }
+
+    fn emission(&self, hit: &Hit) -> DVec3 {
+        let material = self.material(hit);
+        let map = material.emissive_texture.map(|t| &self.scene.textures[t]);
+        let map = map.map_or([1.0; 4], |texture| sample(texture, self.uv(hit)));
+        let [r, g, b] = std::array::from_fn(|i| f64::from(material.emission[i] * map[i]));
+        DVec3::new(r, g, b)
     }
 
     /// Whether nothing lies on the way from `origin` toward `direction`, a unit vector.
@@ -76,11 +156,14 @@ impl<'a> TracedScene<'a> {
         [0, 1, 2].map(|i| self.scene.indices[first + i] as usize)
     }
 
+    fn positions(&self, hit: &Hit) -> [Vec3; 3] {
+        self.corners(hit)
+            .map(|v| Vec3::from(self.scene.positions[v]))
+    }
+
     /// Unit normal of the triangle's plane.
     fn normal(&self, hit: &Hit) -> Vec3 {
-        let [a, b, c] = self
-            .corners(hit)
-            .map(|v| Vec3::from(self.scene.positions[v]));
+        let [a, b, c] = self.positions(hit);
         (b - a).cross(c - a).normalize_or(Vec3::Y)
     }
 
@@ -130,6 +213,26 @@ impl<'a> TracedScene<'a> {
     }
 }
 
+fn emitters(scene: &Scene) -> Emitters {
+    if scene.is_emissive() {
+        Emitters::of(scene, &Reflectances::new(scene))
+    } else {
+        Emitters::default()
+    }
+}
+
+/// Density of sampled points on each triangle, per m²; empty if nothing emits.
+fn densities(scene: &Scene, emitters: &Emitters) -> Vec<f64> {
+    if emitters.list().is_empty() {
+        return Vec::new();
+    }
+    let mut densities = vec![0.0; scene.triangles()];
+    for emitter in emitters.list() {
+        densities[emitter.triangle as usize] = emitters.density(emitter.luminance);
+    }
+    densities
+}
+
 /// A point offset along `normal` against self-intersection.
 pub(super) fn lifted(position: Vec3, normal: Vec3) -> Vec3 {
     position + OFFSET * (1.0 + position.abs().max_element()) * normal
@@ -156,7 +259,7 @@ fn sample(texture: &Texture, uv: Vec2) -> [f32; 4] {
     );
     debug_assert!(
         texture.encoding == Encoding::Srgb,
-        "maps of ρ_d hold colours"
+        "maps of ρ_d and L_e hold colours"
     );
     std::array::from_fn(|i| {
         let top = a[i] + share.x * (b[i] - a[i]);

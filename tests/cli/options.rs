@@ -344,12 +344,13 @@ fn the_addends_of_layers_sum_to_the_picture() {
     let ended = place
         .render(&["-o", "a.exr", "--layers", "--samples", "3"])
         .silently();
-    assert!(ended.stdout.contains("13 layer"), "{}", ended.stdout);
+    assert!(ended.stdout.contains("14 layer"), "{}", ended.stdout);
     let exr = exr(&place.path().join("a.exr"));
     let addends = [
         "sun",
         "sky",
         "bounces",
+        "emission",
         "sun-specular",
         "sky-specular",
         "background",
@@ -367,7 +368,7 @@ fn the_addends_of_layers_sum_to_the_picture() {
     names.sort();
     let found: Vec<_> = exr.channels.keys().cloned().collect();
     assert_eq!(found, names);
-    let mut seen = [false; 6];
+    let mut seen = [false; 7];
     for c in ["R", "G", "B"] {
         let layers = addends.map(|layer| &exr.channels[&format!("{layer}.{c}")]);
         for (i, whole) in exr.channels[c].iter().enumerate() {
@@ -379,8 +380,8 @@ fn the_addends_of_layers_sum_to_the_picture() {
             }
         }
     }
-    let expected = addends.map(|addend| addend != "bounces");
-    assert_eq!(seen, expected, "all but bounces are seen: {addends:?}");
+    let expected = addends.map(|addend| !["bounces", "emission"].contains(&addend));
+    assert_eq!(seen, expected, "the others are seen: {addends:?}");
 }
 
 #[test]
@@ -630,6 +631,35 @@ fn the_command_line_overrides_the_scene_file() {
     let (moment, when, _) = parameters(&["--when", "2026-06-21T12:00Z"]);
     assert_eq!(moment[0], "", "a moment replaces the file's direction");
     assert_eq!(when, "2026-06-21T12:00:00+00:00");
+}
+
+#[test]
+fn a_scene_file_has_measured_skies_and_clouds() {
+    let place = Place::new();
+    place.put(
+        "s.toml",
+        "[[mesh]]\nfile = \"m.obj\"\n[sun]\nsun = [120, 30]\n\
+         [sky]\nsky = \"perez\"\ndni = 600\ndhi = 90.5\ndew-point = -3\n\
+         [[moment]]\nname = \"cloudy\"\nsky = \"hosek\"\ncloud-cover = 0.7\n",
+    );
+    let keys = ["sky", "dni", "dhi", "dew-point", "cloud-cover"];
+    for (words, expected) in [
+        (&[][..], ["perez", "600", "90.5", "-3", "0"]),
+        (&["--dni", "20"], ["perez", "20", "90.5", "-3", "0"]),
+        (
+            &["--moment", "cloudy"],
+            ["hosek", "600", "90.5", "-3", "0.7"],
+        ),
+    ] {
+        place
+            .render(&[&["s.toml", "-o", "a.png"], words].concat())
+            .silently();
+        let (texts, ..) = png(&place.path().join("a.png"));
+        assert_eq!(keys.map(|key| texts[key].as_str()), expected);
+    }
+    place.put("t.toml", "[[mesh]]\nfile = \"m.obj\"\n[sky]\ndni = -5\n");
+    let ended = place.render(&["t.toml", "-o", "a.png"]);
+    ended.failed(1, &["dni", "irradiance must be 0 to 1500 W/m²"]);
 }
 
 #[test]

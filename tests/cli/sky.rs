@@ -115,6 +115,63 @@ fn a_measured_illuminance_scales_the_sky() {
 }
 
 #[test]
+fn measured_irradiances_give_sky_and_sun_their_illuminances() {
+    let sky = "--sky perez --dni 700 --dhi 120 --dew-point 5";
+    let found = json(&format!(
+        "--place 41.98,-87.92 --when 2026-03-05T12:30-06:00 {sky}"
+    ));
+    let lux = 120.0 * at(&found, "sky.measured.diffuse_efficacy");
+    assert!((at(&found, "sky.diffuse_horizontal_lux") / lux - 1.0).abs() < 1e-9);
+    let lux = 700.0 * at(&found, "sky.measured.direct_efficacy");
+    assert!((at(&found, "sun.illuminance_lux") / lux - 1.0).abs() < 1e-9);
+    // ε = (ratio + 1.041 z³)/(1 + 1.041 z³), the sun 49° from the zenith.
+    assert!((4.3..4.8).contains(&at(&found, "sky.measured.clearness")));
+    let water = (0.07f64 * 5.0 - 0.075).exp();
+    assert!((at(&found, "sky.measured.water_cm") / water - 1.0).abs() < 1e-9);
+    for (name, value) in [
+        ("dni", "700"),
+        ("dhi", "120"),
+        ("dew-point", "5"),
+        ("sky", "perez"),
+    ] {
+        assert_eq!(found["inputs"][name], value);
+    }
+    // The sun is 7 % brighter in January: the same irradiance is a darker sky, relative to what comes in.
+    let of = |day: &str| {
+        let day = json(&format!(
+            "--solar {day},12 --place 0,0 --refraction off {sky}"
+        ));
+        at(&day, "sky.measured.brightness")
+    };
+    assert!(
+        (of("3") / of("182") - 0.935).abs() < 0.02,
+        "{} {}",
+        of("3"),
+        of("182")
+    );
+    let text = String::from_utf8(skylight(&format!("sky {sky}")).stdout).expect("text");
+    for part in ["clearness ε", "brightness Δ", "luminous efficacies"] {
+        assert!(text.contains(part), "{text}");
+    }
+}
+
+#[test]
+fn clouds_dim_the_sun_and_their_own_skies_say_no() {
+    let open = json("--sun 180,40");
+    let half = json("--sun 180,40 --cloud-cover 0.5");
+    let ratio = at(&half, "global_horizontal_lux") / at(&open, "global_horizontal_lux");
+    assert!(
+        (ratio / (1.0 - 0.75 * 0.5f64.powf(3.4)) - 1.0).abs() < 1e-6,
+        "{ratio}"
+    );
+    let sun = at(&half, "sun.illuminance_lux") / at(&open, "sun.illuminance_lux");
+    assert!((0.6..0.75).contains(&sun), "{sun}");
+    let cloudy = json("--sun 180,40 --cloud-cover 0.5 --sky cie-8");
+    let warning = cloudy["warnings"][0].as_str().expect("a warning");
+    assert!(warning.contains("clouds of its own"), "{warning}");
+}
+
+#[test]
 fn refraction_can_be_switched_off() {
     let place = "--place 55.68,12.57 --when 2026-06-21T04:40+02:00";
     let on = json(place);
@@ -235,6 +292,111 @@ fn polar_day_and_night_are_told_as_such() {
 }
 
 #[test]
+fn twilights_and_hours_follow_each_other_and_are_told_where_there_are_none() {
+    let found = json("--place 37.08,15.29 --when 2026-09-24T16:40+02:00");
+    let text = |path: &str| {
+        let found = found.pointer(path).and_then(Value::as_str);
+        found
+            .unwrap_or_else(|| panic!("{path} is missing"))
+            .to_owned()
+    };
+    let order = [
+        "/times/astronomical_twilight/dawn",
+        "/times/nautical_twilight/dawn",
+        "/times/civil_twilight/dawn",
+        "/times/blue_hour/morning/1",
+        "/sun/sunrise",
+        "/times/golden_hour/morning/1",
+        "/sun/solar_noon",
+        "/times/golden_hour/evening/0",
+        "/sun/sunset",
+        "/times/blue_hour/evening/0",
+        "/times/civil_twilight/dusk",
+        "/times/nautical_twilight/dusk",
+        "/times/astronomical_twilight/dusk",
+    ];
+    let moments = order.map(text);
+    assert!(moments.is_sorted(), "{moments:?}");
+    assert_eq!(text("/times/blue_hour/morning/0"), moments[2]);
+    // Syracuse, civil twilight of some 25 minutes: the sun sets at 18:50.
+    assert!(
+        moments[10].starts_with("2026-09-24T19:1"),
+        "{}",
+        moments[10]
+    );
+    let summer = skylight("sky --place 55.68,12.57 --when 2026-06-21T12:00+02:00");
+    let summer = String::from_utf8(summer.stdout).expect("text");
+    assert!(
+        summer.contains("none: the sun stays above -12°"),
+        "{summer}"
+    );
+    assert!(summer.contains("golden hour"), "{summer}");
+    let polar = json("--place 78.22,15.65 --when 2026-12-24T12:00+01:00");
+    assert_eq!(polar["times"]["civil_twilight"]["sun_stays"], "below");
+    assert!(polar["times"]["golden_hour"]["morning"][0].is_null());
+    assert!(json("--sun 180,45").get("times").is_none());
+}
+
+#[test]
+fn the_moon_is_told_with_its_phase_and_light() {
+    // Full on 2026-01-03 10:03 UTC: moon.csv has it at Quito.
+    let found = json("--place -0.1807,-78.4678 --when 2026-01-03T10:00Z");
+    let close = |path: &str, expected: f64, within: f64| {
+        let found = at(&found, path);
+        assert!((found - expected).abs() < within, "{path} {found}");
+    };
+    close("moon.elevation_deg", 16.6931, 0.01);
+    close("moon.azimuth_deg", 298.5894, 0.01);
+    close("moon.illuminated_fraction", 0.99849, 0.001);
+    close("moon.distance_km", 360_423.0, 50.0);
+    let (outside, ground) = (
+        at(&found, "moon.outside_lux"),
+        at(&found, "moon.illuminance_lux"),
+    );
+    assert!((0.25..0.4).contains(&outside), "{outside}");
+    assert!(ground > 0.2 * outside && ground < 0.7 * outside, "{ground}");
+    let sine = numbers(&found, "moon.direction", 3)[1];
+    close("moon.direct_horizontal_lux", ground * sine, 1e-12);
+    // It is night there: the moon is the light from one direction, unless it is switched off.
+    let both = at(&found, "sky.diffuse_horizontal_lux") + ground * sine;
+    close("global_horizontal_lux", both, 1e-9);
+    let off = json("--place -0.1807,-78.4678 --when 2026-01-03T10:00Z --moon off");
+    let sky = at(&off, "sky.diffuse_horizontal_lux");
+    assert_eq!(at(&off, "global_horizontal_lux"), sky);
+    let below = json("--place 37.0755,15.2866 --when 2026-01-03T10:00Z");
+    assert_eq!(at(&below, "moon.illuminance_lux"), 0.0);
+    assert!(json("--sun 180,45").get("moon").is_none());
+}
+
+#[test]
+fn every_model_is_compared_and_is_as_on_its_own() {
+    let sun = "--sun 180,40 --dni 700 --dhi 120";
+    let found = json(&format!("{sun} --compare"));
+    let models = found["models"].as_array().expect("a list");
+    assert_eq!(models.len(), 21);
+    for row in models {
+        let name = row["model"].as_str().expect("a name");
+        let alone = json(&format!("{sun} --sky {name}"));
+        for (key, path) in [
+            ("sky_lux", "sky.diffuse_horizontal_lux"),
+            ("sun_lux", "sun.illuminance_lux"),
+            ("global_lux", "global_horizontal_lux"),
+            ("zenith_luminance", "sky.zenith_luminance"),
+        ] {
+            assert_eq!(at(row, key), at(&alone, path), "{name} {key}");
+        }
+        assert_eq!(row["sky_cct_k"], alone["sky"]["cct_k"], "{name}");
+    }
+    let published = found["published"].as_array().expect("a list");
+    let clear = 800.0 + 15_500.0 * 40f64.to_radians().sin().sqrt();
+    assert!((at(&published[1], "sky_lux") / clear - 1.0).abs() < 1e-12);
+    let output = skylight("sky --sun 180,-5 --compare");
+    let text = String::from_utf8(output.stdout).expect("text");
+    assert!(text.contains("perez       needs --dni and --dhi"), "{text}");
+    assert!(text.contains("AMS Glossary"), "{text}");
+}
+
+#[test]
 fn nonsense_is_one_line_and_exit_code_2() {
     for (line, part) in [
         ("sky --place 91,0", "latitude must be -90 to 90"),
@@ -247,6 +409,24 @@ fn nonsense_is_one_line_and_exit_code_2() {
         ("sky --direction 1", "AZIMUTH,ELEVATION"),
         ("sky --sky-illuminance -1", "0 to 1000000 lux"),
         ("sky --plot spectrum.png", ".svg"),
+        ("sky --sky cie-17", "cie-16"),
+        ("sky --sky perez", "--dni and --dhi"),
+        ("sky --sky perez --dni 300", "0 to 1500"),
+        (
+            "sky --sky perez --dni -5 --dhi 100",
+            "irradiance must be 0 to 1500 W/m²",
+        ),
+        (
+            "sky --sky perez --dni 5 --dhi 1501",
+            "irradiance must be 0 to 1500 W/m²",
+        ),
+        ("sky --sky perez --dni 300 --dhi 0", "both as measured"),
+        (
+            "sky --sky perez --dni 1 --dhi 1 --dew-point 41",
+            "dew point must be -90 to 40 °C",
+        ),
+        ("sky --cloud-cover 1.1", "cloud cover must be 0 to 1"),
+        ("sky --cloud-cover -0.1", "cloud cover must be 0 to 1"),
         ("sky scene.toml", "scene.toml"),
         ("sky --refraction maybe", "--refraction"),
     ] {

@@ -33,14 +33,14 @@ pub struct Table {
 }
 
 impl Table {
-    /// Reads `name` in `shared/reference`; `None` if the folder is absent. A missing file or an empty table is a failure.
+    /// Reads `name` of `shared/reference`, as [`Table::at`] does.
     pub fn read(name: &str) -> Option<Self> {
-        Self::read_in("reference", name)
+        Self::at(&format!("reference/{name}"))
     }
 
-    /// Reads `name` in another folder of `shared`.
-    pub fn read_in(folder: &str, name: &str) -> Option<Self> {
-        let path = shared()?.join(folder).join(name);
+    /// Reads the file `name` within `shared`; `None` if the folder is absent. A missing file or an empty table is a failure.
+    pub fn at(name: &str) -> Option<Self> {
+        let path = shared()?.join(name);
         let text =
             std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         let mut lines = text

@@ -35,6 +35,31 @@ pub fn matt(diffuse: f32) -> Material {
     }
 }
 
+/// A Lambertian material that emits grey light, cd/m².
+pub fn glowing(diffuse: f32, emission: f32) -> Material {
+    Material {
+        emission: [emission; 3],
+        ..matt(diffuse)
+    }
+}
+
+/// A closed box around the origin; every surface has this material.
+pub fn closed_box(half: f32, material: &Material) -> Scene {
+    Model::default().cube([0.0; 3], half, material).build()
+}
+
+/// Irradiance of a uniform polygon of radiance 1 on a point in front of it, lux: Lambert 1760, half the sum over its edges of the angle
+/// that an edge subtends times the cosine between the normal and that of the edge's plane. `corners` are above the point's horizon.
+pub fn polygon_irradiance(corners: &[DVec3], point: DVec3, normal: DVec3) -> f64 {
+    let toward = |i: usize| (corners[i % corners.len()] - point).normalize();
+    let edge = |i: usize| {
+        let (a, b) = (toward(i), toward(i + 1));
+        let angle = a.dot(b).clamp(-1.0, 1.0).acos();
+        angle * a.cross(b).normalize().dot(normal)
+    };
+    0.5 * (0..corners.len()).map(edge).sum::<f64>().abs()
+}
+
 /// Builder of a scene: each part has its own material.
 #[derive(Default)]
 pub struct Model(Scene);

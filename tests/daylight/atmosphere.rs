@@ -63,7 +63,7 @@ struct Errors {
 
 #[test]
 fn the_sky_is_that_of_a_monte_carlo_solution() {
-    let Some(table) = Table::read_in("sky", "sky_radiance.csv") else {
+    let Some(table) = Table::at("sky/sky_radiance.csv") else {
         return;
     };
     let mut errors: BTreeMap<(bool, usize), Errors> = BTreeMap::new();
@@ -139,7 +139,7 @@ fn illuminance_bound(sun: f64) -> f64 {
 
 #[test]
 fn illuminances_are_those_of_a_monte_carlo_solution() {
-    let Some(table) = Table::read_in("sky", "illuminance.csv") else {
+    let Some(table) = Table::at("sky/illuminance.csv") else {
         return;
     };
     let mut direct = Worst::new("illuminance of the sun above 1 lux", 0.002);
@@ -186,7 +186,7 @@ fn illuminances_are_those_of_a_monte_carlo_solution() {
 
 #[test]
 fn the_air_before_a_mountain_is_that_of_a_monte_carlo_solution() {
-    let Some(table) = Table::read_in("sky", "aerial.csv") else {
+    let Some(table) = Table::at("sky/aerial.csv") else {
         return;
     };
     let white = luminance_of_transfer(DVec3::ONE);

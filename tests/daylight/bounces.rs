@@ -62,7 +62,7 @@ pub fn spread([corner, u, v]: [Vec3; 3], n: u32) -> Vec<Vec3> {
     (0..n * n).map(at).collect()
 }
 
-fn facing(normal: Vec3, points: Vec<Vec3>) -> Vec<Sensor> {
+pub fn facing(normal: Vec3, points: Vec<Vec3>) -> Vec<Sensor> {
     let sensor = |position| Sensor { position, normal };
     points.into_iter().map(sensor).collect()
 }

@@ -7,7 +7,10 @@ mod model;
 
 mod atmosphere;
 mod bounces;
+mod emission;
+mod grey_skies;
 mod irradiance;
+mod moon;
 mod reference;
 mod rooms;
 mod sampling;

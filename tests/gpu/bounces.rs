@@ -8,14 +8,16 @@ use crate::gpu::{
 use crate::lighting::{check_sum, glossy_scene, roundings};
 use glam::DVec3;
 use skylight::daylight::colour::luminance;
+use skylight::daylight::quadrature::SphereQuadrature;
 use skylight::daylight::sky::Daylight;
 use skylight::frame::{Frame, FrameSettings, Visibility};
 use skylight::passes::bounces::cells::Bounces;
 use skylight::passes::light::lighting::{Ambient, Show};
 use skylight::scene::{Camera, Material, Scene};
+use std::f64::consts::PI;
 
 /// Settings of a single frame that has all its light but the sun's from the cells.
-fn single(width: u32, height: u32) -> FrameSettings {
+pub fn single(width: u32, height: u32) -> FrameSettings {
     let mut set = settings(width, height);
     set.bounces = Bounces::All;
     // All cells in every frame.
@@ -25,7 +27,7 @@ fn single(width: u32, height: u32) -> FrameSettings {
 }
 
 /// Settings of a converged picture with all bounces.
-fn converged(width: u32, height: u32, samples: u32) -> FrameSettings {
+pub fn converged(width: u32, height: u32, samples: u32) -> FrameSettings {
     let mut set = single(width, height);
     set.samples = samples;
     set.sampling.visibility = Visibility::Dome;
@@ -33,14 +35,14 @@ fn converged(width: u32, height: u32, samples: u32) -> FrameSettings {
     set
 }
 
-fn with_bounces(bounces: Bounces, settings: FrameSettings) -> FrameSettings {
+pub fn with_bounces(bounces: Bounces, settings: FrameSettings) -> FrameSettings {
     FrameSettings {
         bounces,
         ..settings
     }
 }
 
-fn mean(picture: &Picture) -> f64 {
+pub fn mean(picture: &Picture) -> f64 {
     picture.pixels().map(|(_, l)| luminance(l)).sum::<f64>() / picture.texels.len() as f64
 }
 
@@ -250,6 +252,45 @@ fn in_the_furnace_bounces_make_up_for_what_is_hidden() {
         assert!((mean - 1.0).abs() < 0.01, "{what}: {mean}");
         assert!(rmse < rmse_limit, "{what}: {rmse}");
     }
+}
+
+/// A ball with its whole hemisphere of sky at every point: E(n) of the sky, from cells that hold it for few normals.
+#[test]
+fn on_a_curved_surface_the_sky_of_a_cell_follows_the_normal() {
+    let mut device = Device::new();
+    let scene = Model::default()
+        .sphere([0.0; 3], 1.0, 64, &matt(0.5))
+        .build();
+    // From where a cell has a third of the size of the ball.
+    let view = Camera {
+        fov_deg: 18.0,
+        ..camera([5.0, 2.5, 7.5], [0.0; 3])
+    };
+    let day = clear_day(150.0, 30.0);
+    let mut frame = device.frame(&scene, single(96, 72), &day, &view);
+    let [sky, normals] = [Show::Sky, Show::Normal].map(|show| {
+        frame.show(show).expect("shown");
+        for _ in 0..12 {
+            device.run(|rec| frame.preview(rec, &day, &view));
+        }
+        device.picture_of(&frame)
+    });
+    let quadrature = SphereQuadrature::sphere(64, 128);
+    let (mut squares, mut count) = (0.0, 0.0);
+    for ([x, y], light) in sky.pixels() {
+        let n = normals.at(x, y);
+        // Background, and edges of the ball, which not every pixel of a square of two by two shows.
+        if n.length() < 0.5 || n.dot((view.eye - view.target).as_dvec3().normalize()) < 0.4 {
+            continue;
+        }
+        let unhidden = quadrature.irradiance(n.normalize(), |d| day.radiance(d));
+        let expected = luminance(unhidden) / 1000.0 * 0.5 / PI;
+        squares += (luminance(light) / expected - 1.0).powi(2);
+        count += 1.0;
+    }
+    let rms = (squares / count).sqrt();
+    println!("{count} pixels, RMS of the relative error {rms:.4}");
+    assert!(count > 1000.0 && rms < 0.045, "{count} {rms}");
 }
 
 /// The picture in the dark room after eight previews in the lit one and `count` in the dark one, with the cells of both. Cells at the

@@ -5,8 +5,8 @@ use std::process::Command;
 
 use crate::common::Worst;
 use crate::gpu::{
-    Device, Model, Picture, camera, clear_day, constant_sky, matt, on_ground, pixel_ray, settings,
-    showing,
+    Device, Model, Picture, camera, clear_day, constant_sky, glowing, matt, on_ground, pixel_ray,
+    settings, showing,
 };
 use crate::truth::Exr;
 use glam::DVec3;
@@ -28,7 +28,7 @@ fn mirror() -> Material {
     }
 }
 
-/// A glossy checkered ground with a white sphere and a mirror-like cube on it.
+/// A glossy checkered ground with a white sphere that glows in squares and a mirror-like cube on it.
 pub fn glossy_scene() -> Scene {
     let chequered = Material {
         specular: [0.2, 0.3, 0.4],
@@ -37,9 +37,13 @@ pub fn glossy_scene() -> Scene {
         specular_texture: Some(1),
         ..matt(0.8)
     };
+    let lantern = Material {
+        emissive_texture: Some(1),
+        ..glowing(0.9, 700.0)
+    };
     let mut scene = Model::default()
         .ground(6.0, &chequered)
-        .sphere([0.9, 0.7, 0.0], 0.7, 24, &matt(0.9))
+        .sphere([0.9, 0.7, 0.0], 0.7, 24, &lantern)
         .cube([-1.0, 0.6, 0.2], 0.6, &mirror())
         .build();
     let texture = |name: &str, shade: fn(u8) -> [u8; 4]| Texture {
@@ -196,14 +200,14 @@ fn files_are_in_candelas_and_carry_their_parameters() {
 }
 
 /// A scene outside the view.
-fn out_of_view() -> Scene {
+pub fn out_of_view() -> Scene {
     Model::default()
         .square([0.0, -50.0, 0.0], 1.0, &matt(0.5))
         .build()
 }
 
 /// A close view of the sun.
-fn toward(direction: DVec3) -> Camera {
+pub fn toward(direction: DVec3) -> Camera {
     Camera {
         fov_deg: 2.0,
         ..camera([0.0; 3], direction.as_vec3().to_array())
@@ -211,7 +215,7 @@ fn toward(direction: DVec3) -> Camera {
 }
 
 /// Solid angle of a pixel, sr: its area on the plane at distance 1 times the cube of the cosine.
-fn solid_angle(camera: &Camera, size: [usize; 2], pixel: [usize; 2]) -> f64 {
+pub fn solid_angle(camera: &Camera, size: [usize; 2], pixel: [usize; 2]) -> f64 {
     let tan = (0.5 * f64::from(camera.fov_deg)).to_radians().tan();
     let edge = 2.0 * tan / size[1] as f64;
     let forward = (camera.target - camera.eye).as_dvec3().normalize();

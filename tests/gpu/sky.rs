@@ -3,6 +3,7 @@
 use crate::common::Worst;
 use crate::gpu::{Cube, Device, HALF_ROUNDOFF};
 use glam::DVec3;
+use skylight::daylight::perez::Measured;
 use skylight::daylight::sky::{Conditions, Daylight, SkyModel};
 use skylight::passes::sky::cube::SkyCube;
 
@@ -11,6 +12,26 @@ const MODELS: [SkyModel; 4] = [
     SkyModel::Hosek,
     SkyModel::Overcast,
     SkyModel::CieClear,
+];
+
+/// General skies of all kinds: the steepest gradations and the narrowest coronas are among them.
+const GENERAL: [SkyModel; 6] = [
+    SkyModel::Cie1,
+    SkyModel::Cie4,
+    SkyModel::Cie8,
+    SkyModel::Cie9,
+    SkyModel::Cie13,
+    SkyModel::Cie15,
+];
+
+/// Irradiances by sun and sky, W/m², from overcast to very clear.
+const MEASURED: [(f64, f64); 6] = [
+    (0.0, 90.0),
+    (15.0, 200.0),
+    (120.0, 180.0),
+    (350.0, 160.0),
+    (600.0, 110.0),
+    (900.0, 50.0),
 ];
 
 /// Smallest step of 16-bit floats, kcd/m²: the storage error of the dark sky in late twilight.
@@ -66,7 +87,33 @@ fn conditions() -> Vec<Conditions> {
             }
         }
     }
+    for sun_elevation_deg in [85.0, 30.0, 2.0] {
+        let at = Conditions {
+            sun_elevation_deg,
+            sun_azimuth_deg: 75.0,
+            ..Conditions::default()
+        };
+        all.extend(GENERAL.map(|model| Conditions { model, ..at }));
+        all.extend(MEASURED.map(|measured| measured_day(measured, at)));
+        all.extend(MODELS[..2].iter().map(|&model| Conditions {
+            model,
+            cloud_cover: 0.6,
+            ..at
+        }));
+    }
     all
+}
+
+fn measured_day((direct_normal_w, diffuse_horizontal_w): (f64, f64), at: Conditions) -> Conditions {
+    Conditions {
+        model: SkyModel::Perez,
+        measured: Measured {
+            direct_normal_w,
+            diffuse_horizontal_w,
+            ..Measured::default()
+        },
+        ..at
+    }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod emission;
 mod files;
 mod fuzz;
 mod hostile;

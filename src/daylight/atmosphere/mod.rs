@@ -218,15 +218,27 @@ impl Atmosphere {
         }
     }
 
-    /// Illuminance of the sun at normal incidence with its centre at the true elevation of sine `sun_sine`: linear BT.709 RGB, lux, by 40 wavelengths; not
-    /// clipped. The part of the disc below the horizon is dark.
+    /// Illuminance of the sun at normal incidence with its centre at the true elevation of sine `sun_sine`: linear BT.709 RGB, lux, by
+    /// 40 wavelengths; not clipped. The part of the disc below the horizon is dark.
     pub fn sun_illuminance(&self, sun_sine: f64) -> DVec3 {
-        let r = self.observer();
-        let share = sun_share(r, sun_sine);
+        let share = sun_share(self.observer(), sun_sine);
         if share == 0.0 {
             return DVec3::ZERO;
         }
-        let mu = sun_sine.max(horizon_cosine(r));
+        self.sunlight_along(sun_sine) * share
+    }
+
+    /// Transmittance of sunlight from the direction of sine `sine` (or from the horizon above it): linear BT.709 RGB over the luminance
+    /// outside the air, not clipped.
+    pub fn transmittance_to_space(&self, sine: f64) -> DVec3 {
+        let outside = colour::xyz_of_all(std::iter::repeat_n(DVec4::ONE, 10)).y;
+        self.sunlight_along(sine) / outside
+    }
+
+    /// Illuminance at normal incidence of sunlight from the direction of sine `sine`, or from the horizon above it.
+    fn sunlight_along(&self, sine: f64) -> DVec3 {
+        let r = self.observer();
+        let mu = sine.max(horizon_cosine(r));
         let length = columns::distance_to_top(r, mu);
         let nodes = gauss_legendre(64);
         let columns = columns::exact(r, mu, length, self.medium.scale_height, &nodes);
@@ -234,7 +246,7 @@ impl Atmosphere {
             let depth = Medium::new(&self.air, nm).optical_depth(columns);
             each(depth, |d| (-d).exp())
         });
-        rgb_from_xyz(colour::xyz_of_all(transmittance)) * share
+        rgb_from_xyz(colour::xyz_of_all(transmittance))
     }
 
     /// Illuminance of the sky on a horizontal plane that faces up, with the sun at the true elevation of sine `sun_sine`: linear BT.709 RGB, lux; not

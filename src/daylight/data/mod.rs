@@ -3,4 +3,5 @@
 pub mod atmosphere;
 pub mod cie_1931_2deg;
 pub mod cities;
+pub mod perez_1993;
 pub mod preetham_spectra;

@@ -20,7 +20,7 @@ use crate::gpu::{
     Sampler, shaders,
 };
 use crate::gpu_struct;
-use crate::passes::bounces::change::{change, horizontal, ratio};
+use crate::passes::bounces::change::{change, ratio};
 use crate::passes::bounces::tree::Tree;
 use crate::passes::view::{View, ViewBlock};
 use crate::passes::{compute, kilo};
@@ -32,12 +32,12 @@ const SLOTS: u32 = 1 << 17;
 const SLOT_COLUMNS: u32 = 512;
 /// Points of a cell, its contests, and points of a path, as in `include/cell_table.glsl`.
 const POINTS: u32 = 2;
-const CONTESTS: u32 = 3;
+const CONTESTS: u32 = 2;
 const PATH_POINTS: u32 = 4;
 /// Sizes of the structs there, bytes.
 const POINT_BYTES: u32 = 16;
 const CANDIDATE_BYTES: u32 = 28;
-const SUM_BYTES: u32 = 32;
+const SUM_BYTES: u32 = 56;
 
 /// Most paths from the eye in a round.
 const PATHS: u32 = 1 << 12;
@@ -54,6 +54,8 @@ const NEAR_CELLS: f32 = 24.0;
 
 /// Segments of a path before it ends in a cell.
 const SEGMENTS: u32 = 4;
+/// The same where surfaces emit light: rooms that lamps light are closed, and in white ones light is reflected often.
+const SEGMENTS_OF_LAMPS: u32 = 8;
 
 /// Rounds in which new cells are filled, whatever the budget.
 const FIRST_ROUNDS: u32 = 16;
@@ -164,7 +166,7 @@ pub struct Cells {
     stamps: Buffer,
     walls: Buffer,
     cells: Image,
-    cell_walls: Image,
+    planes: Image,
     held: Option<Held>,
     /// Rounds so far.
     round: u32,
@@ -208,14 +210,22 @@ impl Cells {
             Buffer::new(context, name, BufferKind::Storage, 4 * u64::from(words))
         };
         let size = [SLOT_COLUMNS, SLOTS / SLOT_COLUMNS];
-        let image =
-            |name, format| Image::new(context, &ImageDesc::flat(name, format, size).stored());
+        let image = |name| {
+            Image::new(
+                context,
+                &ImageDesc::flat(name, Format::R32G32B32A32_UINT, size).stored(),
+            )
+        };
         Ok(Self {
             seed,
             cell: CELL.min(bounds.extent().length() / CELLS_ACROSS).max(1e-6),
             claim: pipeline("cells: seed", &shaders::CELLS_SEED_COMP, &traces)?,
             place: pipeline("cells: place", &shaders::CELLS_PLACE_COMP, &traces)?,
-            update: pipeline("cells: update", &shaders::CELLS_UPDATE_COMP, &traces)?,
+            update: pipeline(
+                "cells: update",
+                &shaders::CELLS_UPDATE_COMP,
+                &tree.constants_with_emitters(),
+            )?,
             publish: pipeline("cells: publish", &shaders::CELLS_PUBLISH_COMP, &[])?,
             prints: buffer("prints of cells", SLOTS)?,
             live: buffer("live cells", SLOTS + 1)?,
@@ -227,9 +237,9 @@ impl Cells {
             )?,
             sums: buffer("sums of cells", SLOTS * SUM_BYTES / 4)?,
             stamps: buffer("rounds of cells", SLOTS)?,
-            cells: image("cells", Format::R32G32B32A32_UINT)?,
-            walls: buffer("walls of cells", SLOTS * 4)?,
-            cell_walls: image("walls that divide cells", Format::R32G32B32A32_SFLOAT)?,
+            cells: image("cells")?,
+            walls: buffer("walls of cells", SLOTS * 2)?,
+            planes: image("cells: walls and gradients")?,
             held: None,
             round: 0,
             filled_for: None,
@@ -242,7 +252,7 @@ impl Cells {
             recorder.fill(buffer, 0);
         }
         recorder.fill(&self.contests, u32::MAX);
-        for image in [&self.cells, &self.cell_walls] {
+        for image in [&self.cells, &self.planes] {
             recorder.clear(image, [0.0; 4]);
         }
         self.round = 0;
@@ -289,7 +299,7 @@ impl Cells {
             Work::Paths(paths) => (1, (paths / PATH_POINTS).clamp(1, PATHS), Some(paths)),
         };
         for _ in 0..rounds {
-            let mut update = update_push(self.held.as_ref(), &held);
+            let mut update = update_push(self.held.as_ref(), &held, around.tree.is_emissive());
             if let Some(paths) = paths {
                 update.paths = paths;
                 update.first = self.round.wrapping_mul(paths);
@@ -304,12 +314,13 @@ impl Cells {
 
     /// The shader's block.
     pub(in crate::passes) fn block(&self, view: &View, daylight: &Daylight) -> SceneBlock {
+        let direct = daylight.direct_light();
         SceneBlock {
             eye: view.camera.eye,
             cell: self.cell,
             near: self.cell * NEAR_CELLS,
-            sun_direction: daylight.sun_direction.as_vec3(),
-            sun_illuminance: kilo(daylight.sun_illuminance),
+            sun_direction: direct.direction.as_vec3(),
+            sun_illuminance: kilo(direct.illuminance),
             sun_tan_radius: SUN_ANGULAR_RADIUS.tan() as f32,
             seed: self.seed,
             frame: self.round,
@@ -324,8 +335,8 @@ impl Cells {
     /// Binds the published cells to a pass that looks them up.
     pub(in crate::passes) fn bound_to<'r>(&'r self, pass: Pass<'r>) -> Pass<'r> {
         pass.sample("cells", &self.cells, Sampler::Nearest).sample(
-            "walls",
-            &self.cell_walls,
+            "cell_planes",
+            &self.planes,
             Sampler::Nearest,
         )
     }
@@ -365,7 +376,7 @@ impl Cells {
 
     fn update(&self, recorder: &mut Recorder, around: &Surroundings<'_>, push: &UpdatePush) {
         let pass = recorder.pass("cells: update", &self.update);
-        let pass = around.tree.bound_to(pass);
+        let pass = around.tree.bound_with_emitters(pass);
         self.bound_to(pass)
             .uniform("scene", &self.block(around.view, around.daylight))
             .sample("sky_radiance", around.sky_radiance, Sampler::Linear)
@@ -392,7 +403,7 @@ impl Cells {
             .storage_mut("Contests", &self.contests)
             .storage_mut("Sums", &self.sums)
             .store("cells", &self.cells)
-            .store("cell_walls", &self.cell_walls)
+            .store("cell_planes", &self.planes)
             .dispatch_over([self.most_live(), 1, 1]);
     }
 
@@ -402,9 +413,11 @@ impl Cells {
     }
 }
 
-/// The update that brings cells from the light that they hold to a new one.
-fn update_push(old: Option<&Held>, new: &Held) -> UpdatePush {
+/// The update that brings cells from the light that they hold to a new one. `is_emissive`: lamps light the scene, and their light
+/// does not follow that of the sky.
+fn update_push(old: Option<&Held>, new: &Held, is_emissive: bool) -> UpdatePush {
     let (segments, ends_in_cell) = match new.bounces {
+        Bounces::All if is_emissive => (SEGMENTS_OF_LAMPS, 1),
         Bounces::All => (SEGMENTS, 1),
         Bounces::UpTo(count) => (count, 0),
     };
@@ -421,6 +434,10 @@ fn update_push(old: Option<&Held>, new: &Held) -> UpdatePush {
         first: u32::MAX,
         most: kept.map_or(f32::MAX, |paths| paths as f32),
         sky_change: factor(|day| day.sky_irradiance_up),
-        bounce_change: factor(horizontal),
+        bounce_change: if is_emissive {
+            Vec3::ONE
+        } else {
+            factor(Daylight::horizontal)
+        },
     }
 }

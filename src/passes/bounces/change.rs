@@ -10,18 +10,14 @@ const JUMP_DEG: f64 = 10.0;
 
 /// How much two lights differ: 0 not at all, 1 so much that one says nothing about the other.
 pub(super) fn change(old: &Daylight, new: &Daylight) -> f64 {
-    let turn = old.sun_direction.dot(new.sun_direction).clamp(-1.0, 1.0);
-    let level = |day: &Daylight| luminance(horizontal(day)).max(1e-3);
+    let toward = |day: &Daylight| day.direct_light().direction;
+    let turn = toward(old).dot(toward(new)).clamp(-1.0, 1.0);
+    let level = |day: &Daylight| luminance(day.horizontal()).max(1e-3);
     let dimming = (level(new) / level(old)).ln().abs();
     if old == new {
         return 0.0;
     }
     (turn.acos().to_degrees() / JUMP_DEG + dimming).clamp(1e-3, 1.0)
-}
-
-/// Illuminance of sun and sky on open ground, lux.
-pub(super) fn horizontal(day: &Daylight) -> DVec3 {
-    day.sky_irradiance_up + day.sun_illuminance * day.sun_direction.y.max(0.0)
 }
 
 /// Quotient of two lights, component by component; 1 where the old one is black.

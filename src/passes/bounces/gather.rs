@@ -67,7 +67,7 @@ impl Gather {
                 context,
                 "bounces: gather",
                 &shaders::BOUNCES_GATHER_COMP,
-                &tree.constants(),
+                &tree.constants_with_emitters(),
             )?,
             bounced: Image::new(context, &desc.stored())?,
             traced: None,
@@ -97,7 +97,7 @@ impl Gather {
         }
         self.traced = Some(of_pair);
         let pass = recorder.pass("bounces: gather", &self.pipeline);
-        let pass = cells.bound_to(tree.bound_to(pass));
+        let pass = cells.bound_to(tree.bound_with_emitters(pass));
         surfaces
             .shapes_sampled_by(pass)
             .uniform("view", &view.block())

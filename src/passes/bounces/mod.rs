@@ -4,6 +4,7 @@ pub mod ambient;
 pub mod cells;
 mod change;
 pub mod gather;
+mod shared_exponent;
 pub mod trace;
 pub mod tree;
 mod wide;

@@ -1,12 +1,15 @@
-//! The bounding volume hierarchy of the scene on the device: two images of 32-bit words, see `include/bvh.glsl`.
+//! The bounding volume hierarchy of the scene on the device: two images of 32-bit words, see `include/bvh.glsl`, and a table of the
+//! triangles that emit light, see `include/emitters.glsl`.
 
 use std::thread;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use crate::gpu::{Format, Image, ImageDesc, Pass, Recorder, Result, Sampler, upload_texture};
+use crate::passes::bounces::shared_exponent;
 use crate::passes::bounces::wide::{Wide, WideNode};
-use crate::scene::{Mean, Reflectances, Scene, Triangle};
+use crate::passes::kilo;
+use crate::scene::{Emitter, Emitters, Mean, Reflectances, Scene, Triangle};
 
 /// Nodes and triangles in a row of their images; the rows are longer if there would be too many.
 const COLUMNS: usize = 1024;
@@ -19,6 +22,11 @@ pub struct Tree {
     triangle_columns: u32,
     most_steps: u32,
     numbers: Vec<u32>,
+    emitters: Image,
+    emitter_columns: u32,
+    emitter_count: u32,
+    /// Sum of area times luminance of the emitters, kcd.
+    emitted: f32,
 }
 
 impl Tree {
@@ -48,17 +56,27 @@ impl Tree {
                 triangle_words(triangle, &reflectances.of(triangle.number))
             },
         )?;
+        let number = |position: &u32| bvh.triangles()[*position as usize].number;
+        let numbers: Vec<u32> = wide.triangles.iter().map(number).collect();
+        let emitters = Emitters::of(scene, &reflectances);
+        let positions = positions(&numbers, &emitters);
+        let words = |emitter: &Emitter| {
+            let up_to = (emitter.up_to as f32).to_bits();
+            [[positions[emitter.triangle as usize], up_to, 0, 0]]
+        };
+        let (table, emitter_columns) =
+            upload(recorder, "emitters", emitters.list(), most_rows, words)?;
         Ok(Self {
             nodes,
             triangles,
             node_columns,
             triangle_columns,
             most_steps: (wide.nodes.len() + bvh.triangles().len()) as u32,
-            numbers: wide
-                .triangles
-                .iter()
-                .map(|position| bvh.triangles()[*position as usize].number)
-                .collect(),
+            numbers,
+            emitters: table,
+            emitter_columns,
+            emitter_count: emitters.list().len() as u32,
+            emitted: kilo(DVec3::splat(emitters.total())).x,
         })
     }
 
@@ -71,6 +89,24 @@ impl Tree {
         ]
     }
 
+    /// Constants of pipelines that trace rays and sample the emitters.
+    pub fn constants_with_emitters(&self) -> [(&'static str, u32); 6] {
+        let [nodes, triangles, steps] = self.constants();
+        [
+            nodes,
+            triangles,
+            steps,
+            ("EMITTERS", self.emitter_count),
+            ("EMITTER_COLUMNS", self.emitter_columns),
+            ("EMITTED", self.emitted.to_bits()),
+        ]
+    }
+
+    /// Whether any triangle emits light.
+    pub fn is_emissive(&self) -> bool {
+        self.emitter_count > 0
+    }
+
     /// For each triangle of the image, its number in the scene.
     pub fn numbers(&self) -> &[u32] {
         &self.numbers
@@ -81,6 +117,24 @@ impl Tree {
         pass.sample("bvh_nodes", &self.nodes, Sampler::Nearest)
             .sample("bvh_triangles", &self.triangles, Sampler::Nearest)
     }
+
+    /// Binds the images and the emitters to a pass.
+    pub fn bound_with_emitters<'r>(&'r self, pass: Pass<'r>) -> Pass<'r> {
+        self.bound_to(pass)
+            .sample("emitters", &self.emitters, Sampler::Nearest)
+    }
+}
+
+/// For each triangle of the scene its position in the image; empty if none is asked for.
+fn positions(numbers: &[u32], emitters: &Emitters) -> Vec<u32> {
+    if emitters.list().is_empty() {
+        return Vec::new();
+    }
+    let mut positions = vec![0; numbers.len()];
+    for (position, number) in (0..).zip(numbers) {
+        positions[*number as usize] = position;
+    }
+    positions
 }
 
 /// Uploads elements of `N` texels each, in rows, and returns the number of elements in a row.
@@ -121,12 +175,13 @@ fn texel(v: Vec3, word: u32) -> [u32; 4] {
 
 fn triangle_words(triangle: &Triangle, mean: &Mean) -> [[u32; 4]; 3] {
     let opacity = (mean.opacity.clamp(0.0, 1.0) * 255.0).round() as u32;
+    let emission = kilo(Vec3::from(mean.emission).as_dvec3());
     let [r, g, b] = mean.diffuse.map(|v| v.clamp(0.0, 1.0));
     let bits = |v: f32, most: u32| (v * most as f32).round() as u32;
     let albedo = bits(r, 2047) | bits(g, 2047) << 11 | bits(b, 1023) << 22;
     [
         texel(triangle.corner, albedo),
-        texel(triangle.edge1, 0),
+        texel(triangle.edge1, shared_exponent::pack(emission)),
         texel(triangle.edge2, opacity),
     ]
 }

@@ -1,4 +1,4 @@
-//! The background: the sky cube along each pixel's ray, and the sun's disc, in pixels without a surface.
+//! The background: the sky cube along each pixel's ray, and the discs of sun and moon, in pixels without a surface.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::passes::view::View;
 use crate::passes::{fullscreen_at, kilo};
 
 gpu_struct! {
-    /// The sun's disc.
+    /// The discs of sun and moon.
     pub struct Push: push of BACKGROUND_FRAG {
         size: Vec2,
         direction: Vec3,
@@ -23,13 +23,17 @@ gpu_struct! {
         sin_radius: f32,
         limb: f32,
         max_radiance: f32,
+        moon: Vec3,
+        moon_sin_radius: f32,
+        moon_luminance: Vec3,
+        moon_sunward: Vec3,
     }
 }
 
 /// The background pass: fills the pixels without a surface in the picture of [`crate::passes::light::lighting::Lighting`].
 pub struct Background {
     settings: LightingSettings,
-    /// For views without the sun's disc.
+    /// For views without a disc.
     without_disc: Pipeline,
     with_disc: Pipeline,
 }
@@ -80,6 +84,7 @@ impl Background {
         radiance: &Image,
     ) {
         let limb = self.settings.limb_darkening;
+        let moon = light.daylight.moon;
         let push = Push {
             size: view.size.as_vec2(),
             direction: light.daylight.sun_direction.as_vec3(),
@@ -88,8 +93,12 @@ impl Background {
             sin_radius: SUN_ANGULAR_RADIUS.sin() as f32,
             limb,
             max_radiance: self.settings.precision.max_radiance(),
+            moon: moon.map_or(Vec3::Y, |m| m.direction.as_vec3()),
+            moon_sin_radius: moon.map_or(1.0, |m| m.angular_radius.sin()) as f32,
+            moon_luminance: moon.map_or(Vec3::ZERO, |m| kilo(m.luminance)),
+            moon_sunward: moon.map_or(Vec3::Y, |m| m.sunward.as_vec3()),
         };
-        let pipeline = if sees(view, push.direction) {
+        let pipeline = if sees(view, push.direction) || moon.is_some() && sees(view, push.moon) {
             &self.with_disc
         } else {
             &self.without_disc
@@ -105,7 +114,7 @@ impl Background {
     }
 }
 
-/// Whether the sun's disc may be in view: within the cone around the line of sight through the picture's corners.
+/// Whether a disc may be in view: within the cone around the line of sight through the picture's corners.
 fn sees(view: &View, direction: Vec3) -> bool {
     let block = view.block();
     let corner = block.ray_scale.abs() + block.ray_offset.abs();

@@ -1,5 +1,5 @@
-//! Lighting: per pixel, the terms L_sun + L_sky + L_bounces of the illumination model on the crate's first page, one of them, or
-//! one of its inputs. The background adds L_e; in converging frames the dome adds L_bounces and the diffuse part of L_sky.
+//! Lighting: per pixel, the terms L_e + L_sun + L_sky + L_bounces of the illumination model on the crate's first page, one of them, or
+//! one of its inputs. The background is L_e where no surface is; in converging frames the dome adds L_bounces and the diffuse part of L_sky.
 //!
 //! With [`Ambient::Cells`] the irradiances of sky and bounces are those of the cells. With [`Ambient::Ssao`] it is the lecture's
 //! model:
@@ -22,6 +22,7 @@ use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
 pub use crate::passes::sun_shadow::cascades::Shadows;
 use crate::passes::sun_shadow::cascades::{BLEND, MAX_RADIUS, NORMAL_OFFSET_TEXELS, SunViews};
 use crate::passes::surfaces::gbuffer::Surfaces;
+pub use crate::passes::surfaces::geometry::EmissionSource;
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
 use crate::passes::{fullscreen_at, kilo};
@@ -52,6 +53,8 @@ pub enum Show {
     Sky,
     /// ρ_d/π E_bounces, the light that other surfaces reflect, cd/m².
     Bounces,
+    /// L_e, the light that surfaces emit, cd/m².
+    Emission,
     /// ρ_s (r·l)^p V E_sun, cd/m².
     SunSpecular,
     /// ρ_s L_sky(r), cd/m².
@@ -76,10 +79,11 @@ pub enum Show {
 
 impl Show {
     /// The terms of the picture: they sum to [`Show::Beauty`].
-    pub const ADDENDS: [Self; 6] = [
+    pub const ADDENDS: [Self; 7] = [
         Self::Sun,
         Self::Sky,
         Self::Bounces,
+        Self::Emission,
         Self::SunSpecular,
         Self::SkySpecular,
         Self::Background,
@@ -119,7 +123,7 @@ impl Show {
         }
     }
 
-    fn constants(self, specular: bool) -> [(&'static str, u32); 11] {
+    fn constants(self, specular: bool, emits: bool) -> [(&'static str, u32); 12] {
         let whole = matches!(self, Self::Beauty | Self::Luminance);
         let on = |shown: Self| u32::from(self == shown);
         let addend = |shown: Self| u32::from(whole || self == shown);
@@ -127,6 +131,7 @@ impl Show {
             ("SUN", addend(Self::Sun)),
             ("SKY", addend(Self::Sky)),
             ("BOUNCES", addend(Self::Bounces)),
+            ("EMISSION", u32::from(emits) & addend(Self::Emission)),
             (
                 "SUN_SPECULAR",
                 u32::from(specular) & addend(Self::SunSpecular),
@@ -198,6 +203,8 @@ pub struct LightingSettings {
     pub occlusion_downscale: u32,
     /// Whether ρ_d is stored per pixel. Set by [`crate::frame::Frame`]; false for scenes without maps.
     pub has_albedo: bool,
+    /// Where L_e of surfaces is. Set by [`crate::frame::Frame`].
+    pub emission: EmissionSource,
     /// Whether ρ_s grows toward grazing angles (Schlick's approximation of Fresnel's equations).
     pub fresnel: bool,
     /// Settings of the sun's shadow lookup.
@@ -261,8 +268,13 @@ impl Lighting {
         let format = settings.precision.format();
         let mut constants = settings
             .show
-            .constants(settings.specular_scale > 0.0)
+            .constants(
+                settings.specular_scale > 0.0,
+                settings.emission != EmissionSource::None,
+            )
             .to_vec();
+        let has_factor = settings.emission == EmissionSource::Image;
+        constants.push(("EMISSION_IMAGE", has_factor.into()));
         constants.push(("OCCLUSION_DOWNSCALE", settings.occlusion_downscale));
         let Mirrors { phong, reflections } = settings.mirrors;
         if is_converging && reflections == Reflections::Hidden {
@@ -311,6 +323,11 @@ impl Lighting {
         let pass = recorder.pass("lighting", &self.pipeline);
         surfaces
             .sampled_by(pass, materials)
+            .sample(
+                "emission",
+                surfaces.emission_or(materials),
+                Sampler::Nearest,
+            )
             .sample("ambient", ambient, Sampler::Nearest)
             .sample("shadow_map", light.shadow_map, Sampler::Nearest)
             .sample("sky_irradiance", light.sky_irradiance, Sampler::Linear)
@@ -329,7 +346,7 @@ impl Lighting {
         SunBlock {
             shadow_from_world: shadow.shadow_from_world.to_cols_array_2d(),
             direction: light.sun_direction,
-            illuminance: kilo(light.daylight.sun_illuminance),
+            illuminance: kilo(light.daylight.direct_light().illuminance),
             depth_bias: BIAS_TEXELS * shadow.texel_depth,
             max_radiance: self.settings.precision.max_radiance(),
             specular_scale: self.settings.specular_scale,
@@ -351,9 +368,9 @@ mod tests {
 
     #[test]
     fn each_addend_is_in_the_picture_once() {
-        let beauty = Show::Beauty.constants(true);
-        for (i, addend) in Show::ADDENDS.iter().take(5).enumerate() {
-            let constants = addend.constants(true);
+        let beauty = Show::Beauty.constants(true, true);
+        for (i, addend) in Show::ADDENDS.iter().take(6).enumerate() {
+            let constants = addend.constants(true, true);
             assert_eq!(beauty[i].1, 1);
             assert_eq!(constants[i].1, 1, "{addend:?}");
             assert_eq!(constants.iter().map(|c| c.1).sum::<u32>(), 1, "{addend:?}");

@@ -23,20 +23,22 @@ pub struct Reading {
 /// The surface at a pixel; in an average, the one hit by the newest sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceReading {
-    /// Illuminance from sun and sky, lux; the mean over the pixel.
+    /// Illuminance, lux; the mean over the pixel.
     pub illuminance: f32,
     /// World normal on the viewer's side.
     pub normal: [f32; 3],
     /// ρ_d, linear RGB.
     pub albedo: [f32; 3],
+    /// L_e, linear RGB, cd/m².
+    pub emission: [f32; 3],
     /// Distance along the view axis, metres.
     pub distance: f32,
     /// Number of the material in the scene.
     pub material: u32,
 }
 
-/// Maximum number of texels copied: picture, normal and material, depth, ρ_d.
-const TEXELS: usize = 4;
+/// Maximum number of texels copied: picture, normal and material, depth, ρ_d, factor on L_e.
+const TEXELS: usize = 5;
 
 /// Read-back buffer for the texels of one pixel.
 pub struct Probe {
@@ -53,6 +55,8 @@ struct Picked {
     depth: Texel,
     /// Only for scenes with maps.
     albedo: Option<Texel>,
+    /// Only for scenes with emissive textures.
+    emission: Option<Texel>,
     near: f32,
     shown: Show,
 }
@@ -88,28 +92,30 @@ impl Probe {
             picture: copied(picture),
             words: copied(&surfaces.normal_material),
             depth: copied(&surfaces.depth),
-            albedo: surfaces.albedo.as_ref().map(copied),
+            albedo: surfaces.albedo.as_ref().map(&mut copied),
+            emission: surfaces.emission.as_ref().map(copied),
             near,
             shown,
         });
     }
 
-    /// Returns the picked pixel, once; the GPU must have finished. `diffuse` returns ρ_d of a material.
-    pub fn reading(&mut self, diffuse: impl FnOnce(u32) -> Vec3) -> Option<Reading> {
+    /// Returns the picked pixel, once; the GPU must have finished. `of_material` returns ρ_d and L_e (cd/m²) of a material.
+    pub fn reading(&mut self, of_material: impl FnOnce(u32) -> [Vec3; 2]) -> Option<Reading> {
         let picked = self.picked.take()?;
         let read = |texel: Texel| texel.read(&self.buffer);
         let [r, g, b, illuminance] = read(picked.picture);
         let (words, depth) = (read(picked.words), read(picked.depth)[0]);
         // `words` holds the halves of the 32-bit words.
         let material = words[2] as u32;
-        let albedo = match picked.albedo {
-            Some(texel) => Vec3::from_slice(&read(texel)),
-            None => diffuse(material),
-        };
+        let [diffuse, emission] = of_material(material);
+        let texel = |texel: Texel| Vec3::from_slice(&read(texel));
+        let albedo = picked.albedo.map_or(diffuse, texel);
+        let emission = emission * picked.emission.map_or(Vec3::ONE, texel);
         let surface = (depth > 0.0).then(|| SurfaceReading {
             illuminance: illuminance * Show::Irradiance.file_unit(),
             normal: unpack_normal([words[0] as u16, words[1] as u16]),
             albedo: albedo.to_array(),
+            emission: emission.to_array(),
             distance: picked.near / depth,
             material,
         });

@@ -7,6 +7,7 @@ use glam::{Vec2, Vec3};
 use crate::daylight::atmosphere::columns::horizon_cosine;
 use crate::daylight::atmosphere::scattered_sky::ScatteredSky;
 use crate::daylight::atmosphere::sky_view::toward;
+use crate::daylight::grey_sky::GreySky;
 use crate::daylight::hosek::Hosek;
 use crate::daylight::preetham::PerezSky;
 use crate::daylight::sky::{Daylight, Sky};
@@ -20,12 +21,14 @@ use crate::passes::sky::route::{CubePipeline, CubeRoute, CubeShaders};
 gpu_struct! {
     /// Parameters common to all sky models, see [`crate::daylight::sky`].
     pub struct Push: push of
-        SKY_ATMOSPHERE_FRAG, SKY_ATMOSPHERE_COMP, SKY_PREETHAM_FRAG, SKY_PREETHAM_COMP, SKY_HOSEK_FRAG, SKY_HOSEK_COMP, SKY_OVERCAST_FRAG, SKY_OVERCAST_COMP
+        SKY_PREETHAM_FRAG, SKY_PREETHAM_COMP, SKY_HOSEK_FRAG, SKY_HOSEK_COMP, SKY_GREY_FRAG, SKY_GREY_COMP,
+        SKY_ATMOSPHERE_FRAG, SKY_ATMOSPHERE_COMP
     {
         sun_direction: Vec3,
         scale: f32,
         night: Vec3,
         ground: Vec3,
+        clouds: f32,
     }
 }
 
@@ -48,9 +51,12 @@ gpu_struct! {
 }
 
 gpu_struct! {
-    /// The zenith luminance of the overcast sky, kcd/m².
-    pub struct OvercastModel: model of SKY_OVERCAST_FRAG, SKY_OVERCAST_COMP {
-        zenith_luminance: f32,
+    /// Coefficients of a grey sky and its level, kcd/m².
+    pub struct GreyModel: model of SKY_GREY_FRAG, SKY_GREY_COMP {
+        gradation: [f32; 3],
+        indicatrix: [f32; 4],
+        least_cosine: f32,
+        level: f32,
     }
 }
 
@@ -86,7 +92,7 @@ pub struct SkyImages<'s> {
 struct Painter {
     preetham: CubePipeline,
     hosek: CubePipeline,
-    overcast: CubePipeline,
+    grey: CubePipeline,
     atmosphere: CubePipeline,
 }
 
@@ -98,13 +104,14 @@ const HOSEK: CubeShaders = CubeShaders {
     fragment: &shaders::SKY_HOSEK_FRAG,
     compute: &shaders::SKY_HOSEK_COMP,
 };
+const GREY: CubeShaders = CubeShaders {
+    fragment: &shaders::SKY_GREY_FRAG,
+    compute: &shaders::SKY_GREY_COMP,
+};
+
 const ATMOSPHERE: CubeShaders = CubeShaders {
     fragment: &shaders::SKY_ATMOSPHERE_FRAG,
     compute: &shaders::SKY_ATMOSPHERE_COMP,
-};
-const OVERCAST: CubeShaders = CubeShaders {
-    fragment: &shaders::SKY_OVERCAST_FRAG,
-    compute: &shaders::SKY_OVERCAST_COMP,
 };
 
 impl Painter {
@@ -115,7 +122,7 @@ impl Painter {
         Ok(Self {
             preetham: pipeline("sky: Preetham", PREETHAM)?,
             hosek: pipeline("sky: Hosek", HOSEK)?,
-            overcast: pipeline("sky: overcast", OVERCAST)?,
+            grey: pipeline("sky: grey", GREY)?,
             atmosphere: pipeline("sky: atmosphere", ATMOSPHERE)?,
         })
     }
@@ -133,22 +140,19 @@ impl Painter {
             scale: daylight.guard.scale as f32,
             night: kilo(daylight.guard.night),
             ground: kilo(daylight.ground_luminance),
+            clouds: (daylight.guard.clouds * 1e-3) as f32,
         };
         let pipeline = match &daylight.sky {
-            Sky::Preetham(_) | Sky::CieClear(_) => &self.preetham,
+            Sky::Preetham(_) => &self.preetham,
             Sky::Hosek(_) => &self.hosek,
-            Sky::Overcast(_) => &self.overcast,
+            Sky::Grey(_) => &self.grey,
             Sky::Atmosphere(_) => &self.atmosphere,
         };
         let pass = pipeline.pass(recorder, "sky cube");
         let pass = match &daylight.sky {
             Sky::Preetham(sky) => pass.uniform("model", &preetham_model(&sky.perez())),
-            Sky::CieClear(sky) => pass.uniform("model", &preetham_model(&sky.perez())),
             Sky::Hosek(sky) => pass.uniform("model", &hosek_model(sky)),
-            Sky::Overcast(sky) => {
-                let zenith_luminance = (sky.zenith_luminance * 1e-3) as f32;
-                pass.uniform("model", &OvercastModel { zenith_luminance })
-            }
+            Sky::Grey(sky) => pass.uniform("model", &grey_model(sky)),
             Sky::Atmosphere(sky) => {
                 let (ground_scale, added) = daylight.ground_of(sky);
                 push.ground = kilo(added);
@@ -243,6 +247,16 @@ fn hosek_model(sky: &Hosek) -> HosekModel {
     HosekModel {
         coefficients: std::array::from_fn(|i| sky.coefficients[i / 9][i % 9] as f32),
         mean_radiance: kilo(sky.mean_radiance),
+    }
+}
+
+fn grey_model(sky: &GreySky) -> GreyModel {
+    let distribution = &sky.distribution;
+    GreyModel {
+        gradation: distribution.gradation.map(|v| v as f32),
+        indicatrix: distribution.indicatrix.map(|v| v as f32),
+        least_cosine: distribution.least_cosine as f32,
+        level: (sky.level * 1e-3) as f32,
     }
 }
 

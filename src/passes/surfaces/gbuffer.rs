@@ -12,13 +12,14 @@ use crate::gpu::{
 use crate::gpu_struct;
 
 use crate::passes::surfaces::culling::Cull;
-use crate::passes::surfaces::geometry::{Bound, Geometry, Kind};
+use crate::passes::surfaces::geometry::{Bound, EmissionSource, Geometry, Kind};
 use crate::passes::view::View;
 
 gpu_struct! {
     /// Uniforms shared by all draws.
     pub struct CameraBlock: camera of
-        GBUFFER_VERT, GBUFFER_VERT_DETAILED, GBUFFER_FRAG, GBUFFER_FRAG_ALBEDO, GBUFFER_FRAG_DETAILED, GBUFFER_FRAG_DETAILED_ALBEDO
+        GBUFFER_VERT, GBUFFER_VERT_DETAILED, GBUFFER_FRAG, GBUFFER_FRAG_ALBEDO, GBUFFER_FRAG_ALBEDO_EMISSION,
+        GBUFFER_FRAG_DETAILED, GBUFFER_FRAG_DETAILED_ALBEDO, GBUFFER_FRAG_DETAILED_ALBEDO_EMISSION
     {
         clip_from_world: [[f32; 4]; 4],
         eye: Vec3,
@@ -29,7 +30,8 @@ gpu_struct! {
 gpu_struct! {
     /// Material of a draw call.
     pub struct Push: push of
-        GBUFFER_FRAG, GBUFFER_FRAG_ALBEDO, GBUFFER_FRAG_DETAILED, GBUFFER_FRAG_DETAILED_ALBEDO
+        GBUFFER_FRAG, GBUFFER_FRAG_ALBEDO, GBUFFER_FRAG_ALBEDO_EMISSION,
+        GBUFFER_FRAG_DETAILED, GBUFFER_FRAG_DETAILED_ALBEDO, GBUFFER_FRAG_DETAILED_ALBEDO_EMISSION
     {
         diffuse: Vec3,
         material: u32,
@@ -60,6 +62,8 @@ pub struct Surfaces {
     pub normal_material: Image,
     /// ρ_d, and a factor on ρ_s; `None` for a scene without maps, where the table of materials has ρ_d.
     pub albedo: Option<Image>,
+    /// Factor on L_e of the table of materials; `None` for a scene without emissive textures.
+    pub emission: Option<Image>,
     /// Reversed depth: near / distance; 0 is background.
     pub depth: Image,
 }
@@ -67,10 +71,14 @@ pub struct Surfaces {
 impl Surfaces {
     fn new(context: &Arc<Context>, size: [u32; 2], targets: &[Format]) -> Result<Self> {
         let image = |name, format| Image::new(context, &ImageDesc::flat(name, format, size));
-        let albedo = targets.get(1).map(|format| image("albedo", *format));
+        let target = |i: usize, name| {
+            let format = targets.get(i);
+            format.map(|format| image(name, *format)).transpose()
+        };
         Ok(Self {
             normal_material: image("normal and material", targets[0])?,
-            albedo: albedo.transpose()?,
+            albedo: target(1, "albedo")?,
+            emission: target(2, "emission")?,
             depth: image("depth", Format::D32_SFLOAT)?,
         })
     }
@@ -80,6 +88,7 @@ impl Surfaces {
         [&self.normal_material, &self.depth]
             .into_iter()
             .chain(&self.albedo)
+            .chain(&self.emission)
     }
 
     /// Samples the images and the table of materials in a pass, texel by texel.
@@ -90,6 +99,11 @@ impl Surfaces {
         self.shapes_sampled_by(pass)
             .sample("albedo", albedo, Sampler::Nearest)
             .sample("materials", materials, Sampler::Nearest)
+    }
+
+    /// The factor on L_e, or where there is none any image that can take its place.
+    pub fn emission_or<'r>(&'r self, other: &'r Image) -> &'r Image {
+        self.emission.as_ref().unwrap_or(other)
     }
 
     /// Samples depth and normals in a pass, texel by texel.
@@ -105,6 +119,7 @@ impl Surfaces {
     fn attach<'r>(&'r self, pass: Pass<'r>, load: Load) -> Pass<'r> {
         let images = std::iter::once(&self.normal_material).chain(&self.albedo);
         images
+            .chain(&self.emission)
             .fold(pass, |pass, image| pass.color(image, load))
             .depth(&self.depth, load)
     }
@@ -156,25 +171,21 @@ const VERTEX: [Format; 5] = [
     Format::R16G16B16A16_SNORM,
 ];
 
-/// The shader stages for a kind of surface, and the number of its vertex streams.
-fn stages(kind: Kind, has_albedo: bool) -> ([&'static Shader; 2], usize) {
-    match (kind.is_detailed(), has_albedo) {
-        (false, false) => ([&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG], 3),
-        (false, true) => ([&shaders::GBUFFER_VERT, &shaders::GBUFFER_FRAG_ALBEDO], 3),
-        (true, false) => (
-            [
-                &shaders::GBUFFER_VERT_DETAILED,
-                &shaders::GBUFFER_FRAG_DETAILED,
-            ],
-            5,
-        ),
-        (true, true) => (
-            [
-                &shaders::GBUFFER_VERT_DETAILED,
-                &shaders::GBUFFER_FRAG_DETAILED_ALBEDO,
-            ],
-            5,
-        ),
+/// The shader stages for a kind of surface and a number of targets, and the number of its vertex streams.
+fn stages(kind: Kind, targets: usize) -> ([&'static Shader; 2], usize) {
+    let is_detailed = kind.is_detailed();
+    let fragment = match (is_detailed, targets) {
+        (false, 1) => &shaders::GBUFFER_FRAG,
+        (false, 2) => &shaders::GBUFFER_FRAG_ALBEDO,
+        (false, _) => &shaders::GBUFFER_FRAG_ALBEDO_EMISSION,
+        (true, 1) => &shaders::GBUFFER_FRAG_DETAILED,
+        (true, 2) => &shaders::GBUFFER_FRAG_DETAILED_ALBEDO,
+        (true, _) => &shaders::GBUFFER_FRAG_DETAILED_ALBEDO_EMISSION,
+    };
+    if is_detailed {
+        ([&shaders::GBUFFER_VERT_DETAILED, fragment], 5)
+    } else {
+        ([&shaders::GBUFFER_VERT, fragment], 3)
     }
 }
 
@@ -186,7 +197,7 @@ impl Targets {
         kind: Kind,
         normals_match_winding: bool,
     ) -> Result<Pipeline> {
-        let (stages, streams) = stages(kind, self.formats.len() > 1);
+        let (stages, streams) = stages(kind, self.formats.len());
         let mut constants = vec![
             ("DIFFUSE_MAP", kind.diffuse_map.into()),
             ("SPECULAR_MAP", kind.specular_map.into()),
@@ -196,6 +207,9 @@ impl Targets {
         ];
         if kind.is_detailed() {
             constants.push(("NORMAL_MAP", kind.normal_map.into()));
+        }
+        if self.formats.len() > 2 {
+            constants.push(("EMISSIVE_MAP", kind.emissive_map.into()));
         }
         Pipeline::new(
             context,
@@ -234,6 +248,9 @@ impl Gbuffer {
         if geometry.has_albedo() {
             formats.push(Format::R16G16B16A16_SFLOAT);
         }
+        if geometry.emission_source() == EmissionSource::Image {
+            formats.push(Format::R16G16B16A16_SFLOAT);
+        }
         let targets = Targets { formats, faces };
         let pipelines = |is_detailed: bool| {
             let kinds = geometry
@@ -267,6 +284,8 @@ impl Gbuffer {
             eye: view.camera.eye,
             sharpen: view.sharpen,
         };
+        let has_emission = self.surfaces.emission.is_some();
+        let bind = |draws: &mut Draws<'_, '_>, bound: &Bound<'_>| bind(draws, bound, has_emission);
         let pass = recorder.pass("G-buffer", &self.untextured);
         self.surfaces
             .attach(pass.uniform("camera", &camera), Load::Clear([0.0; 4]))
@@ -308,12 +327,16 @@ fn switch<'r>(
     }
 }
 
-/// Binds the maps of ρ_d and ρ_s of a draw, and pushes its material.
-fn bind(draws: &mut Draws<'_, '_>, bound: &Bound<'_>) {
+/// Binds the maps of ρ_d, ρ_s and, if pipelines read them, L_e of a draw, and pushes its material.
+fn bind(draws: &mut Draws<'_, '_>, bound: &Bound<'_>, has_emission: bool) {
     let maps = [bound.diffuse_map, bound.specular_map];
     let [diffuse_map, specular_map] = maps.map(|map| map.unwrap_or(bound.white));
     draws.texture("diffuse_map", diffuse_map, Sampler::Repeat);
     draws.texture("specular_map", specular_map, Sampler::Repeat);
+    if has_emission {
+        let map = bound.emissive_map.unwrap_or(bound.white);
+        draws.texture("emissive_map", map, Sampler::Repeat);
+    }
     draws.push(&Push::of(bound));
 }
 
@@ -348,9 +371,8 @@ mod tests {
                 ..Kind::default()
             },
         ] {
-            for has_albedo in [false, true] {
-                let ([_, fragment], _) = stages(kind, has_albedo);
-                let targets = 1 + usize::from(has_albedo);
+            for targets in 1..=3 {
+                let ([_, fragment], _) = stages(kind, targets);
                 assert_eq!(fragment.outputs, targets, "{}", fragment.name);
             }
         }

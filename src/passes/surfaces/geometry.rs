@@ -40,13 +40,27 @@ pub struct Kind {
     pub diffuse_map: bool,
     /// Read a texture of the factor on ρ_s.
     pub specular_map: bool,
+    /// Read a texture of the factor on L_e.
+    pub emissive_map: bool,
 }
 
 impl Kind {
-    /// Whether it needs more than maps of ρ_d and ρ_s.
+    /// Whether it needs more than maps of ρ_d, ρ_s and L_e.
     pub fn is_detailed(&self) -> bool {
         self.colours || self.normal_map || self.cut_out
     }
+}
+
+/// Where L_e of a pixel is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum EmissionSource {
+    /// Nothing emits light.
+    #[default]
+    None,
+    /// In the table of materials.
+    Materials,
+    /// In the table of materials, with a factor in an image: there are emissive textures.
+    Image,
 }
 
 /// A material with the data that draw calls need.
@@ -56,8 +70,11 @@ pub(in crate::passes) struct Surface {
     pub diffuse_map: Option<usize>,
     pub specular_map: Option<usize>,
     pub normal_map: Option<usize>,
+    pub emissive_map: Option<usize>,
     pub normal_scale: f32,
     pub is_specular: bool,
+    /// L_e, cd/m².
+    pub emission: Vec3,
     pub cutoff: Option<f32>,
 }
 
@@ -76,6 +93,8 @@ pub struct Bound<'g> {
     pub specular_map: Option<&'g Image>,
     /// Normal map.
     pub normal_map: Option<&'g Image>,
+    /// Map of the factor on L_e.
+    pub emissive_map: Option<&'g Image>,
     /// Factor on the slopes of the normal map.
     pub normal_scale: f32,
     /// Whether it has a ρ_s.
@@ -188,7 +207,7 @@ impl Geometry {
         self.clusters.iter().filter(move |c| cull.holds(c))
     }
 
-    /// ρ_d, ρ_s and p of every material, see `include/materials.glsl`.
+    /// ρ_d, ρ_s, p and L_e of every material, see `include/materials.glsl`.
     pub fn materials(&self) -> &Image {
         &self.materials
     }
@@ -200,10 +219,29 @@ impl Geometry {
             .map_or(Vec3::ZERO, |s| s.diffuse)
     }
 
-    /// Whether ρ_d or the factor on ρ_s varies within any material.
+    /// L_e of a material, cd/m², without its map.
+    pub fn emission(&self, material: u32) -> Vec3 {
+        self.surfaces
+            .get(material as usize)
+            .map_or(Vec3::ZERO, |s| s.emission)
+    }
+
+    /// Whether ρ_d or the factor on ρ_s varies within any material, or L_e does, which is stored beside them.
     pub fn has_albedo(&self) -> bool {
-        let varies = |k: Kind| k.diffuse_map || k.specular_map || k.colours;
+        let varies = |k: Kind| k.diffuse_map || k.specular_map || k.emissive_map || k.colours;
         self.kinds().any(varies)
+    }
+
+    /// Where L_e of a pixel is.
+    pub fn emission_source(&self) -> EmissionSource {
+        let emits = |part: &Part| self.emission(part.material) != Vec3::ZERO;
+        if self.kinds().any(|kind| kind.emissive_map) {
+            EmissionSource::Image
+        } else if self.parts.iter().any(emits) {
+            EmissionSource::Materials
+        } else {
+            EmissionSource::None
+        }
     }
 
     /// Draws all opaque casters that `cull` keeps, positions only.
@@ -317,6 +355,7 @@ impl Geometry {
             diffuse_map: map(s.diffuse_map),
             specular_map: map(s.specular_map),
             normal_map: map(s.normal_map),
+            emissive_map: map(s.emissive_map),
             normal_scale: s.normal_scale,
             is_specular: s.is_specular,
             cutoff: s.cutoff.unwrap_or(0.0),
@@ -373,6 +412,7 @@ impl Surface {
             cut_out: self.cutoff.is_some(),
             diffuse_map: self.diffuse_map.is_some(),
             specular_map: self.specular_map.is_some(),
+            emissive_map: self.emissive_map.is_some(),
         }
     }
 }

@@ -1,10 +1,13 @@
 //! Uploads of a scene's vertices, textures and materials.
 
+use glam::Vec3;
+
 use crate::gpu::{
     Buffer, BufferKind, Format, Image, ImageDesc, Recorder, Result, upload_buffer, upload_texture,
 };
 use crate::scene::{Encoding, Layout, Material, Scene, Texture};
 
+use crate::passes::kilo;
 use crate::passes::surfaces::geometry::Surface;
 
 /// Uploads colours and tangents for every vertex; a scene without them gets white and zero tangents.
@@ -43,19 +46,24 @@ pub(in crate::passes) fn normals_and_thickness(scene: &Scene, layout: &Layout) -
 /// Materials per row of the table of materials.
 pub(in crate::passes) const MATERIAL_COLUMNS: u32 = 1024;
 
+/// Texel rows of as many materials as there are columns.
+const MATERIAL_ROWS: usize = 3;
+
 /// Uploads the table of `include/materials.glsl`.
 pub(in crate::passes) fn upload_materials(
     recorder: &mut Recorder,
     materials: &[Material],
 ) -> Result<Image> {
     let columns = MATERIAL_COLUMNS as usize;
-    let rows = 2 * materials.len().div_ceil(columns).max(1);
+    let rows = MATERIAL_ROWS * materials.len().div_ceil(columns).max(1);
     let mut table = vec![[0.0f32; 4]; rows * columns];
     for (i, material) in materials.iter().enumerate() {
-        let at = i / columns * 2 * columns + i % columns;
+        let at = i / columns * MATERIAL_ROWS * columns + i % columns;
         let ([r, g, b], [x, y, z]) = (material.diffuse, material.specular);
         table[at] = [r, g, b, 0.0];
         table[at + columns] = [x, y, z, material.shininess];
+        let emission = kilo(Vec3::from(material.emission).as_dvec3());
+        table[at + 2 * columns] = emission.extend(0.0).to_array();
     }
     let size = [MATERIAL_COLUMNS, rows as u32];
     let desc = ImageDesc::flat("materials", Format::R32G32B32A32_SFLOAT, size);
@@ -68,6 +76,8 @@ pub(in crate::passes) fn surface(material: &Material) -> Surface {
         diffuse_map: material.diffuse_texture,
         specular_map: material.specular_texture,
         normal_map: material.normal_texture,
+        emissive_map: material.emissive_texture.filter(|_| material.is_emissive()),
+        emission: material.emission.into(),
         normal_scale: material.normal_scale,
         is_specular: material.specular != [0.0; 3],
         // The material's opacity multiplies that of the map; dividing the cutoff by it gives the same test.

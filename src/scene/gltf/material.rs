@@ -1,4 +1,4 @@
-//! glTF materials, converted to ρ_d, ρ_s and p by [`phong_of`].
+//! glTF materials, converted to ρ_d, ρ_s and p by [`phong_of`], and L_e.
 
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -73,11 +73,17 @@ impl Reader<'_, '_> {
         let colour = pbr.base_color_texture();
         let normal = source.normal_texture();
         let material = self.material(source);
-        let (texcoord_set, texture_from_mesh) = match (&colour, &normal) {
-            (Some(info), _) => transform(info),
-            (None, Some(info)) => (info.tex_coord(), Affine2::IDENTITY),
-            (None, None) => (0, Affine2::IDENTITY),
+        let emissive = source.emissive_texture();
+        let emissive = emissive.filter(|_| material.emissive_texture.is_some());
+        let (texcoord_set, texture_from_mesh) = match (&colour, &normal, &emissive) {
+            (Some(info), ..) | (None, None, Some(info)) => transform(info),
+            (None, Some(info), _) => (info.tex_coord(), Affine2::IDENTITY),
+            (None, None, None) => (0, Affine2::IDENTITY),
         };
+        if emissive.is_some_and(|info| transform(&info) != (texcoord_set, texture_from_mesh)) {
+            let what = "an emissive texture has texture coordinates of its own; those of the other maps are used";
+            self.builder.warn(self.path, what);
+        }
         if normal.is_some_and(|n| n.tex_coord() != texcoord_set) {
             let what = "a normal map has its own set of texture coordinates; the base colour's set is used";
             self.builder.warn(self.path, what);
@@ -114,6 +120,7 @@ impl Reader<'_, '_> {
             let wanted = TextureKey::Normals(picture, 1f32.to_bits());
             self.builder.texture(self.path, wanted)
         });
+        let (emission, emissive_texture) = self.emitted(source);
         let surface = self.metallic_roughness(source, [r, g, b]);
         let (diffuse, specular, shininess) = phong_of(&surface);
         let finite = |v: f32| if v.is_finite() { v } else { 1.0 };
@@ -132,7 +139,21 @@ impl Reader<'_, '_> {
             specular_texture: None,
             normal_texture,
             normal_scale: finite(normal.map_or(1.0, |n| n.scale())),
+            emission,
+            emissive_texture,
         }
+    }
+
+    /// L_e, in the candelas per square metre of the specification, and its texture.
+    fn emitted(&mut self, source: &gltf::Material<'_>) -> ([f32; 3], Option<usize>) {
+        let strength = source.emissive_strength().unwrap_or(1.0);
+        let factor = source.emissive_factor().map(|v| v * strength);
+        let name = source.name().unwrap_or_default();
+        let emission = self.builder.emission(self.path, name, factor);
+        let texture = source.emissive_texture();
+        let texture = texture.filter(|_| emission != [0.0; 3]);
+        let texture = texture.and_then(|info| self.colour(&info.texture(), None));
+        (emission, texture)
     }
 
     /// Roughness and metalness textures are replaced by their means, because p is constant over a material.

@@ -16,6 +16,7 @@ struct Entry {
     name: String,
     diffuse: Option<[f32; 3]>,
     specular: Option<[f32; 3]>,
+    emission: Option<[f32; 3]>,
     shininess: Option<f32>,
     dissolve: Option<f32>,
     transparency: Option<f32>,
@@ -25,6 +26,7 @@ struct Entry {
     ior: Option<f32>,
     diffuse_map: Option<Map>,
     specular_map: Option<Map>,
+    emissive_map: Option<Map>,
     mask: Option<Map>,
     bump: Option<Map>,
     metallic_map: Option<Map>,
@@ -134,6 +136,7 @@ impl Libraries {
         match key.as_str() {
             "kd" => set(&mut entry.diffuse, colour(rest)),
             "ks" => set(&mut entry.specular, colour(rest)),
+            "ke" => set(&mut entry.emission, colour(rest)),
             "ns" => set(&mut entry.shininess, number(rest)),
             "ni" => set(&mut entry.ior, number(rest)),
             "d" => set(
@@ -149,6 +152,7 @@ impl Libraries {
             }
             "map_kd" => set(&mut entry.diffuse_map, map()),
             "map_ks" => set(&mut entry.specular_map, map()),
+            "map_ke" => set(&mut entry.emissive_map, map()),
             "map_d" => set(&mut entry.mask, map()),
             "map_bump" | "bump" | "map_kn" | "norm" => set(&mut entry.bump, map()),
             "map_pm" => set(&mut entry.metallic_map, map()),
@@ -201,6 +205,7 @@ impl Entry {
             &self.mask,
             &self.bump,
             &self.specular_map,
+            &self.emissive_map,
         ];
         let first = maps.into_iter().flatten().next();
         first.map_or(Affine2::IDENTITY, |map| {
@@ -211,10 +216,8 @@ impl Entry {
 
     fn material(&self, builder: &mut Builder, obj: &Path) -> Material {
         let diffuse_texture = self.diffuse_texture(builder, obj);
-        let specular_texture = self.specular_map.as_ref().and_then(|map| {
-            let path = map.path(builder, obj)?;
-            builder.texture(obj, TextureKey::Colour(path))
-        });
+        let specular_texture = colour_texture(builder, obj, self.specular_map.as_ref());
+        let (emission, emissive_texture) = self.emitted(builder, obj);
         let normal_texture = self.bump.as_ref().and_then(|map| {
             let path = map.path(builder, obj)?;
             builder.texture(obj, TextureKey::Normals(path, map.options.bump.to_bits()))
@@ -242,8 +245,21 @@ impl Entry {
             diffuse_texture,
             specular_texture,
             normal_texture,
+            emission,
+            emissive_texture,
             ..MTL_DEFAULT
         }
+    }
+
+    /// L_e and its texture. A texture without `Ke`, or beside the `Ke 0 0 0` that exporters write, is L_e itself.
+    fn emitted(&self, builder: &mut Builder, obj: &Path) -> ([f32; 3], Option<usize>) {
+        let texture = colour_texture(builder, obj, self.emissive_map.as_ref());
+        let factor = self.emission.unwrap_or_default();
+        let factor = match texture {
+            Some(_) if factor == [0.0; 3] => [1.0; 3],
+            _ => factor,
+        };
+        (builder.emission(obj, &self.name, factor), texture)
     }
 
     fn exponent(&self) -> f32 {
@@ -317,6 +333,12 @@ impl Entry {
         };
         opacity.clamp(0.0, 1.0)
     }
+}
+
+/// The texture of a map of colours.
+fn colour_texture(builder: &mut Builder, obj: &Path, map: Option<&Map>) -> Option<usize> {
+    let path = map?.path(builder, obj)?;
+    builder.texture(obj, TextureKey::Colour(path))
 }
 
 fn colour(rest: &str) -> Option<[f32; 3]> {

@@ -3,6 +3,7 @@
 use super::*;
 use crate::scene::LoadOptions;
 use crate::scene::files::Files;
+use crate::scene::material::MAX_EMISSION;
 use crate::scene::progress::Reporter;
 
 static FILES: &[(&str, &[u8])] = &[
@@ -60,6 +61,66 @@ fn values_are_clamped_and_malformed_ones_ignored() {
     };
     assert_eq!(materials[1], default);
 }
+
+#[test]
+fn emission_is_read_and_bounded_with_one_warning() {
+    let mtl = "newmtl a\nKe 3 2 0.5\nnewmtl b\nKe 7\nnewmtl c\nKe -1 2 1e30\nnewmtl d\nKe 1e30\nnewmtl e\nKe nan 1 1\n\
+               newmtl f\nmap_Ke none.png\n";
+    let (materials, warnings) = with_builder(|builder| {
+        let mut libraries = Libraries::default();
+        libraries.add(builder, Path::new("m.mtl"), mtl);
+        let entries = libraries.entries.iter();
+        let materials: Vec<_> = entries
+            .map(|entry| entry.material(builder, Path::new("m.obj")))
+            .collect();
+        (materials, builder.scene.warnings.clone())
+    });
+    let emissions = materials.iter().map(|m| m.emission);
+    let most = MAX_EMISSION;
+    let expected = [
+        [3.0, 2.0, 0.5],
+        [7.0; 3],
+        [0.0, 2.0, most],
+        [most; 3],
+        [0.0; 3],
+        [0.0; 3],
+    ];
+    assert!(emissions.eq(expected), "{materials:?}");
+    let told = |what: &str| warnings.iter().filter(|w| w.contains(what)).count();
+    assert_eq!(told("emission of \"c\""), 1, "{warnings:?}");
+    assert_eq!(told("malformed"), 1, "{warnings:?}");
+    assert_eq!(told("none.png"), 1, "{warnings:?}");
+    assert_eq!(warnings.len(), 3, "{warnings:?}");
+}
+
+#[test]
+fn a_map_of_emission_without_a_factor_is_emission_itself() {
+    let emission = |lines: &str| {
+        let mut files = FILES.to_vec();
+        files.push(("lamp.bmp", LAMP));
+        let progress = Reporter::new(&|_, _| ());
+        let files: &'static [(&str, &[u8])] = files.leak();
+        let mut builder = Builder::new(Files::embedded(files), &LoadOptions::default(), progress);
+        let mut libraries = Libraries::default();
+        let text = format!("newmtl a\n{lines}map_Ke -s 2 3 lamp.bmp\n");
+        libraries.add(&mut builder, Path::new("m.mtl"), &text);
+        let (material, uv) = libraries
+            .material(&mut builder, Path::new("m.obj"), "a")
+            .expect("a material");
+        assert_eq!(material.emissive_texture, Some(0));
+        assert_eq!(uv.matrix2.x_axis.x, 2.0);
+        material.emission
+    };
+    assert_eq!(emission(""), [1.0; 3]);
+    assert_eq!(emission("Ke 0 0 0\n"), [1.0; 3]);
+    assert_eq!(emission("Ke 5 4 3\n"), [5.0, 4.0, 3.0]);
+}
+
+/// A picture of one pixel: BMP, 24 bits.
+const LAMP: &[u8] = &[
+    b'B', b'M', 58, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0,
+    24, 0, 0, 0, 0, 0, 4, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10, 20, 30, 0,
+];
 
 #[test]
 fn dissolve_overrides_transparency() {

@@ -1,18 +1,34 @@
-//! Sky model, turbidity, ground albedo, refraction.
+//! Sky model, its measured irradiances or clouds, turbidity, ground albedo, refraction.
 
 use egui::{Slider, Ui};
+use glam::DVec3;
 
 use super::choice;
 use crate::commands::light::air;
 use crate::commands::view::document::Document;
-use crate::daylight::SkyModel;
 use crate::daylight::atmosphere::air::{ALTITUDE_RANGE_M, AOD_RANGE, OZONE_RANGE_DU};
-use crate::daylight::sky::Conditions;
+use crate::daylight::colour::luminance;
+use crate::daylight::perez::MOST_IRRADIANCE_W;
+use crate::daylight::sky::{Conditions, SkyModel};
 use crate::options::Options;
 
 pub(super) fn show(ui: &mut Ui, document: &mut Document) {
+    let [sun, sky] = horizontal(document);
     let settings = &mut document.job.settings;
     choice(ui, "sky", &mut settings.sky);
+    if settings.sky == SkyModel::Perez {
+        // A sky that is measured from now on begins with about the light that was there.
+        let start = [sun, sky].map(|lux| (lux / 110.0).round().clamp(0.0, 1000.0));
+        let watts = |name| move |value| Slider::new(value, 0.0..=MOST_IRRADIANCE_W).text(name);
+        ui.add(watts("sun, W/m²")(settings.dni.get_or_insert(start[0])))
+            .on_hover_text("measured irradiance by the sun at normal incidence");
+        ui.add(watts("sky, W/m²")(settings.dhi.get_or_insert(start[1])))
+            .on_hover_text("measured irradiance by the sky on a horizontal plane");
+    }
+    if settings.sky.is_clear() {
+        ui.add(Slider::new(&mut settings.cloud_cover, 0.0..=1.0).text("cloud cover"))
+            .on_hover_text("share of the sky: dims the sun and evens out the sky, as in the mean of many hours");
+    }
     if settings.sky == SkyModel::Atmosphere {
         atmosphere(ui, settings);
     } else {
@@ -21,13 +37,12 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
     ui.add(Slider::new(&mut settings.ground_albedo, 0.0..=1.0).text("ground albedo"))
         .on_hover_text("reflectance of the ground below the horizon, 0 to 1");
     choice(ui, "refraction", &mut settings.refraction);
-    let light = &document.job.daylight;
-    let lux = crate::daylight::colour::luminance;
-    let elevation = document.job.sun.apparent_elevation_deg;
-    let sun = lux(light.sun_illuminance) * elevation.to_radians().sin().max(0.0);
-    let sky = lux(light.sky_irradiance_up);
+    choice(ui, "moon", &mut settings.moon);
+    let is_moonlit = document.job.daylight.moon.is_some()
+        && document.job.daylight.sun_illuminance == DVec3::ZERO;
+    let source = if is_moonlit { "moon" } else { "sun" };
     ui.label(format!(
-        "horizontal: sun {} + sky {}",
+        "horizontal: {source} {} + sky {}",
         illuminance(sun),
         illuminance(sky)
     ));
@@ -59,6 +74,13 @@ fn atmosphere(ui: &mut Ui, settings: &mut Options) {
     }
     ui.add(Slider::new(&mut settings.ozone, OZONE_RANGE_DU).text("ozone, DU"));
     ui.add(Slider::new(&mut settings.altitude, ALTITUDE_RANGE_M).text("altitude, m"));
+}
+
+/// Illuminances of a horizontal plane by sun (or moon) and sky, lux.
+fn horizontal(document: &Document) -> [f64; 2] {
+    let light = &document.job.daylight;
+    let sky = luminance(light.sky_irradiance_up);
+    [luminance(light.horizontal()) - sky, sky]
 }
 
 /// Formats an illuminance, lux: `12.3 klx`, `0.25 lx`.

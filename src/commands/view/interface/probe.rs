@@ -94,6 +94,9 @@ fn about(ui: &mut Ui, surface: &SurfaceReading, scene: &Scene) {
     let name = if name.is_empty() { "unnamed" } else { name };
     row(ui, "material", name);
     row(ui, "reflectance", rgb(surface.albedo, 3));
+    if surface.emission != [0.0; 3] {
+        row(ui, "emission", format!("{:.1} cd/m²", of(surface.emission)));
+    }
     row(ui, "normal", rgb(surface.normal, 3));
     row(ui, "depth", format!("{:.2} m", surface.distance));
 }

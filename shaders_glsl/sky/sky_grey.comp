@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "sky_overcast.glsl"
+#include "sky_grey.glsl"
 #include "cube_compute.glsl"
 
 layout(set = 0, binding = 1) uniform writeonly image2DArray sky_radiance; // kcd/m^2

@@ -3,7 +3,7 @@
 use crate::gpu::{Device, Model, Picture, camera, clear_day, matt, settings};
 use skylight::daylight::colour::luminance;
 use skylight::daylight::sky::Daylight;
-use skylight::frame::{Frame, FrameSettings};
+use skylight::frame::{Frame, FrameSettings, Visibility};
 use skylight::passes::bounces::cells::Bounces;
 use skylight::passes::light::lighting::{Ambient, Show};
 use skylight::scene::{Camera, Scene};
@@ -102,4 +102,49 @@ fn still_pixels_do_not_flicker_while_the_cells_are_refined() {
         100.0 * flicker
     );
     assert!(flicker < 0.01);
+}
+
+/// Ratio of the means, and the median of the relative errors of the pixels, of a picture against another one.
+fn errors(picture: &Picture, truth: &Picture) -> [f64; 2] {
+    let pairs = picture.pixels().zip(truth.pixels());
+    let lit = pairs.filter(|(_, (_, truth))| luminance(*truth) > 0.0);
+    let relative = lit.map(|((_, a), (_, b))| (luminance(a) / luminance(b) - 1.0).abs());
+    let mut relative: Vec<f64> = relative.collect();
+    relative.sort_by(f64::total_cmp);
+    [mean(picture) / mean(truth), relative[relative.len() / 2]]
+}
+
+/// A walk of sixty frames into the court and past its wall: on the way the light of sky and bounces is that of a converged picture.
+#[test]
+fn on_a_walk_the_light_is_right() {
+    let mut device = Device::new();
+    let (scene, day) = (court(), clear_day(150.0, 40.0));
+    let at = |step: u32| {
+        let along = step as f32 / 60.0;
+        camera([-1.5, 1.7, 8.0 - 5.0 * along], [2.0 - along, 1.0, 0.0])
+    };
+    let mut frame = device.run(|rec| Frame::new(rec, &scene, moving(Show::Sky)).expect("a frame"));
+    let mut step = 0;
+    for stop in [30, 60] {
+        for show in [Show::Sky, Show::Bounces] {
+            while step < stop {
+                previews(&mut device, &mut frame, &day, &at(step), 1);
+                step += 1;
+            }
+            frame.show(show).expect("shown");
+            previews(&mut device, &mut frame, &day, &at(stop), 1);
+            let moving_picture = device.picture_of(&frame);
+            let mut set = moving(show);
+            set.samples = 48;
+            set.sampling.visibility = Visibility::Dome;
+            let truth = device.picture(&scene, set, &day, &at(stop));
+            let [ratio, median] = errors(&moving_picture, &truth);
+            println!("{show:?} at step {stop}: ratio {ratio:.4}, median error {median:.4}");
+            // The noise of the converged bounces is in it.
+            assert!(
+                (ratio - 1.0).abs() < 0.02 && median < 0.12,
+                "{show:?} {stop}"
+            );
+        }
+    }
 }

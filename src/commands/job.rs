@@ -297,6 +297,10 @@ impl Job {
                 format!("{} lux (RGB)", rgb(self.daylight.sky_irradiance_up)),
             ),
         ];
+        if let Some(moon) = self.daylight.moon {
+            let text = format!("{} lux (RGB)", rgb(moon.illuminance));
+            list.push(("moon illuminance".into(), text));
+        }
         // There is no command line when the scene sets an option that cannot be unset.
         list.extend(
             self.command_line()

@@ -3,13 +3,14 @@
 use std::fmt::{self, Display, Formatter};
 
 use chrono::{DateTime, FixedOffset};
+use glam::DVec3;
 use serde::Serialize;
 
 use super::light::Light;
 use super::sky_table::{line, with_unit};
 use crate::daylight::colour::luminance;
 use crate::daylight::day_times::{DayTimes, Passage, Spans};
-use crate::daylight::moon::{Moon, MoonEvents, moon_events};
+use crate::daylight::moon::{Moon, MoonEvents, Moonlight, moon_events};
 use crate::error::Result;
 use crate::options::SunInput;
 
@@ -77,8 +78,9 @@ pub struct MoonPart {
     pub magnitude: f64,
     /// Illuminance at normal incidence outside the air, lux.
     pub outside_lux: f64,
-    /// Illuminance at normal incidence on the ground, lux.
+    /// Illuminance at normal incidence on the ground, lux; 0 below the horizon, behind clouds, and with --moon off.
     pub illuminance_lux: f64,
+    pub illuminance_rgb: [f64; 3],
     /// Direct illuminance of a horizontal plane, lux.
     pub direct_horizontal_lux: f64,
     pub moonrise: Option<String>,
@@ -101,12 +103,14 @@ impl Almanac {
         };
         let (date, offset) = (when.date_naive(), *when.offset());
         let times = DayTimes::of(date, offset, latitude, longitude)?;
-        let moon = Moon::at(when, latitude, longitude)?;
+        let moon = match light.conditions.moon {
+            Some(moon) => moon,
+            None => Moon::at(when, latitude, longitude)?,
+        };
         let events = moon_events(date, offset, latitude, longitude)?;
-        let turbidity = light.turbidity();
         Ok(Some(Self {
             times: Times::new(&times),
-            moon: MoonPart::new(&moon, &events, turbidity),
+            moon: MoonPart::new(&moon, &events, light.daylight.moon),
         }))
     }
 }
@@ -147,9 +151,9 @@ impl Hours {
 }
 
 impl MoonPart {
-    fn new(moon: &Moon, events: &MoonEvents, turbidity: f64) -> Self {
-        let illuminance = luminance(moon.light(turbidity).illuminance);
-        let direction = moon.direction();
+    fn new(moon: &Moon, events: &MoonEvents, light: Option<Moonlight>) -> Self {
+        let rgb = light.map_or(DVec3::ZERO, |light| light.illuminance);
+        let (illuminance, direction) = (luminance(rgb), moon.direction());
         Self {
             azimuth_deg: moon.azimuth_deg,
             elevation_deg: moon.elevation_deg,
@@ -162,6 +166,7 @@ impl MoonPart {
             magnitude: moon.magnitude(),
             outside_lux: moon.outside_lux(),
             illuminance_lux: illuminance,
+            illuminance_rgb: rgb.to_array(),
             direct_horizontal_lux: illuminance * direction.y.max(0.0),
             moonrise: rfc3339(events.rise),
             moonset: rfc3339(events.set),

@@ -5,7 +5,6 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::daylight::colour::luminance;
 use crate::scene::{Reflectances, Scene};
 
 /// A triangle that emits light.
@@ -27,8 +26,8 @@ pub struct Emitters {
 }
 
 impl Emitters {
-    /// Finds the emitters of a scene.
-    pub fn of(scene: &Scene, means: &Reflectances<'_>) -> Self {
+    /// Finds the emitters of a scene. `luminance`: of a colour.
+    pub fn of(scene: &Scene, means: &Reflectances<'_>, luminance: impl Fn(Vec3) -> f64) -> Self {
         let mut all = Self::default();
         for part in &scene.parts {
             if !scene.materials[part.material as usize].is_emissive() {
@@ -36,7 +35,7 @@ impl Emitters {
             }
             let first = part.first_index / 3;
             for triangle in first..first + part.index_count / 3 {
-                let emission = Vec3::from(means.of(triangle).emission).as_dvec3();
+                let emission = Vec3::from(means.of(triangle).emission);
                 all.add(triangle, luminance(emission), area(scene, triangle));
             }
         }

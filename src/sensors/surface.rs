@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
+use crate::daylight::colour::luminance;
 use crate::scene::{Bvh, Emitters, Encoding, Hit, Material, Ray, Reflectances, Scene, Texture};
 
 /// A scene as paths see it.
@@ -215,7 +216,9 @@ impl<'a> TracedScene<'a> {
 
 fn emitters(scene: &Scene) -> Emitters {
     if scene.is_emissive() {
-        Emitters::of(scene, &Reflectances::new(scene))
+        Emitters::of(scene, &Reflectances::new(scene), |rgb| {
+            luminance(rgb.as_dvec3())
+        })
     } else {
         Emitters::default()
     }

@@ -5,6 +5,7 @@ use std::thread;
 
 use glam::{DVec3, Vec3};
 
+use crate::daylight::colour::luminance;
 use crate::gpu::{Format, Image, ImageDesc, Pass, Recorder, Result, Sampler, upload_texture};
 use crate::passes::bounces::shared_exponent;
 use crate::passes::bounces::wide::{Wide, WideNode};
@@ -58,7 +59,7 @@ impl Tree {
         )?;
         let number = |position: &u32| bvh.triangles()[*position as usize].number;
         let numbers: Vec<u32> = wide.triangles.iter().map(number).collect();
-        let emitters = Emitters::of(scene, &reflectances);
+        let emitters = Emitters::of(scene, &reflectances, |rgb| luminance(rgb.as_dvec3()));
         let positions = positions(&numbers, &emitters);
         let words = |emitter: &Emitter| {
             let up_to = (emitter.up_to as f32).to_bits();

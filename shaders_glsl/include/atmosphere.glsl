@@ -23,7 +23,8 @@ layout(set = 0, binding = 0, scalar) uniform Model {
     ivec2 field_size;        // altitudes and suns of the field
     int low_steps;           // of the sun's grid
     vec3 sun_grid;           // its least and high sine, slope at the high one
-    int cells;               // of a path
+    int cells;               // of a path to the top of the air
+    int ground_cells;        // of a path to the ground
 } model;
 
 /// Optical depths to the top of the air, then the field, then the irradiance of the ground.
@@ -194,14 +195,16 @@ vec4 mean_transmittance(vec4 x) {
 }
 
 /// Light scattered into a path, over the irradiance of the sun; `transmittance` is that of the path.
-vec4 along(Path path, float sun_sine, float cos_gamma, out vec4 transmittance) {
+vec4 along(Path path, int cells, float sun_sine, float cos_gamma, out vec4 transmittance) {
+    transmittance = vec4(1.0);
+    if (path.extent == 0.0) return vec4(0.0);
     float g = model.asymmetry;
     float phase_air = model.rayleigh_phase.x + model.rayleigh_phase.y * cos_gamma * cos_gamma;
     float phase_aerosol = (1.0 - g * g) / (4.0 * PI * pow(1.0 + g * g - 2.0 * g * cos_gamma, 1.5));
-    float width = (path.to - path.from) / float(model.cells);
+    float width = (path.to - path.from) / float(cells);
     vec4 depth = vec4(0.0);
     vec4 light = vec4(0.0);
-    for (int k = 0; k < model.cells; k++) {
+    for (int k = 0; k < cells; k++) {
         float a = path.from + width * float(k);
         float b = path.from + width * float(k + 1);
         float mean = (abs(b) * b * b - abs(a) * a * a) / max(3.0 * width, 1e-20);
@@ -231,7 +234,7 @@ vec4 ground_radiance(float sun_sine) {
 vec4 transfer(float altitude, float mu, float sun_sine, float cos_gamma, bool meets_ground) {
     Path path = path_of(altitude, mu, meets_ground ? distance_to_ground(altitude, mu) : distance_to_top(altitude, mu));
     vec4 transmittance;
-    vec4 light = along(path, sun_sine, cos_gamma, transmittance);
+    vec4 light = along(path, meets_ground ? model.ground_cells : model.cells, sun_sine, cos_gamma, transmittance);
     if (!meets_ground) return light;
     Point ground = point_along(path, path.extent);
     float sine = sun_sine_along(path, path.extent, ground, sun_sine, cos_gamma);

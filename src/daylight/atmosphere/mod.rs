@@ -31,8 +31,10 @@ use super::colour::rgb_from_xyz;
 use super::quadrature::gauss_legendre;
 use super::sunlight::{SUN_ANGULAR_RADIUS, visible_fraction};
 
-/// Cells of a ray of the sky.
+/// Cells of a path to the top of the air.
 pub const VIEW_CELLS: usize = 24;
+/// Cells of a path to the ground, which is shorter.
+pub const GROUND_CELLS: usize = 12;
 
 /// Share of the sun's disc above the horizon of the ground, seen from the radius `r` (km), with its centre at the sine of elevation `sine`.
 pub fn sun_share(r: f64, sine: f64) -> f64 {
@@ -143,7 +145,12 @@ impl Atmosphere {
     /// Radiance over the sun's irradiance outside the air, at the four wavelengths.
     pub fn transfer(&self, sun_sine: f64, mu: f64, cos_gamma: f64, meets_ground: bool) -> DVec4 {
         let path = Path::new(self.observer(), mu, meets_ground);
-        let along = self.along(&path, sun_sine, cos_gamma, VIEW_CELLS);
+        let cells = if meets_ground {
+            GROUND_CELLS
+        } else {
+            VIEW_CELLS
+        };
+        let along = self.along(&path, sun_sine, cos_gamma, cells);
         if !meets_ground {
             return along.scattered;
         }
@@ -169,6 +176,8 @@ impl Atmosphere {
         let phase = [rayleigh_phase(cos_gamma), medium.aerosol_phase(cos_gamma)];
         let mut depth = DVec4::ZERO;
         let mut scattered = DVec4::ZERO;
+        // The ground at the feet of the observer has no air before it.
+        let cells = if path.length == 0.0 { 0 } else { cells };
         for k in 0..cells {
             let cell = path.cell(k, cells);
             let point = path.point(cell.t);

@@ -15,7 +15,7 @@ use crate::daylight::atmosphere::medium::{
 use crate::daylight::atmosphere::scattered_sky::ScatteredSky;
 use crate::daylight::atmosphere::sky_view::{HALF_HEIGHT, WIDTH};
 use crate::daylight::atmosphere::solve::Effort;
-use crate::daylight::atmosphere::{VIEW_CELLS, colour, columns};
+use crate::daylight::atmosphere::{GROUND_CELLS, VIEW_CELLS, colour, columns};
 use crate::daylight::colour::rgb_from_xyz;
 use crate::daylight::sunlight::SUN_ANGULAR_RADIUS;
 use crate::gpu::{
@@ -56,6 +56,7 @@ gpu_struct! {
         low_steps: i32,
         sun_grid: Vec3,
         cells: i32,
+        ground_cells: i32,
     }
 }
 
@@ -175,5 +176,6 @@ fn model(atmosphere: &Atmosphere) -> AirModel {
         low_steps: int(grid.low_steps()),
         sun_grid: Vec3::new(LEAST_SUN as f32, HIGH_SUN as f32, HIGH_SLOPE as f32),
         cells: int(VIEW_CELLS),
+        ground_cells: int(GROUND_CELLS),
     }
 }

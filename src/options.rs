@@ -32,6 +32,7 @@ pub use crate::gpu::Optional;
 pub use crate::passes::bounces::cells::Bounces;
 pub use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
 pub use crate::passes::light::lighting::{Ambient, Show};
+use choices::VisibilityParser;
 pub use choices::{Choice, name};
 pub(crate) use choices::{choice, choice_enum, choices};
 pub use given::OptionValues;
@@ -39,11 +40,12 @@ pub use resolve::ResolveError;
 pub(crate) use resolve::shortest;
 pub use sun_input::SunInput;
 pub use values::{
-    AoResolution, Direction, ExposureMode, Fresnel, Penumbra, Place, Preset, Size, SolarTime,
-    Switch, When,
+    AerosolInput, AoResolution, Direction, ExposureMode, Fresnel, Penumbra, Place, Preset, Size,
+    SolarTime, Switch, When,
 };
 pub(crate) use values::{exposure_factor, ratio, sun as direction};
 
+use crate::daylight::atmosphere::air::Air;
 use crate::daylight::sky::Conditions;
 use crate::frame::FrameSettings;
 use crate::passes::dome::gather::{DomeSettings, MOST_DIRECTIONS};
@@ -117,10 +119,27 @@ options! {
             /// Model of the sky.
             #[arg(value_name = "MODEL", value_parser = choice::<SkyModel>(), default_value_t)]
             sky: SkyModel,
-            /// Turbidity: 2 very clear, 3 clear, 6 hazy, 10 murky; clamped to what the model holds for.
-            #[arg(value_name = "T", value_parser = values::turbidity, allow_hyphen_values = true,
-                  default_value_t = Conditions::default().turbidity)]
-            turbidity: f64,
+            /// Turbidity: 2 very clear, 3 clear (the default), 6 hazy, 10 murky; clamped to what the model holds for. With --sky atmosphere
+            /// another word for --aod: 0.1 for 2, 0.2 for 3, 0.4 for 5.
+            #[arg(value_name = "T", value_parser = values::turbidity, allow_hyphen_values = true)]
+            turbidity: Option<f64>,
+            /// Optical depth of the aerosol at 550 nm, 0 to 0.6: 0.05 very clear, 0.1 clear (the default), 0.2 hazy, 0.4 murky
+            /// (--sky atmosphere).
+            #[arg(value_name = "AOD", value_parser = values::aod, allow_hyphen_values = true, conflicts_with = "turbidity")]
+            aod: Option<f64>,
+            /// Horizontal visibility at sea level, km, 8 to 300, another word for --aod: 41 for 0.1 (--sky atmosphere).
+            #[arg(value_name = "KM", value_parser = values::visual_range, allow_hyphen_values = true,
+                  conflicts_with_all = ["turbidity", "aod"])]
+            visual_range: Option<f64>,
+            /// Ozone, Dobson units, 0 to 600; it makes the blue hour (--sky atmosphere).
+            #[arg(value_name = "DU", value_parser = values::ozone, allow_hyphen_values = true,
+                  default_value_t = Air::default().ozone_du)]
+            ozone: f64,
+            /// The aerosol: single-scattering albedo 0.8 to 1, asymmetry 0 to 0.85, scale height 0.5 to 8 km, Ångström exponent 0 to 2.5
+            /// (--sky atmosphere).
+            #[arg(value_name = "SSA,G,KM,ANGSTROM", value_parser = values::aerosol, allow_hyphen_values = true,
+                  default_value_t = Air::default().aerosol.into())]
+            aerosol: AerosolInput,
             /// Horizontal illuminance of the sky alone, lux: scales the sky to a measured value; by default the model's own.
             #[arg(value_name = "LUX", value_parser = values::sky_illuminance, allow_hyphen_values = true)]
             sky_illuminance: Option<f64>,
@@ -139,7 +158,8 @@ options! {
             /// of 2 cm of precipitable water, 11 °C.
             #[arg(value_name = "CELSIUS", value_parser = values::dew_point, allow_hyphen_values = true)]
             dew_point: Option<f64>,
-            /// Whether the air lifts the sun to its apparent elevation (of --place and --solar; --sun is as seen).
+            /// Whether the air lifts the sun to its apparent elevation (of --place and --solar). With --sky atmosphere the air is lit by the true
+            /// sun, and the disc stands and shines at its apparent elevation. --sun is taken as given for both.
             #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
             refraction: Switch,
             /// Whether the moon shines: its disc in the sky, and its light when the sun gives none (of --place and --when).
@@ -149,6 +169,13 @@ options! {
             #[arg(value_name = "ALBEDO", value_parser = values::ground_albedo, allow_hyphen_values = true,
                   default_value_t = Conditions::default().ground_albedo)]
             ground_albedo: f64,
+        }
+
+        "Sun and sky" ["place", "sky", "moment"] {
+            /// Altitude of the place above the sea, metres, 0 to 10000 (--sky atmosphere).
+            #[arg(value_name = "M", value_parser = values::altitude, allow_hyphen_values = true,
+                  default_value_t = Air::default().altitude_m)]
+            altitude: f64,
         }
 
         "Sun and sky" [] {
@@ -176,7 +203,8 @@ options! {
             noise: Option<f64>,
             /// What hides the sky: in single frames what --ambient says, or shadow maps from directions of the sky, which converge to
             /// the truth with the samples. From 16 samples on the default is dome. Given as ssao, so is --ambient.
-            #[arg(value_name = "HOW", value_parser = choice::<Visibility>(), default_value_t)]
+            /// A number is the visibility of the air in km instead: --visual-range.
+            #[arg(value_name = "HOW", value_parser = VisibilityParser, default_value_t)]
             visibility: Visibility,
             /// Spread of the samples in a pixel.
             #[arg(value_name = "FILTER", value_parser = choice::<Filter>(), default_value_t)]

@@ -131,7 +131,7 @@ void main() {
     ivec3 texel = ivec3(slot_texel(slot), 0);
     Sum sum = published(slot);
     uint word = uint(sum.samples) | (sum.hidden & 0xffu) << SAMPLE_BITS;
-    imageStore(cells, texel, uvec4(prints[slot], shared_exponent_pack(sum.sky), shared_exponent_pack(sum.bounce), word));
+    imageStore(cells, texel, uvec4(prints[slot], irradiance_pack(sum.sky), irradiance_pack(sum.bounce), word));
     uvec2 gradients = uvec2(gradient_pack(sum.sky_gradient, luminance(sum.sky), sum.samples), gradient_pack(sum.bounce_gradient, luminance(sum.bounce), sum.samples));
     imageStore(cell_planes, texel, uvec4(walls[slot], gradients));
     contests[slot * CONTESTS] = 0xffffffffu;

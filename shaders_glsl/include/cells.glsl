@@ -42,11 +42,11 @@ struct State {
 };
 
 vec3 sky_of(State state, vec3 n) {
-    return shared_exponent_unpack(state.texel.y) * toward_normal(state.gradients.x, n);
+    return irradiance_unpack(state.texel.y) * toward_normal(state.gradients.x, n);
 }
 
 vec3 bounce_of(State state, vec3 n) {
-    return shared_exponent_unpack(state.texel.z) * toward_normal(state.gradients.y, n);
+    return irradiance_unpack(state.texel.z) * toward_normal(state.gradients.y, n);
 }
 
 /// The state of the cell of a point at a place of the grid.

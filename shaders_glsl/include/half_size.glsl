@@ -10,7 +10,7 @@ struct Ambient {
 
 /// A texel: both irradiances, distance along the view axis (metres), normal. All 0 is background.
 uvec4 half_size_pack(Ambient light, float distance, uint normal) {
-    return uvec4(shared_exponent_pack(light.sky), shared_exponent_pack(light.bounce), floatBitsToUint(distance), normal);
+    return uvec4(irradiance_pack(light.sky), irradiance_pack(light.bounce), floatBitsToUint(distance), normal);
 }
 
 // Squarings of the cosine between normals in the weights: cos^8.
@@ -33,8 +33,8 @@ Ambient half_size_at(usampler2D image, ivec2 pixel, ivec2 chosen, float distance
         for (int k = 0; k < SHARPNESS; ++k) same *= same;
         // The small terms keep the weights finite, and other surfaces count if there is nothing else.
         float w = there > 0.0 ? (bilinear[i] + 1e-3) * (same + 1e-3) / (1e-3 * distance + abs(there - distance)) : 0.0;
-        sky += w * shared_exponent_unpack(tap.x);
-        bounce += w * shared_exponent_unpack(tap.y);
+        sky += w * irradiance_unpack(tap.x);
+        bounce += w * irradiance_unpack(tap.y);
         sum += w;
     }
     float scale = sum > 0.0 ? 1.0 / sum : 0.0;

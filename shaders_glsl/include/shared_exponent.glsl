@@ -18,4 +18,15 @@ vec3 shared_exponent_unpack(uint word) {
     float scale = uintBitsToFloat(((word >> 27) + 103u) << 23);
     return vec3(word & 0x1ffu, (word >> 9) & 0x1ffu, (word >> 18) & 0x1ffu) * scale;
 }
+
+// Irradiances, klx, up to 4 088: 1e-6 klx of a night keep eight bits.
+const float IRRADIANCE_STEPS = 16.0;
+
+uint irradiance_pack(vec3 klx) {
+    return shared_exponent_pack(klx * IRRADIANCE_STEPS);
+}
+
+vec3 irradiance_unpack(uint word) {
+    return shared_exponent_unpack(word) / IRRADIANCE_STEPS;
+}
 #endif

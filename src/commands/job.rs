@@ -8,6 +8,7 @@ use std::thread;
 use glam::UVec2;
 
 use super::light::{conditions, sun_position};
+use crate::daylight::colour::luminance;
 use crate::daylight::exposure::{KEY, factor_from_ev100};
 use crate::daylight::sample_count::ErrorEstimate;
 use crate::daylight::sky::Daylight;
@@ -85,6 +86,9 @@ pub struct Job {
     /// The options of the scene file. Its model has been moved to `scene`.
     pub loaded: Loaded,
 }
+
+/// Illuminance by the sky below which radiance is kept in 32-bit floats: that of a sky of 1 cd/m².
+const DARK_LUX: f64 = std::f64::consts::PI;
 
 impl Job {
     /// Loads the scene and resolves the options. Prints warnings to stderr unless `--quiet` is set.
@@ -179,7 +183,9 @@ impl Job {
         if s.preset == Some(Preset::Lecture) {
             set.sky_edge = LECTURE_SKY_EDGE;
         }
-        set.lighting.precision = precision;
+        // Half floats of kcd/m² are too coarse for a dark sky.
+        let is_dark = luminance(self.daylight.sky_irradiance_up) < DARK_LUX;
+        set.lighting.precision = if is_dark { Precision::Float } else { precision };
         set.lighting.ambient = s.ambient;
         set.lighting.specular_scale = s.specular as f32;
         if s.limb_darkening {

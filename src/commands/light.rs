@@ -1,5 +1,6 @@
 //! Resolves options into a sun position and a daylight. `sky` and `bake` need nothing else.
 
+use crate::daylight::atmosphere::air::{Air, aod_of_turbidity, aod_of_visibility};
 use crate::daylight::moon::Moon;
 use crate::daylight::perez::Measured;
 use crate::daylight::sky::{Conditions, Daylight};
@@ -102,10 +103,14 @@ fn moon(settings: &Options) -> Option<Moon> {
 pub fn conditions(settings: &Options, sun: &SunPosition) -> Conditions {
     Conditions {
         model: settings.sky,
-        turbidity: settings.turbidity,
+        turbidity: settings
+            .turbidity
+            .unwrap_or(Conditions::default().turbidity),
         ground_albedo: settings.ground_albedo,
         sun_azimuth_deg: sun.azimuth_deg,
         sun_elevation_deg: sun.apparent_elevation_deg,
+        refraction_deg: sun.apparent_elevation_deg - sun.elevation_deg,
+        air: air(settings),
         horizontal_illuminance: settings.sky_illuminance,
         cloud_cover: settings.cloud_cover,
         moon: moon(settings),
@@ -115,5 +120,20 @@ pub fn conditions(settings: &Options, sun: &SunPosition) -> Conditions {
             dew_point_c: settings.dew_point,
             day_of_year: settings.sun.day_of_year(),
         },
+    }
+}
+
+/// The air of the options.
+pub fn air(settings: &Options) -> Air {
+    let aerosol = settings.aerosol.0;
+    let of_visibility = |km| aod_of_visibility(km, aerosol.scale_height_km);
+    let other = settings.visual_range.map(of_visibility);
+    let other = other.or_else(|| settings.turbidity.map(aod_of_turbidity));
+    Air {
+        aod: settings.aod.or(other).unwrap_or(Air::default().aod),
+        ozone_du: settings.ozone,
+        altitude_m: settings.altitude,
+        aerosol,
+        ground_albedo: settings.ground_albedo,
     }
 }

@@ -1,5 +1,6 @@
 //! What decides a daylight: the model of the sky and its inputs, and their ranges.
 
+use super::atmosphere::air::Air;
 use super::cie::{self, SkyCover, StandardSky, standard_sky};
 use super::moon::Moon;
 use super::perez::{DEW_POINTS, MOST_IRRADIANCE_W, Measured};
@@ -51,6 +52,8 @@ pub enum SkyModel {
     Cie15,
     /// Traditional overcast.
     Cie16,
+    /// Clear sky with all orders of scattering on the sphere, from noon to night: [`super::atmosphere`].
+    Atmosphere,
 }
 
 impl SkyModel {
@@ -65,7 +68,7 @@ impl SkyModel {
     /// The standard sky of the CIE, if the model is one.
     pub fn standard(self) -> Option<StandardSky> {
         let number = match self {
-            Self::Preetham | Self::Hosek | Self::Perez => return None,
+            Self::Preetham | Self::Hosek | Self::Perez | Self::Atmosphere => return None,
             Self::Cie1 => 1,
             Self::Cie2 => 2,
             Self::Cie3 => 3,
@@ -108,6 +111,11 @@ pub struct Conditions {
     pub sun_azimuth_deg: f64,
     /// Apparent elevation of the sun's centre, degrees in -90..=90.
     pub sun_elevation_deg: f64,
+    /// How far the air lifts the sun, degrees: apparent minus true elevation. [`SkyModel::Atmosphere`] lights the air by the true
+    /// sun; the others know the apparent one alone.
+    pub refraction_deg: f64,
+    /// The air of [`SkyModel::Atmosphere`], with [`Self::ground_albedo`] instead of its own.
+    pub air: Air,
     /// Horizontal diffuse illuminance to which the sky is scaled, lux. `None` uses the model's own (for the CIE skies
     /// [`cie::daylight_availability`]). A measured value is used unchanged, without twilight fade.
     pub horizontal_illuminance: Option<f64>,
@@ -129,6 +137,8 @@ impl Default for Conditions {
             ground_albedo: 0.2,
             sun_azimuth_deg: 180.0,
             sun_elevation_deg: 45.0,
+            refraction_deg: 0.0,
+            air: Air::default(),
             horizontal_illuminance: None,
             cloud_cover: 0.0,
             moon: None,
@@ -173,6 +183,7 @@ impl Conditions {
                 (-1e6, 1e6),
                 fallback.sun_azimuth_deg,
             ),
+            ("refraction", &mut valid.refraction_deg, (0.0, 1.0), 0.0),
             ("horizontal illuminance", lux, (0.0, 1e6), 0.0),
             ("cloud cover", &mut valid.cloud_cover, (0.0, 1.0), 0.0),
             (
@@ -191,6 +202,9 @@ impl Conditions {
         ] {
             warnings.extend(limit(name, value, range, fallback));
         }
+        let (air, moved) = valid.air.clamped();
+        valid.air = air;
+        warnings.extend(moved);
         warnings.extend(valid.remarks());
         valid
     }
@@ -203,7 +217,7 @@ impl Conditions {
         }
         let elevation = self.sun_elevation_deg;
         let is_measured = self.horizontal_illuminance.is_some() || self.model == SkyModel::Perez;
-        if elevation < 0.0 && !is_measured {
+        if elevation < 0.0 && !is_measured && self.model != SkyModel::Atmosphere {
             remarks.push(format!(
                 "the sun is below the horizon ({elevation:.2} degrees): the sky model ends there and is faded to the night's"
             ));

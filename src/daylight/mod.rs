@@ -9,6 +9,7 @@
 //!    illuminance in lux. [`spectrum`] integrates, [`colour`] turns XYZ into linear BT.709 RGB.
 //! 3. [`preetham`], [`hosek`] and [`grey_sky`]: the sky's radiance in a direction. [`cie`] has the standard skies, [`perez`] the
 //!    sky of measured irradiances, both of them grey skies; [`clouds`] covers a clear one.
+//!    [`atmosphere`] solves the scattering of light in the air, from noon to night.
 //! 4. [`sky`]: sun, sky and the ground below the horizon as one [`Daylight`]; finite and not negative for any input.
 //!    [`conditions`] has the inputs and their ranges.
 //! 5. [`cube`]: cube maps in Vulkan's convention. [`irradiance`]: E(n) of a radiance, by four methods, with the points of
@@ -26,6 +27,7 @@
 // A test may panic.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+pub mod atmosphere;
 pub mod cie;
 pub mod cities;
 pub mod clouds;

@@ -109,7 +109,12 @@ impl Moon {
     pub fn light(&self, turbidity: f64) -> Moonlight {
         let elevation = self.apparent_elevation_deg;
         let outside = Sunlight::extraterrestrial().luminance_xyz.y;
-        let through = Sunlight::new(turbidity, elevation.max(0.0)).luminance() / outside;
+        self.light_through(Sunlight::new(turbidity, elevation.max(0.0)).luminance() / outside)
+    }
+
+    /// The light of the moon on the ground, through air with this transmittance of sunlight: linear BT.709 RGB over the luminance outside.
+    pub fn light_through(&self, through: DVec3) -> Moonlight {
+        let elevation = self.apparent_elevation_deg;
         let whole = colour::clip_negative(through) * self.outside_lux();
         let angular_radius = self.angular_diameter_deg().to_radians() / 2.0;
         let solid_angle = PI * angular_radius.sin().powi(2);

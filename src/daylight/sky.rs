@@ -10,6 +10,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
+use super::atmosphere::air::Air;
+use super::atmosphere::scattered_sky::ScatteredSky;
+use super::atmosphere::{Atmosphere, sun_share};
 use super::cie::{self, SkyCover, StandardSky, daylight_availability};
 use super::clouds::clouded;
 use super::colour;
@@ -36,7 +39,7 @@ pub const TWILIGHT_LUX: [f64; 3] = [2.65, 0.008, 6e-4];
 const OVERCAST_ZENITH_PER_LUX: f64 = 9.0 / (7.0 * PI);
 
 /// A sky model with evaluated coefficients.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Sky {
     /// See [`Preetham`].
     Preetham(Preetham),
@@ -44,6 +47,8 @@ pub enum Sky {
     Hosek(Hosek),
     /// See [`GreySky`].
     Grey(GreySky),
+    /// See [`ScatteredSky`].
+    Atmosphere(ScatteredSky),
 }
 
 impl Sky {
@@ -53,6 +58,7 @@ impl Sky {
             Self::Preetham(sky) => sky.radiance(dir),
             Self::Hosek(sky) => sky.radiance(dir),
             Self::Grey(sky) => sky.radiance(dir),
+            Self::Atmosphere(sky) => sky.radiance(dir),
         }
     }
 
@@ -60,6 +66,9 @@ impl Sky {
     fn irradiance_up(&self) -> DVec3 {
         match self {
             Self::Grey(sky) => DVec3::splat(sky.horizontal_illuminance),
+            Self::Atmosphere(sky) => {
+                colour::clip_negative(sky.atmosphere.diffuse_illuminance(sky.sun.y))
+            }
             _ => horizontal_irradiance(|dir| colour::clip_negative(self.radiance(dir))),
         }
     }
@@ -75,7 +84,8 @@ pub struct Guard {
     pub scale: f64,
     /// Luminance at the zenith of the clouds, which have the luminances of the CIE overcast sky, cd/m².
     pub clouds: f64,
-    /// Added radiance, linear BT.709 RGB, cd/m²: 0 by day, [`NIGHT_LUMINANCE`] (white) after twilight, (1 - `scale`) of it between.
+    /// Added radiance, linear BT.709 RGB, cd/m²: 0 by day, [`NIGHT_LUMINANCE`] (white) after twilight, (1 - `scale`) of it between;
+    /// the whole of it always with [`SkyModel::Atmosphere`].
     pub night: DVec3,
 }
 
@@ -167,11 +177,28 @@ impl Daylight {
 
     /// Radiance in the unit direction `dir`, linear BT.709 RGB, cd/m²: sky without the discs of sun and moon, ground below the horizon.
     pub fn radiance(&self, dir: DVec3) -> DVec3 {
-        if dir.y < 0.0 {
-            self.ground_luminance
-        } else {
-            self.sky_radiance(dir)
+        match &self.sky {
+            Sky::Atmosphere(sky) if sky.view().is_ground(dir) => {
+                let (scale, added) = self.ground_of(sky);
+                colour::clip_negative(sky.radiance(dir)) * scale + added
+            }
+            Sky::Atmosphere(_) => guarded(&self.sky, &self.guard, dir),
+            _ if dir.y < 0.0 => self.ground_luminance,
+            _ => self.sky_radiance(dir),
         }
+    }
+
+    /// How the ground that an atmosphere shows becomes [`Self::ground_luminance`] at the observer: a factor, and what night and
+    /// moon add, linear BT.709 RGB, cd/m².
+    pub fn ground_of(&self, sky: &ScatteredSky) -> (f64, DVec3) {
+        let direct = self.direct_light();
+        let is_moon = self.sun_illuminance == DVec3::ZERO;
+        let moon = direct.illuminance * direct.direction.y.max(0.0) * f64::from(u8::from(is_moon));
+        let albedo = sky.atmosphere.medium.ground_albedo;
+        let added = (self.guard.night + moon / PI) * albedo;
+        let own = colour::luminance(colour::clip_negative(sky.atmosphere.ground_rgb(sky.sun.y)));
+        let here = colour::luminance(self.ground_luminance - added).max(0.0);
+        (if own > 1e-9 { here / own } else { 1.0 }, added)
     }
 
     /// Radiance of the sky alone, linear BT.709 RGB, cd/m²; black below the horizon.
@@ -185,7 +212,7 @@ impl Daylight {
 }
 
 fn guarded(sky: &Sky, guard: &Guard, dir: DVec3) -> DVec3 {
-    let clouds = guard.clouds * (1.0 + 2.0 * dir.y) / 3.0;
+    let clouds = guard.clouds * (1.0 + 2.0 * dir.y.max(0.0)) / 3.0;
     colour::clip_negative(sky.radiance(dir)) * guard.scale + guard.night + clouds
 }
 
@@ -195,6 +222,9 @@ fn sun(valid: &Conditions, factor: f64) -> (DVec3, DVec3) {
     if factor == 0.0 || visible == 0.0 {
         return (DVec3::ZERO, DVec3::ZERO);
     }
+    if valid.model == SkyModel::Atmosphere {
+        return sun_through_air(valid);
+    }
     let sunlight = Sunlight::new(valid.turbidity, valid.sun_elevation_deg);
     let clip = colour::clip_negative;
     (
@@ -203,10 +233,35 @@ fn sun(valid: &Conditions, factor: f64) -> (DVec3, DVec3) {
     )
 }
 
+/// The same through the air of the conditions: along the apparent direction, in which the eye sees it.
+fn sun_through_air(valid: &Conditions) -> (DVec3, DVec3) {
+    let atmosphere = atmosphere_of(valid);
+    let sine = valid.sun_elevation_deg.to_radians().sin();
+    let illuminance = colour::clip_negative(atmosphere.sun_illuminance(sine));
+    let share = sun_share(atmosphere.observer(), sine);
+    let luminance = illuminance / (share.max(1e-9) * SUN_SOLID_ANGLE);
+    (illuminance, luminance)
+}
+
+fn atmosphere_of(valid: &Conditions) -> Atmosphere {
+    let ground_albedo = valid.ground_albedo;
+    Atmosphere::of(&Air {
+        ground_albedo,
+        ..valid.air
+    })
+}
+
 /// The moon through a sky without clouds of its own; `share` is what clouds leave.
 fn moonlight(valid: &Conditions, share: f64) -> Option<Moonlight> {
     let moon = valid.moon.filter(|_| valid.model.is_clear())?;
-    let light = moon.light(valid.turbidity).scaled(share);
+    let light = if valid.model == SkyModel::Atmosphere {
+        let sine = moon.apparent_elevation_deg.to_radians().sin();
+        let through = atmosphere_of(valid).transmittance_to_space(sine);
+        moon.light_through(through)
+    } else {
+        moon.light(valid.turbidity)
+    };
+    let light = light.scaled(share);
     (light.illuminance != DVec3::ZERO).then_some(light)
 }
 
@@ -228,6 +283,12 @@ fn sky_and_sun_factor(valid: &Conditions, sun_direction: DVec3) -> (Sky, f64) {
             let lux = given.unwrap_or(weather.diffuse_horizontal_lux);
             let sky = GreySky::new(weather.distribution, sun_direction, lux);
             (Sky::Grey(sky), sun_factor(valid, weather.direct_normal_lux))
+        }
+        SkyModel::Atmosphere => {
+            let true_deg = elevation - valid.refraction_deg;
+            let sun = direction(valid.sun_azimuth_deg, true_deg.max(-90.0));
+            let sky = ScatteredSky::new(atmosphere_of(valid), sun);
+            (Sky::Atmosphere(sky), 1.0)
         }
         _ => {
             let preetham = Preetham::new(valid.turbidity, sun_direction);
@@ -267,6 +328,11 @@ fn guard_of(valid: &Conditions, own_lux: f64, sun_direction: DVec3) -> Guard {
     let elevation = valid.sun_elevation_deg;
     match valid.horizontal_illuminance {
         Some(lux) if own_lux > 0.0 => by_day(lux / own_lux),
+        // It has a twilight of its own.
+        None if valid.model == SkyModel::Atmosphere => Guard {
+            night: DVec3::splat(NIGHT_LUMINANCE),
+            ..by_day(1.0)
+        },
         None if elevation < 0.0 && valid.model != SkyModel::Perez => {
             let scale = twilight_illuminance(elevation, own_lux) / own_lux;
             Guard {

@@ -106,6 +106,11 @@ fn absurd_inputs_are_replaced_and_named() {
                     dew_point_c: Some(bad),
                     day_of_year: Some(u32::MAX),
                 },
+                refraction_deg: bad,
+                air: Air {
+                    aod: bad,
+                    ..Air::default()
+                },
             };
             let day = Daylight::new(&given);
             let mut seen = Seen::default();
@@ -251,4 +256,57 @@ fn the_horizontal_illuminance_is_integrated_finely_enough() {
             assert!(error < 1e-4, "{given:?} {error:e}");
         }
     }
+}
+
+#[test]
+fn an_atmosphere_has_its_own_twilight_and_always_the_night() {
+    for elevation in [50.0, 0.0, -8.0, -30.0] {
+        let given = conditions(SkyModel::Atmosphere, elevation);
+        let day = Daylight::new(&given);
+        assert!(day.warnings.is_empty(), "{:?}", day.warnings);
+        assert_eq!(day.guard.scale, 1.0);
+        assert_eq!(day.guard.night, DVec3::splat(NIGHT_LUMINANCE));
+        // The table of the view and the sum over directions are two ways to the same light.
+        let seen = horizontal_irradiance(|dir| day.sky_radiance(dir));
+        let ratio = colour::luminance(seen) / colour::luminance(day.sky_irradiance_up);
+        println!("{elevation}: {ratio}");
+        assert!((ratio - 1.0).abs() < 3e-3, "{elevation}: {ratio}");
+        let ground = day.radiance(DVec3::NEG_Y);
+        let expected = colour::luminance(day.ground_luminance);
+        assert!((colour::luminance(ground) / expected - 1.0).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn an_atmosphere_follows_the_true_sun_and_its_disc_the_apparent_one() {
+    let lifted = Conditions {
+        refraction_deg: 0.48,
+        ..conditions(SkyModel::Atmosphere, 0.48)
+    };
+    let (lifted, plain) = (
+        Daylight::new(&lifted),
+        Daylight::new(&conditions(SkyModel::Atmosphere, 0.0)),
+    );
+    let up = |day: &Daylight| colour::luminance(day.sky_irradiance_up);
+    assert!((up(&lifted) / up(&plain) - 1.0).abs() < 1e-9);
+    let sun = |day: &Daylight| colour::luminance(day.sun_illuminance);
+    assert!(sun(&lifted) > 2.0 * sun(&plain) && lifted.sun_direction.y > plain.sun_direction.y);
+}
+
+#[test]
+fn a_given_illuminance_and_clouds_change_an_atmosphere_too() {
+    let mut given = conditions(SkyModel::Atmosphere, 20.0);
+    given.horizontal_illuminance = Some(8000.0);
+    let lux = colour::luminance(Daylight::new(&given).sky_irradiance_up);
+    assert!((lux / 8000.0 - 1.0).abs() < 1e-9, "{lux}");
+    given.horizontal_illuminance = None;
+    let clear = Daylight::new(&given);
+    given.cloud_cover = 1.0;
+    let cloudy = Daylight::new(&given);
+    assert!(cloudy.sun_illuminance.max_element() < 0.01 * clear.sun_illuminance.max_element());
+    let ratio = |day: &Daylight| {
+        let seen = horizontal_irradiance(|dir| day.sky_radiance(dir));
+        colour::luminance(seen) / colour::luminance(day.sky_irradiance_up)
+    };
+    assert!((ratio(&cloudy) - 1.0).abs() < 3e-3);
 }

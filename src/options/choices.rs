@@ -1,8 +1,10 @@
 //! Enums as option values: name and help line of each variant.
 
+use std::ffi::OsStr;
 use std::fmt;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Arg, Command};
 
 use super::{
     Ambient, Filter, IrradianceMethod, Optional, Phong, Quantity, Reflections, Show, SkyModel,
@@ -32,6 +34,42 @@ pub(crate) fn choice<T: Choice>() -> impl TypedValueParser<Value = T> {
         let found = values.find(|(_, name, _)| *name == text);
         found.map(|(value, ..)| *value).ok_or(fmt::Error)
     })
+}
+
+/// Parser of `--visibility`: what hides the sky. A number is the visibility of the air; [`is_visual_range`] makes it another option.
+#[derive(Clone)]
+pub(crate) struct VisibilityParser;
+
+impl TypedValueParser for VisibilityParser {
+    type Value = Visibility;
+
+    fn parse_ref(
+        &self,
+        command: &Command,
+        arg: Option<&Arg>,
+        value: &OsStr,
+    ) -> Result<Visibility, clap::Error> {
+        if value.to_str().is_some_and(is_number) {
+            return Ok(Visibility::default());
+        }
+        choice::<Visibility>().parse_ref(command, arg, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let values = Visibility::VALUES.iter();
+        Some(Box::new(values.map(|(_, name, help)| {
+            PossibleValue::new(*name).help(*help)
+        })))
+    }
+}
+
+/// Whether this option and text are the visibility of the air in km (`--visual-range`) under the name that it shares with what hides the sky.
+pub(super) fn is_visual_range(name: &str, text: &str) -> bool {
+    name == "visibility" && is_number(text)
+}
+
+fn is_number(text: &str) -> bool {
+    text.trim().parse::<f64>().is_ok()
 }
 
 /// Implements [`Choice`] and [`Display`](fmt::Display): `Variant | SynonymThatCannotBeSelected = "name": "help"`.
@@ -134,6 +172,7 @@ choices! {
     SkyModel {
         Preetham = "preetham": "Clear sky of Preetham, Shirley & Smits 1999 (the lecture's)",
         Hosek = "hosek": "Clear sky of Hošek & Wilkie 2012",
+        Atmosphere = "atmosphere": "Clear sky of all orders of scattering in air, aerosol and ozone on the sphere, from noon to night: --aod, --ozone, --altitude ..",
         Overcast = "overcast": "CIE standard overcast sky; no sun (cie-16)",
         CieClear = "cie-clear": "CIE standard clear sky, white (cie-12)",
         Perez = "perez": "Sky of measured irradiances, Perez et al. 1993, white: --dni and --dhi",

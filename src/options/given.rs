@@ -3,6 +3,7 @@
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
+use super::choices::is_visual_range;
 use super::{DEFINITION, Options, OptionsError, exclude_each_other, is_flag, one_line};
 
 /// Options of lower sources that an option overrides, besides itself and those that conflict with it.
@@ -33,8 +34,14 @@ impl OptionValues {
 
     /// Sets an option; replaces an earlier value.
     pub fn set(&mut self, name: &str, text: impl ToString) {
+        let text = text.to_string();
+        let name = if is_visual_range(name, &text) {
+            "visual-range"
+        } else {
+            name
+        };
         self.remove(&[name]);
-        self.0.push((name.to_owned(), text.to_string()));
+        self.0.push((name.to_owned(), text));
     }
 
     /// Sets an option unless it is already set.

@@ -7,6 +7,8 @@ use super::{
     Ambient, OptionValues, Options, OptionsError, Preset, Reflections, SkyModel, Visibility,
     all_tables, long, name, tables,
 };
+use crate::daylight::atmosphere::air::Air;
+use crate::daylight::sky::Conditions;
 use crate::scene::{
     Bounds, Camera, DEFAULT_FOV_DEG, LoadOptions, Loaded, NamedOptions, SceneError,
 };
@@ -93,8 +95,20 @@ impl Options {
         if asks_for_screen && is_default("ambient") {
             options.ambient = Ambient::Ssao;
         }
+        options.complete_air();
         options.check()?;
         Ok(options)
+    }
+
+    /// Sets the default of the air's one number if it has none, in the word that the sky is used with.
+    fn complete_air(&mut self) {
+        if self.turbidity.is_none() && self.aod.is_none() && self.visual_range.is_none() {
+            if self.sky == SkyModel::Atmosphere {
+                self.aod = Some(Air::default().aod);
+            } else {
+                self.turbidity = Some(Conditions::default().turbidity);
+            }
+        }
     }
 
     /// Fails if the options contradict each other.

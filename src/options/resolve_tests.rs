@@ -199,7 +199,7 @@ fn the_preset_is_below_what_is_given() {
     .expect("good");
     assert_eq!(
         (s.turbidity, s.scale, s.tonemap),
-        (5.0, Some(0.025), ToneCurve::Linear)
+        (Some(5.0), Some(0.025), ToneCurve::Linear)
     );
     assert_eq!(
         s.sun,

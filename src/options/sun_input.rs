@@ -54,7 +54,8 @@ options! {
             solar: Option<SolarTime>,
         }
         "Sun and sky" ["sun", "moment"] {
-            /// Direction of the sun, degrees: azimuth clockwise from north, elevation above the horizon.
+            /// Direction of the sun, degrees: azimuth clockwise from north, elevation above the horizon; the true elevation, and no refraction is added
+            /// for the disc.
             #[arg(value_name = "AZIMUTH,ELEVATION", value_parser = values::sun, allow_hyphen_values = true,
                   conflicts_with_all = ["place", "when", "solar"])]
             sun: Option<Direction>,

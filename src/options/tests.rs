@@ -11,7 +11,7 @@ use crate::daylight::sampling::rnd;
 use crate::scene::{Bounds, Camera, Loaded, NamedOptions, Scene};
 
 /// Texts of which each parser accepts at least one. The first is also the name of a camera and of a moment of [`scene`].
-const TEXTS: [&str; 16] = [
+const TEXTS: [&str; 17] = [
     "7",
     "-7.25",
     "0.5",
@@ -24,6 +24,7 @@ const TEXTS: [&str; 16] = [
     "1,2.5,-3",
     "-0.1,0.3333333,7e-9",
     "100,1000",
+    "0.9,0.7,2.5,1",
     "640x360",
     "2026-02-01T12:00:00+00:00",
     "1999-12-31T23:59:59.25-05:45",

@@ -4,6 +4,9 @@ use std::fmt;
 use std::ops::RangeInclusive;
 
 use super::{Bounces, Choice, choice_enum};
+use crate::daylight::atmosphere::air::{
+    ALTITUDE_RANGE_M, AOD_RANGE, Aerosol, Air, OZONE_RANGE_DU, VISIBILITY_RANGE_KM,
+};
 use crate::daylight::false_colour::Range;
 pub use crate::daylight::moment::When;
 use crate::daylight::perez::{DEW_POINTS, MOST_IRRADIANCE_W};
@@ -35,6 +38,32 @@ pub struct Direction {
     pub azimuth_deg: f64,
     /// Degrees above the horizon, −90..90.
     pub elevation_deg: f64,
+}
+
+/// An aerosol as the option's text gives it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AerosolInput(pub Aerosol);
+
+impl From<Aerosol> for AerosolInput {
+    fn from(aerosol: Aerosol) -> Self {
+        Self(aerosol)
+    }
+}
+
+/// In the form that the parser of `--aerosol` reads.
+impl fmt::Display for AerosolInput {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Aerosol {
+            single_scattering_albedo,
+            asymmetry,
+            scale_height_km,
+            angstrom,
+        } = self.0;
+        write!(
+            f,
+            "{single_scattering_albedo},{asymmetry},{scale_height_km},{angstrom}"
+        )
+    }
 }
 
 choice_enum! {
@@ -205,7 +234,7 @@ macro_rules! written_as_displayed {
     };
 }
 
-written_as_displayed! { u32 f64 String Size Direction SolarTime Bounces }
+written_as_displayed! { u32 f64 String Size Direction SolarTime Bounces AerosolInput }
 
 /// A finite number.
 pub(super) fn number(text: &str) -> Result<f64, String> {
@@ -247,6 +276,10 @@ macro_rules! ranged {
 
 ranged! {
     turbidity: "turbidity", "", -100.0..=100.0;
+    aod: "aerosol optical depth", "", AOD_RANGE;
+    visual_range: "visibility", "km", VISIBILITY_RANGE_KM;
+    ozone: "ozone", "Dobson units", OZONE_RANGE_DU;
+    altitude: "altitude", "metres", ALTITUDE_RANGE_M;
     sky_illuminance: "illuminance of the sky", "lux", 0.0..=1e6;
     cloud_cover: "cloud cover", "", 0.0..=1.0;
     irradiance_w: "irradiance", "W/m²", 0.0..=MOST_IRRADIANCE_W;
@@ -278,6 +311,25 @@ pub(super) fn point(text: &str) -> Result<[f64; 3], String> {
         within("a coordinate", "metres", -1e9..=1e9, value)?;
     }
     Ok(point)
+}
+
+/// `SSA,ASYMMETRY,SCALE_HEIGHT_KM,ANGSTROM`.
+pub(super) fn aerosol(text: &str) -> Result<AerosolInput, String> {
+    let [albedo, asymmetry, height, angstrom] = list(
+        text,
+        "four numbers: single-scattering albedo, asymmetry, scale height in km, Ångström exponent, for instance 0.93,0.76,1.2,1.3",
+    )?;
+    let aerosol = Aerosol {
+        single_scattering_albedo: albedo,
+        asymmetry,
+        scale_height_km: height,
+        angstrom,
+    };
+    let air = Air {
+        aerosol,
+        ..Air::default()
+    };
+    air.valid().map(|_| AerosolInput(aerosol))
 }
 
 /// `MIN,MAX` of false colours.

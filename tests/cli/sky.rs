@@ -373,7 +373,7 @@ fn every_model_is_compared_and_is_as_on_its_own() {
     let sun = "--sun 180,40 --dni 700 --dhi 120";
     let found = json(&format!("{sun} --compare"));
     let models = found["models"].as_array().expect("a list");
-    assert_eq!(models.len(), 21);
+    assert_eq!(models.len(), 22);
     for row in models {
         let name = row["model"].as_str().expect("a name");
         let alone = json(&format!("{sun} --sky {name}"));
@@ -426,6 +426,18 @@ fn nonsense_is_one_line_and_exit_code_2() {
             "dew point must be -90 to 40 °C",
         ),
         ("sky --cloud-cover 1.1", "cloud cover must be 0 to 1"),
+        ("sky --aod 3", "aerosol optical depth must be 0 to 0.6"),
+        (
+            "sky --altitude 200000",
+            "altitude must be 0 to 10000 metres",
+        ),
+        ("sky --ozone -1", "ozone must be 0 to 600 Dobson units"),
+        ("sky --visual-range 2", "visibility must be 8 to 300 km"),
+        ("sky --visibility 2", "visibility must be 8 to 300 km"),
+        ("sky --aerosol 0.1,0.76,1.2,1.3", "0.1 is outside 0.8..=1"),
+        ("sky --aerosol 0.9", "write four numbers"),
+        ("sky --aod 0.1 --turbidity 3", "cannot be used with"),
+        ("sky --aod 0.1 --visibility 40", "cannot be used with"),
         ("sky --cloud-cover -0.1", "cloud cover must be 0 to 1"),
         ("sky scene.toml", "scene.toml"),
         ("sky --refraction maybe", "--refraction"),
@@ -481,5 +493,31 @@ fn the_study_in_the_documentation_is_what_the_program_prints() {
     assert!(table.lines().count() > 20, "{table}");
     for line in table.lines().filter(|line| !line.is_empty()) {
         assert!(page.contains(&format!("//! {line}\n")), "{line}");
+    }
+}
+
+#[test]
+fn the_air_has_three_words_for_its_haze() {
+    let lux = |air: &str| {
+        let found = json(&format!("--sky atmosphere --sun 180,30 {air}"));
+        at(&found, "sky.diffuse_horizontal_lux")
+    };
+    let clear = lux("");
+    assert!((13_000.0..14_000.0).contains(&clear), "{clear}");
+    assert_eq!(lux("--aod 0.1"), clear);
+    for other in ["--turbidity 2", "--visual-range 41.2", "--visibility 41.2"] {
+        let ratio = lux(other) / clear;
+        assert!((ratio - 1.0).abs() < 0.02, "{other}: {ratio}");
+    }
+    assert!(lux("--aod 0.2") > 1.3 * clear && lux("--altitude 2000") < 0.6 * clear);
+}
+
+#[test]
+fn twilight_of_the_atmosphere_is_that_of_published_tables() {
+    // Explanatory Supplement to the Astronomical Almanac (Seidelmann 1992), clear air.
+    for (elevation, lux) in [(0.0, 759.0), (-2.0, 189.0), (-4.0, 29.9), (-6.0, 3.41)] {
+        let found = json(&format!("--sky atmosphere --sun 180,{elevation}"));
+        let ratio = at(&found, "global_horizontal_lux") / lux;
+        assert!((0.75..1.35).contains(&ratio), "{elevation}: {ratio}");
     }
 }

@@ -154,3 +154,9 @@ impl Worst {
         );
     }
 }
+
+/// The value that a share of the `values` does not exceed; sorts them.
+pub fn at_share(values: &mut [f64], share: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[((values.len() - 1) as f64 * share).round() as usize]
+}

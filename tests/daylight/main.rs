@@ -5,6 +5,7 @@ mod common;
 #[path = "../common/model.rs"]
 mod model;
 
+mod atmosphere;
 mod bounces;
 mod emission;
 mod grey_skies;
@@ -15,3 +16,4 @@ mod rooms;
 mod sampling;
 mod sun_position;
 mod tone_curves_and_frames;
+mod wavelengths;

@@ -82,6 +82,20 @@ impl Recorder {
         unsafe { raw.cmd_fill_buffer(self.command, buffer.raw(), 0, vk::WHOLE_SIZE, word) };
     }
 
+    /// Writes `bytes` (a multiple of 4) to the start of a storage buffer when the commands before have run; for tables that change now and then.
+    pub fn write(&mut self, buffer: &Buffer, bytes: &[u8]) {
+        /// The most that one command may hold (VUID-vkCmdUpdateBuffer-dataSize-00037).
+        const MOST: usize = 65_536;
+        assert!(bytes.len() as u64 <= buffer.size() && bytes.len().is_multiple_of(4));
+        self.order(buffer, BufferAccess::CopyTarget);
+        let raw = self.context.raw();
+        for (i, part) in bytes.chunks(MOST).enumerate() {
+            let offset = (i * MOST) as u64;
+            // SAFETY: the part lies within the buffer, which can be the target of copies; the command buffer is recording outside of a rendering.
+            unsafe { raw.cmd_update_buffer(self.command, buffer.raw(), offset, part) };
+        }
+    }
+
     fn image_barriers(&self, barriers: &Barriers) {
         if !barriers.is_empty() {
             self.barrier(&vk::DependencyInfo::default().image_memory_barriers(barriers));

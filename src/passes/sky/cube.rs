@@ -2,22 +2,27 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
+use crate::daylight::atmosphere::columns::horizon_cosine;
+use crate::daylight::atmosphere::scattered_sky::ScatteredSky;
+use crate::daylight::atmosphere::sky_view::toward;
 use crate::daylight::grey_sky::GreySky;
 use crate::daylight::hosek::Hosek;
 use crate::daylight::preetham::PerezSky;
 use crate::daylight::sky::{Daylight, Sky};
-use crate::gpu::{Context, Format, Image, ImageDesc, Recorder, Result, shaders};
+use crate::gpu::{Context, Format, Image, ImageDesc, Recorder, Result, Sampler, shaders};
 use crate::gpu_struct;
 
 use crate::passes::kilo;
+use crate::passes::sky::atmosphere::AtmosphereView;
 use crate::passes::sky::route::{CubePipeline, CubeRoute, CubeShaders};
 
 gpu_struct! {
     /// Parameters common to all sky models, see [`crate::daylight::sky`].
     pub struct Push: push of
-        SKY_PREETHAM_FRAG, SKY_PREETHAM_COMP, SKY_HOSEK_FRAG, SKY_HOSEK_COMP, SKY_GREY_FRAG, SKY_GREY_COMP
+        SKY_PREETHAM_FRAG, SKY_PREETHAM_COMP, SKY_HOSEK_FRAG, SKY_HOSEK_COMP, SKY_GREY_FRAG, SKY_GREY_COMP,
+        SKY_ATMOSPHERE_FRAG, SKY_ATMOSPHERE_COMP
     {
         sun_direction: Vec3,
         scale: f32,
@@ -55,6 +60,15 @@ gpu_struct! {
     }
 }
 
+gpu_struct! {
+    /// Where the table of an atmosphere's view lies, and the light of its ground.
+    pub struct ViewModel: model of SKY_ATMOSPHERE_FRAG, SKY_ATMOSPHERE_COMP {
+        toward_sun: Vec2,
+        horizon: f32,
+        ground_scale: f32,
+    }
+}
+
 /// Edge of the coarse cube, texels; the exact irradiance sum runs over its texels.
 pub const COARSE_EDGE: u32 = 32;
 
@@ -64,12 +78,11 @@ pub const SMOOTH_EDGE: u32 = 128;
 /// The outputs of the pass.
 #[derive(Clone, Copy)]
 pub struct SkyImages<'s> {
-    /// The sky for background and reflections, kcd/m², half floats.
+    /// The sky for background and reflections, kcd/m², 32-bit floats: the night is as dark as the least steps of half floats.
     pub radiance: &'s Image,
-    /// The same at [`SMOOTH_EDGE`] with mip levels, 32-bit floats: a device may truncate when it stores half floats, and five
-    /// levels of truncation would darken the sky by 0.2 %.
+    /// The same at [`SMOOTH_EDGE`] with mip levels.
     pub smooth: &'s Image,
-    /// The same at [`COARSE_EDGE`], 32-bit floats.
+    /// The same at [`COARSE_EDGE`].
     pub coarse: &'s Image,
     /// Whether the images were drawn in this frame.
     pub is_new: bool,
@@ -80,6 +93,7 @@ struct Painter {
     preetham: CubePipeline,
     hosek: CubePipeline,
     grey: CubePipeline,
+    atmosphere: CubePipeline,
 }
 
 const PREETHAM: CubeShaders = CubeShaders {
@@ -95,6 +109,11 @@ const GREY: CubeShaders = CubeShaders {
     compute: &shaders::SKY_GREY_COMP,
 };
 
+const ATMOSPHERE: CubeShaders = CubeShaders {
+    fragment: &shaders::SKY_ATMOSPHERE_FRAG,
+    compute: &shaders::SKY_ATMOSPHERE_COMP,
+};
+
 impl Painter {
     fn new(context: &Arc<Context>, format: Format) -> Result<Self> {
         let route = CubeRoute::of(context);
@@ -104,11 +123,19 @@ impl Painter {
             preetham: pipeline("sky: Preetham", PREETHAM)?,
             hosek: pipeline("sky: Hosek", HOSEK)?,
             grey: pipeline("sky: grey", GREY)?,
+            atmosphere: pipeline("sky: atmosphere", ATMOSPHERE)?,
         })
     }
 
-    fn paint(&self, recorder: &mut Recorder, daylight: &Daylight, target: &Image) {
-        let push = Push {
+    /// `view` is the table of the view, if the sky is an atmosphere.
+    fn paint(
+        &self,
+        recorder: &mut Recorder,
+        daylight: &Daylight,
+        view: Option<&Image>,
+        target: &Image,
+    ) {
+        let mut push = Push {
             sun_direction: daylight.guard.sun_direction.as_vec3(),
             scale: daylight.guard.scale as f32,
             night: kilo(daylight.guard.night),
@@ -119,12 +146,22 @@ impl Painter {
             Sky::Preetham(_) => &self.preetham,
             Sky::Hosek(_) => &self.hosek,
             Sky::Grey(_) => &self.grey,
+            Sky::Atmosphere(_) => &self.atmosphere,
         };
         let pass = pipeline.pass(recorder, "sky cube");
         let pass = match &daylight.sky {
             Sky::Preetham(sky) => pass.uniform("model", &preetham_model(&sky.perez())),
             Sky::Hosek(sky) => pass.uniform("model", &hosek_model(sky)),
             Sky::Grey(sky) => pass.uniform("model", &grey_model(sky)),
+            Sky::Atmosphere(sky) => {
+                let (ground_scale, added) = daylight.ground_of(sky);
+                push.ground = kilo(added);
+                let pass = pass.uniform("model", &view_model(sky, ground_scale));
+                match view {
+                    Some(view) => pass.sample("sky_view", view, Sampler::Nearest),
+                    None => pass,
+                }
+            }
         };
         pipeline.fill(pass.push(&push), &[("sky_radiance", target)]);
     }
@@ -132,11 +169,11 @@ impl Painter {
 
 /// The sky pass and its cubes.
 pub struct SkyCube {
-    half: Painter,
-    float: Painter,
+    painter: Painter,
     radiance: Image,
     smooth: Image,
     coarse: Image,
+    atmosphere: AtmosphereView,
     drawn: Option<Daylight>,
 }
 
@@ -146,15 +183,15 @@ impl SkyCube {
     /// # Errors
     /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, edge: u32) -> Result<Self> {
-        let (half, float) = (Format::R16G16B16A16_SFLOAT, Format::R32G32B32A32_SFLOAT);
+        let float = Format::R32G32B32A32_SFLOAT;
         let smooth = ImageDesc::cube("sky radiance, smooth", float, SMOOTH_EDGE).mipmapped();
         let coarse = ImageDesc::cube("sky radiance, coarse", float, COARSE_EDGE);
         Ok(Self {
-            half: Painter::new(context, half)?,
-            float: Painter::new(context, float)?,
-            radiance: Image::new(context, &ImageDesc::cube("sky radiance", half, edge))?,
+            painter: Painter::new(context, float)?,
+            radiance: Image::new(context, &ImageDesc::cube("sky radiance", float, edge))?,
             smooth: Image::new(context, &smooth)?,
             coarse: Image::new(context, &coarse)?,
+            atmosphere: AtmosphereView::new(context)?,
             drawn: None,
         })
     }
@@ -163,10 +200,14 @@ impl SkyCube {
     pub fn record(&mut self, recorder: &mut Recorder, daylight: &Daylight) -> SkyImages<'_> {
         let is_new = self.drawn.as_ref() != Some(daylight);
         if is_new {
-            self.half.paint(recorder, daylight, &self.radiance);
-            self.float.paint(recorder, daylight, &self.smooth);
+            let view = match &daylight.sky {
+                Sky::Atmosphere(sky) => Some(self.atmosphere.record(recorder, sky)),
+                _ => None,
+            };
+            self.painter.paint(recorder, daylight, view, &self.radiance);
+            self.painter.paint(recorder, daylight, view, &self.smooth);
             recorder.mipmap("sky mips", &self.smooth);
-            self.float.paint(recorder, daylight, &self.coarse);
+            self.painter.paint(recorder, daylight, view, &self.coarse);
             self.drawn = Some(daylight.clone());
         }
         SkyImages {
@@ -179,12 +220,26 @@ impl SkyCube {
 
     /// Invalidates the cubes, so that the next frame redraws them.
     pub fn invalidate(&mut self) {
+        self.atmosphere.invalidate();
         self.drawn = None;
+    }
+
+    /// The table of an atmosphere's view, kcd/m².
+    pub fn sky_view(&self) -> &Image {
+        self.atmosphere.image()
     }
 
     /// The cube, kcd/m².
     pub fn image(&self) -> &Image {
         &self.radiance
+    }
+}
+
+fn view_model(sky: &ScatteredSky, ground_scale: f64) -> ViewModel {
+    ViewModel {
+        toward_sun: toward(sky.sun).as_vec2(),
+        horizon: horizon_cosine(sky.atmosphere.observer()).asin() as f32,
+        ground_scale: ground_scale as f32,
     }
 }
 

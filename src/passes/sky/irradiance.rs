@@ -89,7 +89,8 @@ pub struct Irradiance {
 /// Samples of a draft: an rms error of 0.5 % of the largest irradiance, in a sixth of the time of a regular pass.
 const DRAFT_SAMPLES: u32 = 64;
 
-const COLORS: [Format; 2] = [Format::R32G32B32A32_SFLOAT, Format::R16G16B16A16_SFLOAT];
+/// Of the sums and of the map: half floats are too coarse for 1e-6 klx of a night.
+const COLORS: [Format; 2] = [Format::R32G32B32A32_SFLOAT; 2];
 
 const SAMPLED: CubeShaders = CubeShaders {
     fragment: &shaders::IRRADIANCE_FRAG,

@@ -4,10 +4,13 @@ use egui::{Slider, Ui};
 use glam::DVec3;
 
 use super::choice;
+use crate::commands::light::air;
 use crate::commands::view::document::Document;
+use crate::daylight::atmosphere::air::{ALTITUDE_RANGE_M, AOD_RANGE, OZONE_RANGE_DU};
 use crate::daylight::colour::luminance;
 use crate::daylight::perez::MOST_IRRADIANCE_W;
-use crate::daylight::sky::SkyModel;
+use crate::daylight::sky::{Conditions, SkyModel};
+use crate::options::Options;
 
 pub(super) fn show(ui: &mut Ui, document: &mut Document) {
     let [sun, sky] = horizontal(document);
@@ -26,9 +29,11 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
         ui.add(Slider::new(&mut settings.cloud_cover, 0.0..=1.0).text("cloud cover"))
             .on_hover_text("share of the sky: dims the sun and evens out the sky, as in the mean of many hours");
     }
-    let (least, most) = settings.sky.turbidity_range();
-    ui.add(Slider::new(&mut settings.turbidity, least..=most).text("turbidity"))
-        .on_hover_text("2 very clear, 3 clear, 6 hazy, 10 very hazy");
+    if settings.sky == SkyModel::Atmosphere {
+        atmosphere(ui, settings);
+    } else {
+        turbidity(ui, settings);
+    }
     ui.add(Slider::new(&mut settings.ground_albedo, 0.0..=1.0).text("ground albedo"))
         .on_hover_text("reflectance of the ground below the horizon, 0 to 1");
     choice(ui, "refraction", &mut settings.refraction);
@@ -41,6 +46,34 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
         illuminance(sun),
         illuminance(sky)
     ));
+}
+
+fn turbidity(ui: &mut Ui, settings: &mut Options) {
+    let (least, most) = settings.sky.turbidity_range();
+    let mut value = settings
+        .turbidity
+        .unwrap_or(Conditions::default().turbidity);
+    let slider = ui
+        .add(Slider::new(&mut value, least..=most).text("turbidity"))
+        .on_hover_text("2 very clear, 3 clear, 6 hazy, 10 very hazy");
+    if slider.changed() {
+        settings.turbidity = Some(value);
+        (settings.aod, settings.visual_range) = (None, None);
+    }
+}
+
+/// The air of an atmosphere.
+fn atmosphere(ui: &mut Ui, settings: &mut Options) {
+    let mut aod = air(settings).aod;
+    let slider = ui
+        .add(Slider::new(&mut aod, AOD_RANGE).text("aerosol optical depth"))
+        .on_hover_text("0.05 very clear, 0.1 clear, 0.2 hazy, 0.4 murky");
+    if slider.changed() {
+        settings.aod = Some(aod);
+        (settings.turbidity, settings.visual_range) = (None, None);
+    }
+    ui.add(Slider::new(&mut settings.ozone, OZONE_RANGE_DU).text("ozone, DU"));
+    ui.add(Slider::new(&mut settings.altitude, ALTITUDE_RANGE_M).text("altitude, m"));
 }
 
 /// Illuminances of a horizontal plane by sun (or moon) and sky, lux.

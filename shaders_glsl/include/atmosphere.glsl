@@ -9,7 +9,7 @@ layout(set = 0, binding = 0, scalar) uniform Model {
     vec4 aerosol;            // its extinction
     vec4 ozone;              // absorption by ozone at its peak
     vec3 rgb[4];             // radiance, kcd/m^2, of a transfer of 1 at each wavelength
-    float ln_density[61];    // of the air, each density_step
+    float ln_density[64];    // of the air, each density_step
     float density_step;
     vec2 ozone_tent;         // altitude of the peak, half width
     float scale_height;      // of the aerosol

@@ -35,7 +35,7 @@ const RAYLEIGH_GAMMA: f64 = 0.0144;
 /// Altitude between two entries of [`LN_AIR_DENSITY`], km.
 pub const DENSITY_STEP: f64 = 2.0;
 
-/// Logarithms of [`AIR_DENSITY`].
+/// Logarithms of the density of the air over that at sea level (US Standard Atmosphere 1976), each [`DENSITY_STEP`].
 pub static LN_AIR_DENSITY: LazyLock<[f64; 61]> = LazyLock::new(|| AIR_DENSITY.map(f64::ln));
 
 /// Densities at an altitude in km (0..=120) over their reference: air and aerosol at sea level, ozone at its peak.

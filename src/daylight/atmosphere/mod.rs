@@ -2,7 +2,7 @@
 //!
 //! 1. [`air`]: what the user says about the air. [`medium`]: its coefficients at four wavelengths, from which [`colour`] makes XYZ.
 //! 2. [`columns`]: table A, columns of each species to the top of the air.
-//! 3. [`solve`]: the scattered light order by order; [`field`]: the tables B and C that it fills.
+//! 3. [`mod@solve`]: the scattered light order by order; [`field`]: the tables B and C that it fills.
 //! 4. [`Atmosphere`]: radiance by one more march along [`path`], where the first order is exact.
 //! 5. [`sky_view`]: table D, the whole view under one sun; [`scattered_sky`]: the sky that is read from it.
 

@@ -41,7 +41,7 @@ gpu_struct! {
         aerosol: [f32; 4],
         ozone: [f32; 4],
         rgb: [Vec3; 4],
-        ln_density: [f32; 61],
+        ln_density: [f32; 64],
         density_step: f32,
         ozone_tent: Vec2,
         scale_height: f32,
@@ -157,7 +157,8 @@ fn model(atmosphere: &Atmosphere) -> AirModel {
         aerosol: medium.aerosol.as_vec4().to_array(),
         ozone: medium.ozone.as_vec4().to_array(),
         rgb: colour::XYZ.map(|xyz| kilo(rgb_from_xyz(xyz))),
-        ln_density: LN_AIR_DENSITY.map(|ln| ln as f32),
+        // The table of 61, and its last value again.
+        ln_density: std::array::from_fn(|i| LN_AIR_DENSITY[i.min(LN_AIR_DENSITY.len() - 1)] as f32),
         density_step: DENSITY_STEP as f32,
         ozone_tent: Vec2::new(OZONE_PEAK as f32, OZONE_HALF_WIDTH as f32),
         scale_height: medium.scale_height as f32,

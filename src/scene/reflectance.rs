@@ -5,7 +5,9 @@ use glam::Vec2;
 use crate::scene::{Material, Scene, Texture};
 
 /// Divisions of the sides of a textured triangle: the square of this is the number of lookups.
-const LOOKUPS: u32 = 8;
+const DIVISIONS: u32 = 8;
+/// The same of a triangle over which the texture of a cut-out repeats.
+const DIVISIONS_OF_REPEATS: u32 = 24;
 
 /// Means over a triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,7 +66,8 @@ impl<'a> Reflectances<'a> {
         let maps = maps.map(|map| map.map(|number| self.level(number, material, corners)));
         let (mut sum, mut emitted) = ([0.0; 3], [0.0; 3]);
         let (mut solid, mut count) = (0.0, 0.0);
-        for weights in barycentric_points() {
+        let is_cut_out = material.alpha_cutoff.is_some();
+        for weights in barycentric_points(self.divisions(material, corners), is_cut_out) {
             let uv = self.uv(corners, weights);
             let [map, glow] = maps.map(|map| map.map_or([1.0; 4], |t| nearest(t, uv)));
             let colour = self.colour(corners, weights);
@@ -87,6 +90,20 @@ impl<'a> Reflectances<'a> {
         }
     }
 
+    /// Divisions of the sides of a triangle for its lookups.
+    fn divisions(&self, material: &Material, corners: [usize; 3]) -> u32 {
+        let is_mapped = material.alpha_cutoff.is_some() && material.diffuse_texture.is_some();
+        let repeats = is_mapped && {
+            let [a, b, c] = corners.map(|v| Vec2::from(self.scene.texcoords[v]));
+            (a.max(b).max(c) - a.min(b).min(c)).max_element() > 1.0
+        };
+        if repeats {
+            DIVISIONS_OF_REPEATS
+        } else {
+            DIVISIONS
+        }
+    }
+
     /// The mip level whose texels are about as many as the lookups of a triangle. Cut-outs need the finest: their edges are sharp.
     fn level(&self, number: usize, material: &Material, corners: [usize; 3]) -> &Texture {
         let levels = &self.levels[number];
@@ -96,7 +113,7 @@ impl<'a> Reflectances<'a> {
         let [a, b, c] = corners.map(|v| Vec2::from(self.scene.texcoords[v]));
         let size = Vec2::new(levels[0].width as f32, levels[0].height as f32);
         let texels = 0.5 * ((b - a) * size).perp_dot((c - a) * size).abs();
-        let of_lookup = texels / (LOOKUPS * LOOKUPS) as f32;
+        let of_lookup = texels / (DIVISIONS * DIVISIONS) as f32;
         let level = (0.5 * of_lookup.max(1.0).log2()).round() as usize;
         &levels[level.min(levels.len() - 1)]
     }
@@ -115,16 +132,29 @@ impl<'a> Reflectances<'a> {
     }
 }
 
-/// Centres of the equal triangles into which parallels to the sides divide a triangle.
-fn barycentric_points() -> impl Iterator<Item = [f32; 3]> {
-    let n = LOOKUPS as f32;
-    let point = move |i: u32, j: u32, third: f32| {
-        let (u, v) = ((i as f32 + third) / n, (j as f32 + third) / n);
-        [1.0 - u - v, u, v]
+/// One point in each of the n² equal triangles into which parallels to the sides divide a triangle: its centre, or spread over it. Centres
+/// would meet the bars of a fence all alike; other textures are as coarse as the triangles are.
+fn barycentric_points(n: u32, spread: bool) -> impl Iterator<Item = [f32; 3]> {
+    // Roberts' sequence R2: inverse of the plastic number, whose cube is one more than it, and its square.
+    const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
+    let within = move |number: u32| {
+        let [a, b] = STEP.map(|step| (0.5 + step * f64::from(number)).fract() as f32);
+        match (spread, a + b > 1.0) {
+            (false, _) => [1.0 / 3.0; 2],
+            (true, true) => [1.0 - a, 1.0 - b],
+            (true, false) => [a, b],
+        }
     };
-    (0..LOOKUPS).flat_map(move |i| {
-        let upright = (0..LOOKUPS - i).map(move |j| point(i, j, 1.0 / 3.0));
-        let inverted = (0..(LOOKUPS - i).saturating_sub(1)).map(move |j| point(i, j, 2.0 / 3.0));
+    let point = move |u: f32, v: f32| [1.0 - (u + v) / n as f32, u / n as f32, v / n as f32];
+    (0..n).flat_map(move |i| {
+        let upright = (0..n - i).map(move |j| {
+            let [a, b] = within(2 * (i * n + j));
+            point(i as f32 + a, j as f32 + b)
+        });
+        let inverted = (0..(n - i).saturating_sub(1)).map(move |j| {
+            let [a, b] = within(2 * (i * n + j) + 1);
+            point((i + 1) as f32 - a, (j + 1) as f32 - b)
+        });
         upright.chain(inverted)
     })
 }
@@ -186,12 +216,51 @@ mod tests {
 
     #[test]
     fn the_points_are_spread_evenly() {
-        let points: Vec<_> = barycentric_points().collect();
-        assert_eq!(points.len(), (LOOKUPS * LOOKUPS) as usize);
-        for i in 0..3 {
-            let mean = points.iter().map(|p| p[i]).sum::<f32>() / points.len() as f32;
-            assert!((mean - 1.0 / 3.0).abs() < 1e-5, "{mean}");
+        for (spread, off) in [(false, 1e-5), (true, 0.01)] {
+            let points: Vec<_> = barycentric_points(DIVISIONS, spread).collect();
+            assert_eq!(points.len(), (DIVISIONS * DIVISIONS) as usize);
+            for i in 0..3 {
+                let mean = points.iter().map(|p| p[i]).sum::<f32>() / points.len() as f32;
+                assert!((mean - 1.0 / 3.0).abs() < off, "{mean}");
+            }
+            assert!(points.iter().flatten().all(|w| *w > -1e-6));
         }
-        assert!(points.iter().flatten().all(|w| *w > 0.0));
+    }
+
+    /// Bars of two texels in eight, repeated over a quad: regular lookups meet as many bars as gaps, or bars alone.
+    #[test]
+    fn a_fence_is_as_open_as_its_gaps() {
+        for repeats in [0.5f32, 1.0, 2.0, 3.0, 6.0, 8.0, 12.0, 25.0] {
+            let texels = (0..64u32).map(|i| if i % 8 < 2 { 255 } else { 0 });
+            let far = repeats;
+            let scene = Scene {
+                positions: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+                normals: vec![[0.0, 0.0, 1.0]; 3],
+                texcoords: vec![[0.0, 0.0], [far, 0.0], [0.0, 1.0]],
+                indices: vec![0, 1, 2],
+                parts: vec![Part {
+                    first_index: 0,
+                    index_count: 3,
+                    material: 0,
+                    has_colours: false,
+                    bounds: Bounds::EMPTY,
+                }],
+                materials: vec![Material {
+                    diffuse_texture: Some(0),
+                    alpha_cutoff: Some(0.5),
+                    ..Material::default()
+                }],
+                textures: vec![Texture {
+                    name: "bars".into(),
+                    width: 64,
+                    height: 1,
+                    rgba8: texels.flat_map(|alpha: u8| [99, 99, 99, alpha]).collect(),
+                    encoding: Encoding::Srgb,
+                }],
+                ..Scene::default()
+            };
+            let opacity = Reflectances::new(&scene).of(0).opacity;
+            assert!((opacity - 0.25).abs() < 0.06, "{repeats}: {opacity}");
+        }
     }
 }

@@ -409,7 +409,7 @@ fn a_device_without_geometry_shaders_draws_the_same_maps() {
     });
     assert_eq!(CubeRoute::of(&with.context), CubeRoute::Geometry);
     assert_eq!(CubeRoute::of(&without.context), CubeRoute::Compute);
-    for model in [SkyModel::Preetham, SkyModel::Hosek] {
+    for model in [SkyModel::Preetham, SkyModel::Hosek, SkyModel::Atmosphere] {
         // Low enough for a visible ground, a glow and, with Preetham, dark corners.
         let day = sky_of(model, 3.0);
         let [a, b] = [&mut with, &mut without].map(|device| {

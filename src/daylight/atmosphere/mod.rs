@@ -89,7 +89,7 @@ static SOLVED: Mutex<Vec<Atmosphere>> = Mutex::new(Vec::new());
 impl Atmosphere {
     /// The tables of `air`, which is [`Air::clamped`] first.
     pub fn new(air: &Air) -> Self {
-        Self::with(air, colour::WAVELENGTHS, &Effort::FULL)
+        Self::with(air, colour::WAVELENGTHS, &Effort::of_haze(air.aod))
     }
 
     /// The same, from the tables of the last airs that were asked for if it is one of them: the observer's altitude changes no table.

@@ -49,10 +49,8 @@ void main() {
         uvec4 tap = textureLod(bounced, uv, 0.0);
         float there = uintBitsToFloat(tap.z);
         float off = abs(there * (height + dot(per_texel, offset)) - distance * height);
-        float same = max(dot(normal, normal_unpack(tap.w)), 0.0);
-        for (int j = 0; j < SHARPNESS; ++j) same *= same;
         bool is_inside = all(equal(uv, clamp(uv, 0.0, 1.0)));
-        float w = is_inside && there > 0.0 ? KERNEL[k.x] * KERNEL[k.y] * same * max(1.0 - off / (OFF_PLANE * width), 0.0) : 0.0;
+        float w = is_inside && there > 0.0 ? KERNEL[k.x] * KERNEL[k.y] * sameness(normal, tap) * max(1.0 - off / (OFF_PLANE * width), 0.0) : 0.0;
         sum += w * shared_exponent_unpack(tap.y);
         weights += w;
     }

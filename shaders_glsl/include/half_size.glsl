@@ -16,6 +16,13 @@ uvec4 half_size_pack(Ambient light, float distance, uint normal) {
 // Squarings of the cosine between normals in the weights: cos^8.
 const int SHARPNESS = 3;
 
+/// How far a texel has the same normal, 0..1.
+float sameness(vec3 n, uvec4 texel) {
+    float same = max(dot(n, normal_unpack(texel.w)), 0.0);
+    for (int k = 0; k < SHARPNESS; ++k) same *= same;
+    return same;
+}
+
 /// Irradiance at a pixel, interpolated between texels of the same surface. `chosen`: the pixel of each square that has the texel.
 Ambient half_size_at(usampler2D image, ivec2 pixel, ivec2 chosen, float distance, vec3 n) {
     vec2 at = 0.5 * vec2(pixel - chosen);
@@ -29,8 +36,7 @@ Ambient half_size_at(usampler2D image, ivec2 pixel, ivec2 chosen, float distance
         vec2 texel = base + vec2(i & 1, i >> 1);
         uvec4 tap = textureLod(image, (texel + 0.5) / size, 0.0);
         float there = uintBitsToFloat(tap.z);
-        float same = max(dot(n, normal_unpack(tap.w)), 0.0);
-        for (int k = 0; k < SHARPNESS; ++k) same *= same;
+        float same = sameness(n, tap);
         // The small terms keep the weights finite, and other surfaces count if there is nothing else.
         float w = there > 0.0 ? (bilinear[i] + 1e-3) * (same + 1e-3) / (1e-3 * distance + abs(there - distance)) : 0.0;
         sky += w * irradiance_unpack(tap.x);

@@ -83,14 +83,7 @@ pub fn sun_position(settings: &Options) -> Result<SunPosition> {
 
 /// The moon of the place and the moment; `None` without them, without an ephemeris for them, or if it is switched off.
 fn moon(settings: &Options) -> Option<Moon> {
-    let SunInput::Place {
-        latitude,
-        longitude,
-        when,
-    } = settings.sun
-    else {
-        return None;
-    };
+    let (latitude, longitude, when) = settings.sun.place()?;
     let is_on = settings.moon == Switch::On;
     let mut moon = is_on.then(|| Moon::at(when, latitude, longitude).ok())??;
     if settings.refraction == Switch::Off {

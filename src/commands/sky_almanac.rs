@@ -12,7 +12,6 @@ use crate::daylight::colour::luminance;
 use crate::daylight::day_times::{DayTimes, Passage, Spans};
 use crate::daylight::moon::{Moon, MoonEvents, Moonlight, moon_events};
 use crate::error::Result;
-use crate::options::SunInput;
 
 type Moment = Option<DateTime<FixedOffset>>;
 
@@ -93,12 +92,7 @@ impl Almanac {
     /// # Errors
     /// A date that the ephemeris does not cover.
     pub fn new(light: &Light) -> Result<Option<Self>> {
-        let SunInput::Place {
-            latitude,
-            longitude,
-            when,
-        } = light.settings.sun
-        else {
+        let Some((latitude, longitude, when)) = light.settings.sun.place() else {
             return Ok(None);
         };
         let (date, offset) = (when.date_naive(), *when.offset());

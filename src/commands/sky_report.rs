@@ -16,7 +16,7 @@ use crate::daylight::sky::SkyModel;
 use crate::daylight::sun_position::{self, Polar, SunEvents, sun_events};
 use crate::daylight::sunlight::{Sunlight, air_mass};
 use crate::error::Result;
-use crate::options::{Direction, SunInput};
+use crate::options::Direction;
 
 /// The axes: key, label and direction.
 pub const AXES: [(&str, &str, DVec3); 6] = [
@@ -194,12 +194,7 @@ pub(super) fn temperature(xyz: DVec3) -> Option<f64> {
 }
 
 fn events(light: &Light) -> Result<Option<SunEvents>> {
-    let SunInput::Place {
-        latitude,
-        longitude,
-        when,
-    } = light.settings.sun
-    else {
+    let Some((latitude, longitude, when)) = light.settings.sun.place() else {
         return Ok(None);
     };
     let day = when.date_naive();
@@ -207,14 +202,7 @@ fn events(light: &Light) -> Result<Option<SunEvents>> {
 }
 
 fn polar(light: &Light, events: &SunEvents) -> Option<&'static str> {
-    let SunInput::Place {
-        latitude,
-        longitude,
-        ..
-    } = light.settings.sun
-    else {
-        return None;
-    };
+    let (latitude, longitude, _) = light.settings.sun.place()?;
     Some(match events.polar(latitude, longitude)? {
         Polar::Day => "day",
         Polar::Night => "night",

@@ -4,9 +4,9 @@
 //! [`super::sun_position::sun_events`].
 
 use chrono::{DateTime, FixedOffset, NaiveDate};
-use solar_positioning::{Horizon, SolarEvents};
+use solar_positioning::Horizon;
 
-use super::sun_position::{SunPositionError, check, delta_t_s};
+use super::sun_position::{SunPositionError, events_at};
 
 /// End of civil twilight, of nautical twilight and of astronomical twilight, degrees (American Meteorological Society,
 /// Glossary of Meteorology).
@@ -64,12 +64,9 @@ impl DayTimes {
         latitude: f64,
         longitude: f64,
     ) -> Result<Self, SunPositionError> {
-        let location = check(latitude, longitude)?;
-        let delta_t = delta_t_s(date)?;
         let pass = |elevation_deg: f64| {
             let horizon = Horizon::Custom(elevation_deg);
-            let events = SolarEvents::new();
-            let day = events.for_date(date, &offset, location, delta_t, horizon)?;
+            let day = events_at(date, offset, latitude, longitude, horizon)?;
             Ok::<_, SunPositionError>(Passage {
                 elevation_deg,
                 upward: day.rises.first().copied(),

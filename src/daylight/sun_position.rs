@@ -14,7 +14,7 @@
 
 use chrono::{DateTime, Datelike, Duration, FixedOffset, NaiveDate, Timelike};
 use glam::DVec3;
-use solar_positioning::{Horizon, Location, SolarEvents, SolarPositions, delta_t};
+use solar_positioning::{Events, Horizon, Location, SolarEvents, SolarPositions, delta_t};
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
@@ -303,6 +303,19 @@ impl SunEvents {
     }
 }
 
+/// When the sun passes a horizon on the calendar day of `date` in the time zone `offset`, by SPA.
+pub(super) fn events_at(
+    date: NaiveDate,
+    offset: FixedOffset,
+    latitude: f64,
+    longitude: f64,
+    horizon: Horizon,
+) -> Result<Events<DateTime<FixedOffset>>, SunPositionError> {
+    let location = check(latitude, longitude)?;
+    let delta_t = delta_t_s(date)?;
+    Ok(SolarEvents::new().for_date(date, &offset, location, delta_t, horizon)?)
+}
+
 /// Sunrise, solar noon and sunset on the calendar day of `date` in the time zone `offset`, by SPA.
 pub fn sun_events(
     date: NaiveDate,
@@ -310,10 +323,7 @@ pub fn sun_events(
     latitude: f64,
     longitude: f64,
 ) -> Result<SunEvents, SunPositionError> {
-    let location = check(latitude, longitude)?;
-    let delta_t = delta_t_s(date)?;
-    let events = SolarEvents::new();
-    let day = events.for_date(date, &offset, location, delta_t, Horizon::SunriseSunset)?;
+    let day = events_at(date, offset, latitude, longitude, Horizon::SunriseSunset)?;
     Ok(SunEvents {
         sunrise: day.rises.first().copied(),
         noon: day.transits.first().copied(),

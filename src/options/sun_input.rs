@@ -64,6 +64,18 @@ options! {
 }
 
 impl SunInput {
+    /// Latitude and longitude, degrees, and the moment; `None` if the sun is given without them.
+    pub fn place(&self) -> Option<(f64, f64, DateTime<FixedOffset>)> {
+        match *self {
+            Self::Place {
+                latitude,
+                longitude,
+                when,
+            } => Some((latitude, longitude, when)),
+            Self::Solar { .. } | Self::Direction { .. } => None,
+        }
+    }
+
     /// Day of the year, 1..=366, at the place's own clock; `None` for a direction.
     pub fn day_of_year(&self) -> Option<u32> {
         match *self {

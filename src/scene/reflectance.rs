@@ -172,14 +172,12 @@ mod tests {
     use super::*;
     use crate::scene::{Bounds, Encoding, Part};
 
-    /// A triangle over the lower left half of a texture that is bright (sRGB 188, 0.503 in linear light) in its left half.
-    #[test]
-    fn the_mean_emission_is_that_of_the_part_of_the_texture_on_the_triangle() {
-        let texels = (0..32u32 * 32).map(|i| if i % 32 < 16 { 188 } else { 0 });
-        let scene = Scene {
+    /// A triangle over the lower left half of a texture, which repeats so often along its width.
+    fn triangle(material: Material, size: [u32; 2], rgba8: Vec<u8>, repeats: f32) -> Scene {
+        Scene {
             positions: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
             normals: vec![[0.0, 0.0, 1.0]; 3],
-            texcoords: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+            texcoords: vec![[0.0, 0.0], [repeats, 0.0], [0.0, 1.0]],
             indices: vec![0, 1, 2],
             parts: vec![Part {
                 first_index: 0,
@@ -188,20 +186,29 @@ mod tests {
                 has_colours: false,
                 bounds: Bounds::EMPTY,
             }],
-            materials: vec![Material {
-                emission: [100.0, 50.0, 0.0],
-                emissive_texture: Some(0),
-                ..Material::default()
-            }],
+            materials: vec![material],
             textures: vec![Texture {
-                name: "left".into(),
-                width: 32,
-                height: 32,
-                rgba8: texels.flat_map(|v: u8| [v, v, v, 255]).collect(),
+                name: "map".into(),
+                width: size[0],
+                height: size[1],
+                rgba8,
                 encoding: Encoding::Srgb,
             }],
             ..Scene::default()
+        }
+    }
+
+    /// A triangle over the lower left half of a texture that is bright (sRGB 188, 0.503 in linear light) in its left half.
+    #[test]
+    fn the_mean_emission_is_that_of_the_part_of_the_texture_on_the_triangle() {
+        let texels = (0..32u32 * 32).map(|i| if i % 32 < 16 { 188 } else { 0 });
+        let lamp = Material {
+            emission: [100.0, 50.0, 0.0],
+            emissive_texture: Some(0),
+            ..Material::default()
         };
+        let rgba8 = texels.flat_map(|v: u8| [v, v, v, 255]).collect();
+        let scene = triangle(lamp, [32, 32], rgba8, 1.0);
         let mean = Reflectances::new(&scene).of(0);
         // Three quarters of the triangle are in the left half.
         let expected = 0.75 * 0.5029 * 100.0;
@@ -232,33 +239,13 @@ mod tests {
     fn a_fence_is_as_open_as_its_gaps() {
         for repeats in [0.5f32, 1.0, 2.0, 3.0, 6.0, 8.0, 12.0, 25.0] {
             let texels = (0..64u32).map(|i| if i % 8 < 2 { 255 } else { 0 });
-            let far = repeats;
-            let scene = Scene {
-                positions: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-                normals: vec![[0.0, 0.0, 1.0]; 3],
-                texcoords: vec![[0.0, 0.0], [far, 0.0], [0.0, 1.0]],
-                indices: vec![0, 1, 2],
-                parts: vec![Part {
-                    first_index: 0,
-                    index_count: 3,
-                    material: 0,
-                    has_colours: false,
-                    bounds: Bounds::EMPTY,
-                }],
-                materials: vec![Material {
-                    diffuse_texture: Some(0),
-                    alpha_cutoff: Some(0.5),
-                    ..Material::default()
-                }],
-                textures: vec![Texture {
-                    name: "bars".into(),
-                    width: 64,
-                    height: 1,
-                    rgba8: texels.flat_map(|alpha: u8| [99, 99, 99, alpha]).collect(),
-                    encoding: Encoding::Srgb,
-                }],
-                ..Scene::default()
+            let bars = Material {
+                diffuse_texture: Some(0),
+                alpha_cutoff: Some(0.5),
+                ..Material::default()
             };
+            let rgba8 = texels.flat_map(|alpha: u8| [99, 99, 99, alpha]).collect();
+            let scene = triangle(bars, [64, 1], rgba8, repeats);
             let opacity = Reflectances::new(&scene).of(0).opacity;
             assert!((opacity - 0.25).abs() < 0.06, "{repeats}: {opacity}");
         }

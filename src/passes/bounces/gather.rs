@@ -111,27 +111,25 @@ impl Gather {
         let of_pair = index - index % FRAMES_OF_RAYS;
         let set = of_pair / FRAMES_OF_RAYS;
         let (chosen, steps) = (chosen(set), steps(set, view.whole().size.y));
-        if of_pair < index && self.traced == Some(of_pair) {
-            let image = self.images(steps.len())[0];
-            return HalfSize { image, chosen };
+        if of_pair == index || self.traced != Some(of_pair) {
+            self.traced = Some(of_pair);
+            let pass = recorder.pass("bounces: gather", &self.pipeline);
+            let pass = cells.bound_to(tree.bound_with_emitters(pass));
+            surfaces
+                .shapes_sampled_by(pass)
+                .uniform("view", &view.block())
+                .uniform("scene", &cells.block(view, daylight))
+                .push(&Push {
+                    index: set,
+                    origin,
+                    chosen,
+                    share: if self.blends { share(of_pair) } else { 1.0 },
+                })
+                .store("bounced", &self.bounced)
+                .dispatch();
+            self.smooth(recorder, surfaces, view, chosen, steps);
         }
-        self.traced = Some(of_pair);
-        let pass = recorder.pass("bounces: gather", &self.pipeline);
-        let pass = cells.bound_to(tree.bound_with_emitters(pass));
-        surfaces
-            .shapes_sampled_by(pass)
-            .uniform("view", &view.block())
-            .uniform("scene", &cells.block(view, daylight))
-            .push(&Push {
-                index: set,
-                origin,
-                chosen,
-                share: if self.blends { share(of_pair) } else { 1.0 },
-            })
-            .store("bounced", &self.bounced)
-            .dispatch();
-        self.smooth(recorder, surfaces, view, chosen, steps);
-        let image = self.images(steps.len())[0];
+        let [image, _] = self.images(steps.len());
         HalfSize { image, chosen }
     }
 

@@ -8,7 +8,7 @@ use crate::commands::view::document::Document;
 use crate::commands::view::style;
 use crate::daylight::sun_path::{Line, Observer, SunPath};
 use crate::daylight::sun_position::direction;
-use crate::options::{SunInput, Switch};
+use crate::options::Switch;
 
 const SOLSTICE: Color32 = Color32::from_rgb(120, 190, 255);
 const EQUINOX: Color32 = Color32::from_rgb(150, 230, 170);
@@ -56,14 +56,7 @@ impl SkyDome {
     /// The sun path at the place; `None` when the sun is given without one.
     fn path(&mut self, document: &Document) -> Option<&SunPath> {
         let settings = &document.job.settings;
-        let SunInput::Place {
-            latitude,
-            longitude,
-            when,
-        } = settings.sun
-        else {
-            return None;
-        };
+        let (latitude, longitude, when) = settings.sun.place()?;
         let observer = Observer {
             latitude,
             longitude,

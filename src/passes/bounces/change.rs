@@ -10,6 +10,9 @@ const JUMP_DEG: f64 = 10.0;
 
 /// How much two lights differ: 0 not at all, 1 so much that one says nothing about the other.
 pub(super) fn change(old: &Daylight, new: &Daylight) -> f64 {
+    if old == new {
+        return 0.0;
+    }
     let angle = |a: DVec3, b: DVec3| a.dot(b).clamp(-1.0, 1.0).acos().to_degrees();
     let sun = angle(old.sun_direction, new.sun_direction);
     // At dusk the moon takes the place of the sun while neither matters.
@@ -19,9 +22,6 @@ pub(super) fn change(old: &Daylight, new: &Daylight) -> f64 {
     };
     let level = |day: &Daylight| luminance(day.horizontal()).max(1e-3);
     let dimming = (level(new) / level(old)).ln().abs();
-    if old == new {
-        return 0.0;
-    }
     (sun.max(direct) / JUMP_DEG + dimming).clamp(1e-3, 1.0)
 }
 

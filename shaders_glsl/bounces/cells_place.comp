@@ -33,7 +33,7 @@ uint hidden_neighbours(Point anchor, float edge) {
         vec2 way = floor(place.xy) + vec2(NEIGHBOURS[i]) + 0.5 - place.xy;
         vec3 offset = edge * turned_back(vec3(way, -dot(slope.xy, way) / slope.z), axis);
         float far = length(offset);
-        if (any_hit(from, offset / far, far)) hidden |= 1u << i;
+        if (is_parted(from, offset / far, far)) hidden |= 1u << i;
     }
     return hidden;
 }
@@ -43,7 +43,7 @@ uvec2 wall_between(Point point, vec3 anchor, float edge) {
     vec3 n = normal_unpack(point.normal);
     vec3 from = point.position + n * (SIGHT * edge), way = anchor - point.position;
     float far = length(way);
-    Hit hit = closest(from, way / far, far);
+    Hit hit = traced(from, way / far, far, false, PANES_BLOCK);
     if (hit.distance == FAR) return uvec2(0u);
     vec3 edge1 = uintBitsToFloat(triangle_texel(hit.triangle, 1u).xyz);
     vec3 edge2 = uintBitsToFloat(triangle_texel(hit.triangle, 2u).xyz);

@@ -78,7 +78,7 @@ uint claim(vec3 p, vec3 n, int level, out uint contest) {
 bool is_divided(vec3 p, vec3 n, vec3 anchor, float edge) {
     vec3 from = p + n * (SIGHT * edge), way = anchor - p;
     float far = length(way);
-    return far > 1e-3 * edge && any_hit(from, way / far, far);
+    return far > 1e-3 * edge && is_parted(from, way / far, far);
 }
 
 /// A point of a path enters a contest of its cell.
@@ -103,7 +103,7 @@ void main() {
     vec3 toward = normalize(view.world_from_view * view_ray(uv, view.ray_scale, view.ray_offset));
     for (uint i = 0u; i < PATH_POINTS; ++i) candidates[path * PATH_POINTS + i].slot = NONE;
     for (uint i = 0u; i < PATH_POINTS; ++i) {
-        Hit hit = closest(origin, toward, FAR);
+        Hit hit = traced(origin, toward, FAR, false, PANES_ARE_OPEN);
         if (hit.distance == FAR) return;
         Surface surface = surface_of(hit, origin, toward);
         state = tea(state, i);

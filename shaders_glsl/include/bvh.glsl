@@ -6,7 +6,9 @@
 // steps and numbers of triangles of the children; lower and upper corners of the children, four bytes a word; first child, first
 // triangle. A child without triangles is a node; those and the triangles follow each other in the order of the children. The box of
 // a child that does not exist is inside out.
-// A triangle is three texels: corner, reflectance; first edge, emission (kcd/m^2, see shared_exponent.glsl); second edge, opacity.
+// A triangle is three texels: corner, reflectance; first edge, emission (kcd/m^2, see shared_exponent.glsl); second edge, opacity or,
+// of a pane of glass, its mark and internal transmittance.
+#include "glass.glsl"
 #include "random.glsl"
 #include "texel.glsl"
 
@@ -21,6 +23,10 @@ layout(constant_id = 33) const uint MOST_STEPS = 1u;
 
 // Opacity times 255.
 const uint OPACITY = 0xffu;
+// Mark of a pane of glass; its internal transmittance times 65535 is in the lower half of the word.
+const uint PANE = 1u << 31;
+// What panes are to a ray: in the way of light by chance, walls, or nothing.
+const uint PANES_DIM = 0u, PANES_BLOCK = 1u, PANES_ARE_OPEN = 2u;
 // Most children that wait, as `tree.rs` checks.
 const int STACK = 64;
 const float FAR = 1e30;
@@ -98,14 +104,29 @@ void order_all(inout vec4 e, inout uvec4 c) {
     order(e.y, e.z, c.y, c.z);
 }
 
-/// Whether a hit is on a surface and not in a hole of a cut-out: by chance, in proportion to the triangle's opacity.
-bool is_solid(uint opacity, uint triangle, vec2 barycentrics) {
+/// A number in [0, 1) for a point of a triangle.
+float chance(uint triangle, vec2 barycentrics) {
     uint hash = tea(triangle, floatBitsToUint(barycentrics.x) ^ (floatBitsToUint(barycentrics.y) << 1));
-    return (hash & 0xffu) < opacity;
+    return float(hash & 0xffffffu) / 16777216.0;
+}
+
+/// The part of the light along a ray that a pane stops.
+float stopped(uint word, vec3 edge1, vec3 edge2, vec3 toward) {
+    float cosine = dot(normalize(cross(edge1, edge2)), normalize(toward));
+    vec3 internal = vec3(float(word & 0xffffu) / 65535.0);
+    return 1.0 - pane_transmittance(internal, glass_surface(cosine)).x;
+}
+
+/// Whether a hit is on a surface and not in a hole of a cut-out or through glass: by chance, in proportion to the opacity.
+bool is_solid(uint word, uint triangle, vec2 barycentrics, vec3 edge1, vec3 edge2, vec3 toward, uint panes) {
+    bool is_pane = (word & PANE) != 0u;
+    if (is_pane && panes != PANES_DIM) return panes == PANES_BLOCK;
+    float opacity = is_pane ? stopped(word, edge1, edge2, toward) : float(word & OPACITY) / 255.0;
+    return chance(triangle, barycentrics) < opacity;
 }
 
 /// Intersects a triangle from both sides (Moller and Trumbore 1997); distance FAR if it is missed before `far`.
-Hit triangle_hit(uint triangle, vec3 origin, vec3 toward, float far) {
+Hit triangle_hit(uint triangle, vec3 origin, vec3 toward, float far, uint panes) {
     vec3 corner = uintBitsToFloat(triangle_texel(triangle, 0u).xyz);
     vec3 edge1 = uintBitsToFloat(triangle_texel(triangle, 1u).xyz);
     uvec4 third = triangle_texel(triangle, 2u);
@@ -119,13 +140,12 @@ Hit triangle_hit(uint triangle, vec3 origin, vec3 toward, float far) {
     float distance = dot(edge2, q) * inverse;
     // False for NaN, which a ray in the triangle's plane gives.
     bool is_met = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0 && distance < far;
-    uint opacity = third.w & OPACITY;
-    if (is_met && opacity != OPACITY) is_met = is_solid(opacity, triangle, vec2(u, v));
+    if (is_met && third.w != OPACITY) is_met = is_solid(third.w, triangle, vec2(u, v), edge1, edge2, toward, panes);
     return Hit(is_met ? distance : FAR, triangle, vec2(u, v));
 }
 
 /// The nearest hit from `origin` along `toward`, before the distance `far`; with `any`, the first one that is found.
-Hit traced(vec3 origin, vec3 toward, float far, bool any) {
+Hit traced(vec3 origin, vec3 toward, float far, bool any, uint panes) {
     vec3 inverse = inverse_of(toward);
     Hit best = Hit(far, 0u, vec2(0.0));
     uint waiting[STACK];
@@ -137,7 +157,7 @@ Hit traced(vec3 origin, vec3 toward, float far, bool any) {
         uint first = child & NUMBER;
         bool goes_on;
         if (child > NUMBER) {
-            Hit hit = triangle_hit(first, origin, toward, best.distance);
+            Hit hit = triangle_hit(first, origin, toward, best.distance, panes);
             if (hit.distance < best.distance) best = hit;
             if (any && best.distance < far) break;
             // The next one of the leaf.
@@ -162,12 +182,17 @@ Hit traced(vec3 origin, vec3 toward, float far, bool any) {
     return best;
 }
 
-/// The nearest hit from `origin` along `toward`, before the distance `far`.
+/// The nearest hit of light from `origin` along `toward`, before the distance `far`.
 Hit closest(vec3 origin, vec3 toward, float far) {
-    return traced(origin, toward, far, false);
+    return traced(origin, toward, far, false, PANES_DIM);
 }
 
-/// Whether anything is hit from `origin` along `toward`, before the distance `far`.
+/// Whether anything stops light from `origin` along `toward`, before the distance `far`.
 bool any_hit(vec3 origin, vec3 toward, float far) {
-    return traced(origin, toward, far, true).distance < far;
+    return traced(origin, toward, far, true, PANES_DIM).distance < far;
+}
+
+/// Whether a surface, panes included, is between `origin` and `far` along `toward`.
+bool is_parted(vec3 origin, vec3 toward, float far) {
+    return traced(origin, toward, far, true, PANES_BLOCK).distance < far;
 }

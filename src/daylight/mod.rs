@@ -16,7 +16,8 @@
 //!    [`sampling`] in the bases of [`tangent_frame`]; [`quadrature`] is their reference, [`convergence`] compares them, and
 //!    [`sample_count`] has the samples of the device's map.
 //! 6. [`sky_sampler`]: directional lights drawn from the sky by luminance, one shadow map each.
-//! 7. [`exposure`] and [`tone_curve`]: from cd/m² to a picture; [`false_colour`]: to a picture with readable values.
+//! 7. [`glass`]: the transmittance of window panes.
+//! 8. [`exposure`] and [`tone_curve`]: from cd/m² to a picture; [`false_colour`]: to a picture with readable values.
 //!
 //! # Conventions
 //!
@@ -41,6 +42,7 @@ pub mod day_times;
 pub mod exposure;
 pub mod false_colour;
 
+pub mod glass;
 pub mod grey_sky;
 pub mod hosek;
 pub mod irradiance;

@@ -30,6 +30,9 @@ pub struct Material {
     pub emission: [f32; 3],
     /// Index of the texture of L_e in [`Scene::textures`](crate::scene::Scene::textures).
     pub emissive_texture: Option<usize>,
+    /// A pane of clear glass: its transmittance at normal incidence, linear RGB, 0..1, see [`crate::daylight::glass`]. It lets sun, sky
+    /// and view through and mirrors the sky; it has no ρ_d.
+    pub glass: Option<[f32; 3]>,
 }
 
 /// Largest emitted radiance, cd/m²: the largest number of the device's colours of 32 bits, and a twentieth of the sun.
@@ -60,6 +63,7 @@ pub(super) const MTL_DEFAULT: Material = Material {
     normal_scale: 1.0,
     emission: [0.0; 3],
     emissive_texture: None,
+    glass: None,
 };
 
 impl Default for Material {
@@ -72,8 +76,8 @@ impl Default for Material {
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(super) struct MaterialKey {
     name: String,
-    /// ρ_d, ρ_s, p, opacity, cut-off (negative if none), normal map factor, L_e.
-    values: [u32; 13],
+    /// ρ_d, ρ_s, p, opacity, cut-off (negative if none), normal map factor, L_e, transmittance of glass (negative if none).
+    values: [u32; 16],
     textures: [Option<usize>; 4],
 }
 
@@ -94,8 +98,10 @@ impl Material {
             normal_scale,
             emission: [er, eg, eb],
             emissive_texture,
+            glass,
         } = self;
         let cutoff = alpha_cutoff.unwrap_or(-1.0);
+        let [tr, tg, tb] = glass.unwrap_or([-1.0; 3]);
         let values = [
             *r,
             *g,
@@ -110,6 +116,9 @@ impl Material {
             *er,
             *eg,
             *eb,
+            tr,
+            tg,
+            tb,
         ];
         MaterialKey {
             name: name.clone(),
@@ -130,7 +139,7 @@ impl Material {
 
     /// Whether it is opaque enough to be drawn.
     pub(super) fn is_drawn(&self) -> bool {
-        self.dissolve >= self.alpha_cutoff.unwrap_or(0.5)
+        self.glass.is_some() || self.dissolve >= self.alpha_cutoff.unwrap_or(0.5)
     }
 }
 

@@ -13,6 +13,7 @@ mod culling;
 mod emitters;
 mod error;
 mod files;
+mod glass;
 mod gltf;
 mod hills;
 mod load;

@@ -18,6 +18,8 @@ pub struct Mean {
     pub emission: [f32; 3],
     /// Fraction of the area that is there: below 1 for cut-outs.
     pub opacity: f32,
+    /// Transmittance of a pane of glass at normal incidence, linear RGB, 0..1.
+    pub glass: Option<[f32; 3]>,
 }
 
 /// Means of the triangles of a scene.
@@ -55,12 +57,21 @@ impl<'a> Reflectances<'a> {
     pub fn of(&self, triangle: u32) -> Mean {
         let material = &self.scene.materials[self.material_of[triangle as usize] as usize];
         let corners = [0, 1, 2].map(|i| self.scene.indices[3 * triangle as usize + i] as usize);
+        if material.glass.is_some() {
+            return Mean {
+                diffuse: [0.0; 3],
+                emission: [0.0; 3],
+                opacity: 1.0,
+                glass: material.glass,
+            };
+        }
         let maps = [material.diffuse_texture, material.emissive_texture];
         if maps == [None; 2] && self.scene.colours.is_empty() {
             return Mean {
                 diffuse: material.diffuse,
                 emission: material.emission,
                 opacity: 1.0,
+                glass: None,
             };
         }
         let maps = maps.map(|map| map.map(|number| self.level(number, material, corners)));
@@ -87,6 +98,7 @@ impl<'a> Reflectances<'a> {
             diffuse: sum.map(mean),
             emission: emitted.map(mean),
             opacity: solid / count,
+            glass: None,
         }
     }
 

@@ -100,17 +100,17 @@ pub(super) fn trace(
         };
         let local = cosine_hemisphere(numbers.pair());
         let direction = tangent_frame::to_world(local, point.normal.as_dvec3());
-        let next = scene.first(point.position, direction.as_vec3());
+        let (next, through) = scene.first(point.position, direction.as_vec3());
         let [seen_sky, seen_surface] = seen(next.as_ref(), direction, local.z / PI, lights);
-        from_sky += seen_sky;
-        from_surfaces += seen_surface;
+        from_sky += through * seen_sky;
+        from_surfaces += through * seen_surface;
         if bounce == 0 {
             (sky, sun, reflected) = (from_sky, from_sun, from_surfaces);
         } else {
             reflected += throughput * (from_sky + from_sun + from_surfaces);
         }
         let Some(next) = next else { break };
-        throughput *= next.reflectance;
+        throughput *= through * next.reflectance;
         if bounce >= SURE_BOUNCES {
             let chance = throughput.max_element().min(1.0);
             if rnd(&mut numbers.state) >= chance {
@@ -143,10 +143,10 @@ fn sun_at(point: &Point, scene: &TracedScene, lights: &Lights, xi: DVec2) -> DVe
     let toward = on_disc(direct.direction.as_vec3(), xi).as_dvec3();
     let cosine = point.normal.as_dvec3().dot(toward);
     let is_dark = direct.illuminance == DVec3::ZERO || toward.y <= 0.0;
-    if cosine <= 0.0 || is_dark || !scene.is_open(point.position, toward.as_vec3()) {
+    if cosine <= 0.0 || is_dark {
         return DVec3::ZERO;
     }
-    direct.illuminance * cosine
+    direct.illuminance * cosine * scene.passing(point.position, toward.as_vec3(), f32::INFINITY)
 }
 
 /// Irradiance of the sky at a point, linear RGB, lux: a direction sampled by luminance, weighted against cosine-distributed ones
@@ -154,12 +154,13 @@ fn sun_at(point: &Point, scene: &TracedScene, lights: &Lights, xi: DVec2) -> DVe
 fn sky_at(point: &Point, scene: &TracedScene, lights: &Lights, xi: DVec2) -> DVec3 {
     let light = lights.sampler.light(lights.daylight, xi);
     let cosine = point.normal.as_dvec3().dot(light.direction);
-    if cosine <= 0.0 || !scene.is_open(point.position, light.direction.as_vec3()) {
+    if cosine <= 0.0 {
         return DVec3::ZERO;
     }
+    let through = scene.passing(point.position, light.direction.as_vec3(), f32::INFINITY);
     let density = lights.sampler.density(light.direction);
     let weight = density / (density + cosine / PI);
-    light.illuminance * (cosine * weight)
+    light.illuminance * through * (cosine * weight)
 }
 
 /// Irradiance of the emitters at a point, linear RGB, lux: a point sampled by power, weighted against cosine-distributed directions.

@@ -1,10 +1,12 @@
-//! The surfaces of a scene as paths see them: ray queries, diffuse reflectance, emission, cut-outs.
+//! The surfaces of a scene as paths see them: ray queries, diffuse reflectance, emission, cut-outs, panes of glass.
 
 use std::borrow::Cow;
+use std::cell::Cell;
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use crate::daylight::colour::luminance;
+use crate::daylight::glass::{internal_transmittance, pane};
 use crate::scene::{Bvh, Emitters, Encoding, Hit, Material, Ray, Reflectances, Scene, Texture};
 
 /// A scene as paths see it.
@@ -15,6 +17,8 @@ pub struct TracedScene<'a> {
     material_of: Vec<u32>,
     /// Whether any surface has holes.
     has_cut_outs: bool,
+    /// What one passage through the glass of each material leaves, linear RGB, if it is a pane; empty without any.
+    panes: Vec<Option<DVec3>>,
     emitters: Emitters,
     /// Density of sampled points on each triangle, per m²; empty if nothing emits.
     emitter_densities: Vec<f64>,
@@ -59,15 +63,30 @@ impl<'a> TracedScene<'a> {
             bvh: scene.hierarchy(),
             material_of: scene.triangle_materials(),
             has_cut_outs: scene.materials.iter().any(|m| m.alpha_cutoff.is_some()),
+            panes: panes(&scene.materials),
             scene,
         }
     }
 
-    /// What a ray from `origin` toward `direction`, a unit vector, meets first.
-    pub(super) fn first(&self, origin: Vec3, direction: Vec3) -> Option<Point> {
+    /// What a ray from `origin` toward `direction`, a unit vector, meets first behind panes of glass, and what those let through.
+    pub(super) fn first(&self, origin: Vec3, direction: Vec3) -> (Option<Point>, DVec3) {
         let ray = Ray { origin, direction };
-        let is_solid = |hit: &Hit| self.is_solid(hit);
-        let hit = self.bvh.closest(&ray, 0.0, f32::INFINITY, is_solid)?;
+        let is_solid = |hit: &Hit| self.is_solid(hit) && self.pane(hit).is_none();
+        let hit = self.bvh.closest(&ray, 0.0, f32::INFINITY, is_solid);
+        let far = hit.map_or(f32::INFINITY, |hit| hit.distance);
+        let through = if self.panes.is_empty() {
+            DVec3::ONE
+        } else {
+            // What is hit first is at the end of this way, not on it.
+            self.passing(origin, direction, far)
+        };
+        (hit.map(|hit| self.point(&hit, &ray)), through)
+    }
+
+    /// The point that a ray hits.
+    fn point(&self, hit: &Hit, ray: &Ray) -> Point {
+        let Ray { origin, direction } = *ray;
+        let hit = *hit;
         let normal = self.normal(&hit);
         let toward = if normal.dot(direction) > 0.0 {
             -normal
@@ -76,13 +95,13 @@ impl<'a> TracedScene<'a> {
         };
         let position = origin + hit.distance * direction;
         let cosine = -toward.dot(direction);
-        Some(Point {
+        Point {
             position: lifted(position, toward),
             normal: toward,
             reflectance: self.reflectance(&hit),
             emission: self.emission(&hit),
             emitter_density: self.density(hit.triangle, hit.distance, cosine),
-        })
+        }
     }
 
     /// Whether any surface emits light.
@@ -111,15 +130,9 @@ impl<'a> TracedScene<'a> {
         };
         let way = lifted(target, side) - origin;
         let (toward, distance) = (way.try_normalize()?, way.length());
-        let ray = Ray {
-            origin,
-            direction: toward,
-        };
-        let is_hidden = self
-            .bvh
-            .any(&ray, 0.0, distance, |hit: &Hit| self.is_solid(hit));
-        (!is_hidden).then(|| Emitted {
-            radiance: self.emission(&hit),
+        let through = self.passing(origin, toward, distance);
+        (through != DVec3::ZERO).then(|| Emitted {
+            radiance: self.emission(&hit) * through,
             toward: toward.as_dvec3(),
             density: self.density(emitter.triangle, distance, -side.dot(toward)),
         })
@@ -141,11 +154,33 @@ impl<'a> TracedScene<'a> {
         DVec3::new(r, g, b)
     }
 
-    /// Whether nothing lies on the way from `origin` toward `direction`, a unit vector.
-    pub(super) fn is_open(&self, origin: Vec3, direction: Vec3) -> bool {
+    /// The part of the light that passes from `origin` toward `direction`, a unit vector, before the distance `far`: what panes of glass
+    /// let through, 0 where something opaque is in the way.
+    pub(super) fn passing(&self, origin: Vec3, direction: Vec3, far: f32) -> DVec3 {
         let ray = Ray { origin, direction };
-        let is_solid = |hit: &Hit| self.is_solid(hit);
-        !self.bvh.any(&ray, 0.0, f32::INFINITY, is_solid)
+        let through = Cell::new(DVec3::ONE);
+        let is_hidden = self.bvh.any(&ray, 0.0, far, |hit: &Hit| {
+            let Some(internal) = self.pane(hit) else {
+                return self.is_solid(hit);
+            };
+            let cosine = f64::from(self.normal(hit).dot(direction));
+            let passed = internal.to_array().map(|i| pane(i, cosine)[0]);
+            through.set(through.get() * DVec3::from(passed));
+            false
+        });
+        if is_hidden {
+            DVec3::ZERO
+        } else {
+            through.get()
+        }
+    }
+
+    /// What one passage through the glass that is hit leaves, if it is a pane.
+    fn pane(&self, hit: &Hit) -> Option<DVec3> {
+        if self.panes.is_empty() {
+            return None;
+        }
+        self.panes[self.material_of[hit.triangle as usize] as usize]
     }
 
     fn material(&self, hit: &Hit) -> &Material {
@@ -212,6 +247,16 @@ impl<'a> TracedScene<'a> {
             material.dissolve * alpha >= cutoff
         })
     }
+}
+
+/// What one passage through the glass of each material leaves, if it is a pane; empty without any.
+fn panes(materials: &[Material]) -> Vec<Option<DVec3>> {
+    if materials.iter().all(|material| material.glass.is_none()) {
+        return Vec::new();
+    }
+    let internal = |glass: [f32; 3]| glass.map(|v| internal_transmittance(f64::from(v)));
+    let of = |material: &Material| material.glass.map(|glass| DVec3::from(internal(glass)));
+    materials.iter().map(of).collect()
 }
 
 fn emitters(scene: &Scene) -> Emitters {

@@ -6,6 +6,7 @@ use std::thread;
 use glam::{DVec3, Vec3};
 
 use crate::daylight::colour::luminance;
+use crate::daylight::glass;
 use crate::gpu::{Format, Image, ImageDesc, Pass, Recorder, Result, Sampler, upload_texture};
 use crate::passes::bounces::shared_exponent;
 use crate::passes::bounces::wide::{Wide, WideNode};
@@ -82,8 +83,9 @@ impl Tree {
     }
 
     /// Constants of pipelines that trace rays.
-    pub fn constants(&self) -> [(&'static str, u32); 3] {
+    pub fn constants(&self) -> [(&'static str, u32); 4] {
         [
+            ("GLASS_INDEX", (glass::INDEX as f32).to_bits()),
             ("NODE_COLUMNS", self.node_columns),
             ("TRIANGLE_COLUMNS", self.triangle_columns),
             ("MOST_STEPS", self.most_steps),
@@ -91,9 +93,10 @@ impl Tree {
     }
 
     /// Constants of pipelines that trace rays and sample the emitters.
-    pub fn constants_with_emitters(&self) -> [(&'static str, u32); 6] {
-        let [nodes, triangles, steps] = self.constants();
+    pub fn constants_with_emitters(&self) -> [(&'static str, u32); 7] {
+        let [index, nodes, triangles, steps] = self.constants();
         [
+            index,
             nodes,
             triangles,
             steps,
@@ -174,8 +177,20 @@ fn texel(v: Vec3, word: u32) -> [u32; 4] {
     [x, y, z, word]
 }
 
+/// Mark of a pane of glass in the word of its opacity.
+const PANE: u32 = 1 << 31;
+
+/// The word of a pane of glass: rays have no colour, so it is that of the luminance.
+fn pane_word(normal_transmittance: [f32; 3]) -> u32 {
+    let grey = luminance(Vec3::from(normal_transmittance).as_dvec3());
+    PANE | (glass::internal_transmittance(grey) * 65535.0).round() as u32
+}
+
 fn triangle_words(triangle: &Triangle, mean: &Mean) -> [[u32; 4]; 3] {
-    let opacity = (mean.opacity.clamp(0.0, 1.0) * 255.0).round() as u32;
+    let opacity = match mean.glass {
+        Some(transmittance) => pane_word(transmittance),
+        None => (mean.opacity.clamp(0.0, 1.0) * 255.0).round() as u32,
+    };
     let emission = kilo(Vec3::from(mean.emission).as_dvec3());
     let [r, g, b] = mean.diffuse.map(|v| v.clamp(0.0, 1.0));
     let bits = |v: f32, most: u32| (v * most as f32).round() as u32;

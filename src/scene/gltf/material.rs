@@ -141,6 +141,7 @@ impl Reader<'_, '_> {
             normal_scale: finite(normal.map_or(1.0, |n| n.scale())),
             emission,
             emissive_texture,
+            ..MTL_DEFAULT
         }
     }
 

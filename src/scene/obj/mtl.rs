@@ -7,6 +7,7 @@ use glam::{Affine2, Vec2};
 
 use crate::scene::builder::Builder;
 use crate::scene::files::Lookup;
+use crate::scene::glass;
 use crate::scene::material::{MTL_DEFAULT, Material, MetallicRoughness, phong_of};
 use crate::scene::texture::picture::{Channel, TextureKey};
 
@@ -20,6 +21,7 @@ struct Entry {
     shininess: Option<f32>,
     dissolve: Option<f32>,
     transparency: Option<f32>,
+    filter: Option<[f32; 3]>,
     illumination: Option<u32>,
     metallic: Option<f32>,
     roughness: Option<f32>,
@@ -143,6 +145,7 @@ impl Libraries {
                 &mut entry.dissolve,
                 number(rest.trim_start_matches("-halo")),
             ),
+            "tf" => set(&mut entry.filter, colour(rest)),
             "tr" => set(&mut entry.transparency, number(rest)),
             "pm" => set(&mut entry.metallic, number(rest)),
             "pr" => set(&mut entry.roughness, number(rest)),
@@ -247,6 +250,11 @@ impl Entry {
             normal_texture,
             emission,
             emissive_texture,
+            glass: if has_mask {
+                None
+            } else {
+                glass::of_mtl(self.opacity(), self.filter, self.illumination)
+            },
             ..MTL_DEFAULT
         }
     }

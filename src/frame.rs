@@ -26,6 +26,7 @@ use crate::passes::sky::cube::SkyCube;
 use crate::passes::sky::irradiance::Irradiance;
 use crate::passes::surfaces::gbuffer::Gbuffer;
 use crate::passes::surfaces::geometry::Geometry;
+use crate::passes::surfaces::panes::{BeforePicture, Panes};
 use crate::passes::view::{View, Window};
 use crate::scene::{Camera, Scene};
 
@@ -57,6 +58,8 @@ pub struct Frame {
     sky_cube: SkyCube,
     irradiance: Irradiance,
     gbuffer: Gbuffer,
+    /// Panes of glass, if the scene has any.
+    panes: Option<Panes>,
     ambient: AmbientPasses,
     /// Shadow map and lighting of previews and of frames that the dome does not light.
     preview: Lit,
@@ -115,6 +118,7 @@ impl Frame {
             Ok(Self {
                 ambient: AmbientPasses::new(device, &settings)?,
                 gbuffer: settings.gbuffer(device, &geometry)?,
+                panes: settings.panes(device, &tree)?,
                 average: Average::new(device, &geometry, &tree, &settings)?,
                 cells: settings.cells(device, &tree, &geometry)?,
                 tree,
@@ -171,6 +175,10 @@ impl Frame {
         let sky_edge = new.sky_edge;
         let sky_cube = remade(sky_edge != old.sky_edge, || SkyCube::new(device, sky_edge))?;
         let gbuffer = remade(is_new_gbuffer, || new.gbuffer(device, geometry))?;
+        let is_other_mirror = new.lighting.panes != old.lighting.panes;
+        let panes = remade(is_resized || is_other_mirror, || {
+            new.panes(device, &self.tree)
+        })?;
         let is_new_ambient = is_resized || AmbientNeed::of(&new) != AmbientNeed::of(old);
         let ambient = remade(is_new_ambient, || AmbientPasses::new(device, &new))?;
         let shadow = remade(is_new_shadow, || new.shadow(device, geometry))?;
@@ -188,6 +196,7 @@ impl Frame {
         replace(&mut self.sky_cube, sky_cube);
         replace(&mut self.irradiance, irradiance);
         replace(&mut self.gbuffer, gbuffer);
+        replace(&mut self.panes, panes);
         replace(&mut self.ambient, ambient);
         replace(&mut self.preview.shadow, shadow);
         replace(&mut self.preview.lighting, lighting);
@@ -228,7 +237,7 @@ impl Frame {
         rec.prepare(self.gbuffer.surfaces().images().chain(shadow.target()));
         let sky = self.sky_cube.record(rec, daylight);
         let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
-        let (sun_views, shadow_map) = shadow.record(rec, geometry);
+        let (sun_views, shadow_map, sun_glass) = shadow.record(rec, geometry);
         let surfaces = self.gbuffer.record(rec, geometry, &view);
         let is_dome = resolve.is_dome();
         if let Some(cells) = self
@@ -260,14 +269,20 @@ impl Frame {
             };
             self.ambient.record(rec, &inputs)
         };
-        let light = Light {
+        let mut light = Light {
             daylight,
             sun_direction: sample.sun_direction,
             sun_views,
             shadow_map,
             sky_irradiance,
             sky_radiance: sky.radiance,
+            panes: BeforePicture(None),
+            sun_glass,
         };
+        if let Some(panes) = &self.panes {
+            panes.record(rec, (geometry, &self.tree), &surfaces.depth, &light, &view);
+            light.panes = BeforePicture(Some(panes));
+        }
         let materials = geometry.materials();
         let frame = lighting.record(rec, surfaces, materials, ambient, &light, &view);
         self.background

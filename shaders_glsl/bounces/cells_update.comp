@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "scene_light.glsl"
-#include "surface_hit.glsl"
+#include "surface_light.glsl"
 #include "emitters.glsl"
 #include "cells.glsl"
 #include "cell_table.glsl"

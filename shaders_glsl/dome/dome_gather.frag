@@ -7,6 +7,7 @@
 #include "materials.glsl"
 #include "octahedral.glsl"
 #include "half_size.glsl"
+#include "panes.glsl"
 
 // Sky light by shadow maps from sampled directions: E = 1/n sum V (n.w) L/p, and the same without V. Both are averaged over
 // the frames, as is all other light; their quotient is the light-weighted A.
@@ -100,7 +101,7 @@ void main() {
     if (d > 0.0) {
         uvec3 own = textureLod(normal_material, uv, 0.0).xyz;
         vec3 reflected = vec3(1.0);
-        if (!SHOW_IRRADIANCE) reflected = pixel_albedo(ALBEDO_IMAGE, albedo, materials, own.y, uv).rgb / PI;
+        if (!SHOW_IRRADIANCE) reflected = through_panes(ivec2(gl_FragCoord.xy)) * pixel_albedo(ALBEDO_IMAGE, albedo, materials, own.y, uv).rgb / PI;
 #ifdef ILLUMINANCE
         illuminance = vec4(0.0, 0.0, 0.0, lit.a);
         gather(uv, d, own, reflected);

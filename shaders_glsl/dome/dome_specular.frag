@@ -6,6 +6,7 @@
 #include "dome.glsl"
 #include "materials.glsl"
 #include "octahedral.glsl"
+#include "panes.glsl"
 #include "phong.glsl"
 
 // Specular reflection of the sky with visibility, rho_s V(x, r) L_sky(r) of the lecture's rendering equation: the reflection of
@@ -53,6 +54,7 @@ void gather(vec2 uv, float d) {
     vec3 world = view.eye + toward;
     toward = normalize(toward);
     if (FRESNEL) rho_s = grazing(rho_s, m.a, -dot(toward, n));
+    rho_s *= through_panes(ivec2(gl_FragCoord.xy));
     vec3 r = reflect(toward, n);
     reflected.rgb = rho_s * (NORMALIZED ? sky_in_lobe(sky_radiance, r, n, m.a, push.shift)
                                      : textureLod(sky_radiance, r, 0.0).rgb);

@@ -1,5 +1,5 @@
 // The sun's shadow: a single map, or cascades for large scenes; with PCSS, penumbrae of physical width.
-// Needs `shadow_map`, `sun`, `view`, CASCADES and PCSS.
+// Needs `shadow_map`, `sun_glass`, `sun`, `view`, CASCADES and PCSS.
 
 layout(set = 0, binding = 11, scalar) uniform Cascades {
     mat4 from_world[4]; // the finest first; their maps lie side by side
@@ -110,12 +110,43 @@ float in_cascade(int k, vec3 world, vec3 n, float n_dot_l) {
     return penumbra(Receiver(at, p.z, slope, k, edge), texel, depth_metres);
 }
 
-/// V from the finest cascade that contains the point, blended into the next toward the side of its cube.
-float sun_visibility(vec3 world, vec3 n, float n_dot_l) {
+/// What panes between the sun and a point of map k let through: bilinear between texels. Panes behind the point count too if another one
+/// is before it, in line with the sun.
+vec3 glass_at(vec2 at, float depth, int k, int edge) {
+    vec2 base = floor(at - 0.5), f = at - 0.5 - base;
+    vec3 through = vec3(0.0);
+    for (int i = 0; i < 4; ++i) {
+        ivec2 corner = ivec2(i & 1, i >> 1);
+        ivec2 texel = clamp(ivec2(base) + corner, ivec2(0), ivec2(edge - 1)) + ivec2(k * edge, 0);
+        vec4 glass = texelFetch(sun_glass, texel, 0);
+        vec2 w = mix(1.0 - f, f, vec2(corner));
+        through += w.x * w.y * (glass.a > depth ? glass.rgb : vec3(1.0));
+    }
+    return through;
+}
+
+/// The cascade of a point, the finest that contains it, and the point's distance in it.
+int cascade_of(vec3 world, out float reach) {
     vec3 away = abs(world - view.eye);
-    float reach = max(away.x, max(away.y, away.z));
+    reach = max(away.x, max(away.y, away.z));
     int k = 0;
     for (int i = 0; i < CASCADES - 1; ++i) if (reach >= cascades.sizes[i].x) k = i + 1;
+    return k;
+}
+
+/// What panes let through of the sun's light.
+vec3 sun_tint(vec3 world) {
+    float reach;
+    int k = cascade_of(world, reach);
+    vec3 p = (cascades.from_world[k] * vec4(world, 1.0)).xyz;
+    int edge = textureSize(sun_glass, 0).y;
+    return glass_at((p.xy * 0.5 + 0.5) * float(edge), p.z, k, edge);
+}
+
+/// V from the finest cascade that contains the point, blended into the next toward the side of its cube.
+float sun_visibility(vec3 world, vec3 n, float n_dot_l) {
+    float reach;
+    int k = cascade_of(world, reach);
     float V = in_cascade(k, world, n, n_dot_l);
     if (k + 1 < CASCADES) {
         float blend = (reach / cascades.sizes[k].x - BLEND) / (1.0 - BLEND);

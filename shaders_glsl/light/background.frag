@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "panes.glsl"
 #include "view.glsl"
 
 // The background, as on the lecture's slide "Environment mapping - filling the background": the sky cube along the pixel's ray.
@@ -13,6 +14,9 @@ layout(constant_id = 0) const bool SKY = true;
 layout(constant_id = 2) const bool DISC = true;
 // Constant for pixels without a surface, if the sky is not drawn.
 layout(constant_id = 1) const float EMPTY = 0.0;
+
+// What panes of glass mirror is shown.
+layout(constant_id = 3) const bool MIRRORED = false;
 
 layout(set = 0, binding = 0) uniform samplerCube sky_radiance; // kcd/m^2, without the discs
 layout(set = 0, binding = 1, scalar) uniform View { VIEW_BLOCK } view;
@@ -51,13 +55,15 @@ vec3 moon(vec3 direction) {
 }
 
 void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec3 mirrored = MIRRORED ? mirrored_by_panes(pixel) : vec3(0.0);
     if (!SKY) {
-        radiance = vec4(vec3(EMPTY), 0.0);
+        radiance = vec4(vec3(EMPTY) + mirrored, 0.0);
         return;
     }
     vec3 ray = view_ray(gl_FragCoord.xy / push.size, view.ray_scale, view.ray_offset);
     vec3 direction = view.world_from_view * ray;
     vec3 sky = textureLod(sky_radiance, direction, 0.0).rgb;
     if (DISC) sky += disc(normalize(direction)) + moon(normalize(direction));
-    radiance = vec4(min(sky, push.max_radiance), 0.0);
+    radiance = vec4(min(sky * through_panes(pixel) + mirrored, push.max_radiance), 0.0);
 }

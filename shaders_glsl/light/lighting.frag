@@ -9,6 +9,7 @@
 #include "half_size.glsl"
 #include "phong.glsl"
 #include "face.glsl"
+#include "panes.glsl"
 
 // L_e + L_sun + L_sky + L_bounces. With CELLS the irradiances of sky and bounces are those of the cells. Otherwise it is the lecture's
 // slide "Illumination model for skylight":
@@ -21,6 +22,8 @@ layout(constant_id = 0) const bool SUN = true;
 layout(constant_id = 1) const bool SKY = true;
 layout(constant_id = 2) const bool SUN_SPECULAR = true;
 layout(constant_id = 3) const bool SKY_SPECULAR = true;
+// What panes of glass mirror is shown.
+layout(constant_id = 27) const bool MIRRORED = true;
 // One of these quantities instead of the sum.
 layout(constant_id = 4) const bool SHOW_VISIBILITY = false;
 layout(constant_id = 5) const bool SHOW_OCCLUSION = false;
@@ -73,6 +76,9 @@ layout(set = 0, binding = 8, scalar) uniform Sun {
 layout(set = 0, binding = 9) uniform sampler2D materials; // see materials.glsl
 layout(set = 0, binding = 10) uniform sampler2D emission;  // with EMISSION_IMAGE; else any
 
+// What panes of glass let through of the sun's light: rgb: products, a: depth of the pane nearest the sun; with PANES, else any.
+layout(set = 0, binding = 28) uniform sampler2D sun_glass;
+
 #include "sun_shadow.glsl"
 
 /// V of one point of the sun's disc. Shadow edges are off by up to a texel; the mean over many maps averages this out.
@@ -80,6 +86,14 @@ float plane_visibility(vec3 world, vec3 n, vec3 face) {
     if (is_turned_away(face, n, sun.direction)) return 0.0;
     vec4 window = vec4(vec2(0.0), vec2(textureSize(shadow_map, 0)));
     return float(is_lit_in_plane(shadow_map, sun.shadow_from_world, sun.planes, window, sun.depth_bias, world, face));
+}
+
+/// What panes let through of the light of one point of the sun's disc.
+vec3 plane_tint(vec3 world) {
+    vec4 c = sun.shadow_from_world * vec4(world, 1.0);
+    vec3 p = c.xyz / c.w;
+    int edge = textureSize(sun_glass, 0).y;
+    return glass_at((p.xy * 0.5 + 0.5) * float(edge), p.z, 0, edge);
 }
 
 void main() {
@@ -111,7 +125,9 @@ void main() {
         A = ambient_occlusion(ambient, OCCLUSION_DOWNSCALE, pixel + sun.occlusion_from, distance);
         light.sky = A * textureLod(sky_irradiance, n, 0.0).rgb;
     }
-    vec3 sun_irradiance = max(n_dot_l, 0.0) * V * sun.illuminance;
+    vec3 sun_illuminance = sun.illuminance;
+    if (PANES && V > 0.0) sun_illuminance *= PLANE_SHADOW ? plane_tint(world) : sun_tint(world);
+    vec3 sun_irradiance = max(n_dot_l, 0.0) * V * sun_illuminance;
     vec3 irradiance = light.sky + light.bounce;
 
     float illuminance = luminance(sun_irradiance + irradiance);
@@ -140,9 +156,13 @@ void main() {
         float r_dot_l = max(dot(r, sun.direction), 0.0);
         float lobe = pow(r_dot_l, m.a);
         if (NORMALIZED) lobe *= phong_scale(m.a) * max(n_dot_l, 0.0);
-        if (SUN_SPECULAR) sum += rho_s * (lobe * V) * sun.illuminance;
+        if (SUN_SPECULAR) sum += rho_s * (lobe * V) * sun_illuminance;
         if (SKY_SPECULAR && NORMALIZED) sum += rho_s * sky_in_lobe(sky_radiance, r, n, m.a, vec2(0.0));
         else if (SKY_SPECULAR) sum += rho_s * textureLod(sky_radiance, r, 0.0).rgb;
+    }
+    if (PANES) {
+        sum *= through_panes(pixel);
+        if (MIRRORED) sum += mirrored_by_panes(pixel);
     }
     radiance = vec4(min(sum, sun.max_radiance), illuminance);
 }

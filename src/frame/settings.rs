@@ -23,6 +23,7 @@ use crate::passes::sun_shadow::cascades;
 use crate::passes::sun_shadow::map::Shadow;
 use crate::passes::surfaces::gbuffer::Gbuffer;
 use crate::passes::surfaces::geometry::Geometry;
+use crate::passes::surfaces::panes::Panes;
 
 /// Settings that stay the same from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,6 +73,7 @@ impl Default for FrameSettings {
                 specular_scale: 1.0,
                 limb_darkening: 0.0,
                 has_albedo: true,
+                panes: None,
                 emission: EmissionSource::None,
                 occlusion_downscale: ssao.pixels_per_texel(),
                 fresnel: false,
@@ -180,6 +182,15 @@ impl FrameSettings {
         Background::new(context, self.lighting)
     }
 
+    /// Panes of glass, if the scene has any.
+    pub(super) fn panes(&self, context: &Arc<Context>, tree: &Tree) -> Result<Option<Panes>> {
+        let size = self.size.to_array();
+        let panes = self.lighting.panes;
+        panes
+            .map(|scale| Panes::new(context, tree, size, scale))
+            .transpose()
+    }
+
     /// Tone mapping.
     pub(super) fn tone_map(&self, context: &Arc<Context>) -> Result<ToneMap> {
         ToneMap::new(context, self.size.to_array(), self.tone)
@@ -192,6 +203,8 @@ impl FrameSettings {
             let most = context.summary().max_image_edge;
             shadows.cascades = cascades::count(geometry.casters(), self.shadow_resolution, most);
         }
+        let panes = geometry.has_panes();
+        self.lighting.panes = panes.then_some(self.lighting.specular_scale);
         if !geometry.is_specular() {
             self.lighting.specular_scale = 0.0;
         }

@@ -35,7 +35,7 @@ pub use memory::upload::{upload_buffer, upload_texture};
 pub use pipeline::cache::CacheState;
 pub use pipeline::layout::{GpuStruct, assert_layout};
 pub use pipeline::shader::{Binding, BindingKind, Field, Shader, Stage, compiled as shaders};
-pub use pipeline::{Depth, Pipeline, PipelineDesc};
+pub use pipeline::{Blend, Depth, Pipeline, PipelineDesc};
 #[cfg(feature = "window")]
 pub use present::{
     presenter::Presenter,

@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 
-use crate::gpu::{Context, Depth, Format, Pipeline, PipelineDesc, Result, Shader, shaders};
+use crate::gpu::{Blend, Context, Depth, Format, Pipeline, PipelineDesc, Result, Shader, shaders};
 
 /// cd/m² to kcd/m², lux to klx.
 fn kilo(rgb: DVec3) -> Vec3 {
@@ -38,6 +38,7 @@ fn compute(
             vertex: &[],
             colors: &[],
             depth: Depth::Off,
+            blend: Blend::Off,
             constants,
         },
     )
@@ -71,6 +72,7 @@ fn fullscreen_at(
             vertex: &[],
             colors,
             depth,
+            blend: Blend::Off,
             constants,
         },
     )

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3};
 
 use super::Sensor;
-use super::surface::{Point, TracedScene, lifted};
+use super::surface::{Met, Point, TracedScene, lifted};
 use crate::daylight::sampling::{cosine_hemisphere, rnd, shuffled_sobol, tea};
 use crate::daylight::sky::Daylight;
 use crate::daylight::sky_sampler::SkySampler;
@@ -100,17 +100,18 @@ pub(super) fn trace(
         };
         let local = cosine_hemisphere(numbers.pair());
         let direction = tangent_frame::to_world(local, point.normal.as_dvec3());
-        let (next, through) = scene.first(point.position, direction.as_vec3());
-        let [seen_sky, seen_surface] = seen(next.as_ref(), direction, local.z / PI, lights);
-        from_sky += through * seen_sky;
-        from_surfaces += through * seen_surface;
+        let state = &mut numbers.state;
+        let met = scene.first(point.position, direction.as_vec3(), || rnd(state));
+        let [seen_sky, seen_surface] = seen(&met, local.z / PI, lights);
+        from_sky += met.through * seen_sky;
+        from_surfaces += met.through * seen_surface;
         if bounce == 0 {
             (sky, sun, reflected) = (from_sky, from_sun, from_surfaces);
         } else {
             reflected += throughput * (from_sky + from_sun + from_surfaces);
         }
-        let Some(next) = next else { break };
-        throughput *= through * next.reflectance;
+        let Some(next) = met.point else { break };
+        throughput *= met.through * next.reflectance;
         if bounce >= SURE_BOUNCES {
             let chance = throughput.max_element().min(1.0);
             if rnd(&mut numbers.state) >= chance {
@@ -124,15 +125,25 @@ pub(super) fn trace(
 }
 
 /// Irradiance of what a ray in a direction of this density meets, linear RGB, lux: of the sky, of a surface that emits or the ground.
-fn seen(next: Option<&Point>, direction: DVec3, density: f64, lights: &Lights) -> [DVec3; 2] {
-    if let Some(next) = next {
-        let weight = density / (density + next.emitter_density);
+///
+/// What a pane mirrors is found by these rays alone.
+fn seen(met: &Met, density: f64, lights: &Lights) -> [DVec3; 2] {
+    let weight = |other: f64| {
+        if met.is_mirrored {
+            1.0
+        } else {
+            density / (density + other)
+        }
+    };
+    if let Some(next) = met.point {
+        let weight = weight(next.emitter_density);
         return [DVec3::ZERO, PI * weight * next.emission];
     }
+    let direction = met.direction.as_dvec3();
     if direction.y < 0.0 {
         return [DVec3::ZERO, PI * lights.daylight.ground_luminance];
     }
-    let weight = density / (density + lights.sampler.density(direction));
+    let weight = weight(lights.sampler.density(direction));
     let sky = weight * PI * lights.daylight.sky_radiance(direction);
     [sky, DVec3::ZERO]
 }

@@ -50,6 +50,22 @@ pub(super) struct Point {
     pub emitter_density: f64,
 }
 
+/// What a ray meets behind panes of glass.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Met {
+    /// The surface, if there is one.
+    pub point: Option<Point>,
+    /// The direction in which it was met, or the sky was: another one after a pane mirrored the ray.
+    pub direction: Vec3,
+    /// Factor on its light, linear RGB: of the panes.
+    pub through: DVec3,
+    /// Whether a pane mirrored the ray.
+    pub is_mirrored: bool,
+}
+
+/// Panes that a ray passes or is mirrored by at most; almost nothing is left then.
+const MOST_PANES: u32 = 64;
+
 /// Offset of ray origins from their surface, relative to the largest coordinate: covers the rounding of `f32`.
 const OFFSET: f32 = 3e-5;
 
@@ -68,19 +84,50 @@ impl<'a> TracedScene<'a> {
         }
     }
 
-    /// What a ray from `origin` toward `direction`, a unit vector, meets first behind panes of glass, and what those let through.
-    pub(super) fn first(&self, origin: Vec3, direction: Vec3) -> (Option<Point>, DVec3) {
-        let ray = Ray { origin, direction };
-        let is_solid = |hit: &Hit| self.is_solid(hit) && self.pane(hit).is_none();
-        let hit = self.bvh.closest(&ray, 0.0, f32::INFINITY, is_solid);
-        let far = hit.map_or(f32::INFINITY, |hit| hit.distance);
-        let through = if self.panes.is_empty() {
-            DVec3::ONE
-        } else {
-            // What is hit first is at the end of this way, not on it.
-            self.passing(origin, direction, far)
+    /// What a ray from `origin` toward `direction`, a unit vector, meets first that is no pane of glass. Panes mirror it by chance, as
+    /// `random` numbers say, and dim it.
+    pub(super) fn first(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        mut random: impl FnMut() -> f64,
+    ) -> Met {
+        let mut ray = Ray { origin, direction };
+        let mut met = Met {
+            point: None,
+            direction,
+            through: DVec3::ONE,
+            is_mirrored: false,
         };
-        (hit.map(|hit| self.point(&hit, &ray)), through)
+        for _ in 0..MOST_PANES {
+            let is_solid = |hit: &Hit| self.is_solid(hit);
+            let Some(hit) = self.bvh.closest(&ray, 0.0, f32::INFINITY, is_solid) else {
+                return met;
+            };
+            let Some(internal) = self.pane(&hit) else {
+                met.point = Some(self.point(&hit, &ray));
+                return met;
+            };
+            let normal = self.normal(&hit);
+            let cosine = normal.dot(ray.direction);
+            let shares = internal.to_array().map(|i| pane(i, f64::from(cosine)));
+            let [passed, mirrored] = [0, 1].map(|i| DVec3::from(shares.map(|share| share[i])));
+            let chance = mirrored.max_element();
+            let is_mirrored = random() < chance;
+            let position = ray.origin + hit.distance * ray.direction;
+            let ahead = if is_mirrored { -cosine } else { cosine };
+            ray.origin = lifted(position, normal * 1f32.copysign(ahead));
+            if is_mirrored {
+                ray.direction = (ray.direction - 2.0 * cosine * normal).normalize_or(direction);
+                met.direction = ray.direction;
+                met.is_mirrored = true;
+                met.through *= mirrored / chance;
+            } else {
+                met.through *= passed / (1.0 - chance);
+            }
+        }
+        met.through = DVec3::ZERO;
+        met
     }
 
     /// The point that a ray hits.

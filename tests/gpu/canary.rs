@@ -5,8 +5,8 @@ use std::process::{Command, Output};
 
 use crate::gpu::{Device, Model, camera, clear_day, matt, settings};
 use skylight::gpu::{
-    CacheState, Context, ContextOptions, Depth, Format, GpuError, Image, ImageDesc, Load, Optional,
-    Pipeline, PipelineDesc, Recorder, Sampler, Timing, read_back, shaders,
+    Blend, CacheState, Context, ContextOptions, Depth, Format, GpuError, Image, ImageDesc, Load,
+    Optional, Pipeline, PipelineDesc, Recorder, Sampler, Timing, read_back, shaders,
 };
 use skylight::passes::occlusion::ssao::SsaoSettings;
 use skylight::passes::picture::accumulate::Push;
@@ -24,6 +24,7 @@ fn draw_from_itself(recorder: &mut Recorder, no_feedback: bool) {
             vertex: &[],
             colors: &[format],
             depth: Depth::Off,
+            blend: Blend::Off,
             constants: &[],
         },
     )

@@ -9,8 +9,8 @@ use skylight::daylight::exposure::{adaptation, robust_log_average};
 use skylight::daylight::false_colour::Range;
 use skylight::daylight::tone_curve::ToneCurve;
 use skylight::gpu::{
-    Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Sampler, read_back, shaders,
-    upload_texture,
+    Blend, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Sampler, read_back,
+    shaders, upload_texture,
 };
 use skylight::passes::light::lighting::Show;
 use skylight::passes::picture::exposure::Exposure;
@@ -70,6 +70,7 @@ fn mapped(device: &mut Device, inputs: &[[f32; 4]], case: &Case) -> Vec<[f32; 4]
             vertex: &[],
             colors: &[format],
             depth: Depth::Off,
+            blend: Blend::Off,
             constants: &constants,
         },
     )

@@ -2,7 +2,7 @@
 
 use crate::gpu::Device;
 use skylight::gpu::{
-    BufferKind, ContextOptions, Depth, Format, Image, ImageDesc, Load, Optional, Pipeline,
+    Blend, BufferKind, ContextOptions, Depth, Format, Image, ImageDesc, Load, Optional, Pipeline,
     PipelineDesc, Recorder, Sampler, Timing, shaders, upload_buffer, upload_texture,
 };
 use skylight::passes::picture::accumulate;
@@ -31,6 +31,7 @@ fn draw_uploaded_quad(device: &mut Device, size: u32, opaque: u32) -> Vec<f32> {
         stages: &[&shaders::SHADOW_CUT_OUT_VERT, &shaders::SHADOW_CUT_OUT_FRAG],
         vertex: &formats,
         colors: &[],
+        blend: skylight::gpu::Blend::Off,
         depth: Depth::Write {
             format: depth_format,
             slope_bias: 0.0,
@@ -122,6 +123,7 @@ fn draw_in_turn(device: &mut Device, draws: usize) -> [f32; 4] {
         vertex: &[],
         colors: &[format],
         depth: Depth::Off,
+        blend: Blend::Off,
         constants: &[],
     };
     let pipeline = Pipeline::new(&device.context, &desc).expect("a pipeline");

@@ -26,6 +26,8 @@ pub enum Depth {
     Surface(vk::Format),
     /// Passes where no surface was drawn (depth is 0); no depth writes. For full-screen triangles.
     Background(vk::Format),
+    /// Passes nearer (greater) fragments; no depth writes. For surfaces that let light through.
+    Test(vk::Format),
     /// Passes nearer (greater) fragments and writes their depth.
     Write {
         /// Format of the attachment.
@@ -40,15 +42,30 @@ impl Depth {
     fn format(self) -> Option<vk::Format> {
         match self {
             Self::Off => None,
-            Self::Surface(format) | Self::Background(format) | Self::Write { format, .. } => {
-                Some(format)
-            }
+            Self::Surface(format)
+            | Self::Background(format)
+            | Self::Test(format)
+            | Self::Write { format, .. } => Some(format),
         }
     }
 
     fn is_written(self) -> bool {
         matches!(self, Self::Write { .. })
     }
+}
+
+/// How fragments are combined with what is in the colour attachments. Only half floats and bytes can be combined on every device.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Blend {
+    /// They replace it.
+    #[default]
+    Off,
+    /// Products of all channels.
+    Multiply,
+    /// Sums of all channels.
+    Add,
+    /// Products of red, green and blue, and the largest alpha.
+    MultiplyAndMost,
 }
 
 /// Description of a [`Pipeline`].
@@ -64,8 +81,17 @@ pub struct PipelineDesc<'a> {
     pub colors: &'a [vk::Format],
     /// Depth test.
     pub depth: Depth,
+    /// What happens to fragments.
+    pub blend: Blend,
     /// Values of specialization constants by name, as raw 32-bit words.
     pub constants: &'a [(&'a str, u32)],
+}
+
+impl PipelineDesc<'_> {
+    /// Whether it draws geometry, whose faces may be culled; full-screen triangles never are.
+    fn culls(&self) -> bool {
+        !self.vertex.is_empty()
+    }
 }
 
 /// A binding and the stages that use it.
@@ -87,6 +113,8 @@ pub struct Pipeline {
     pub(in crate::gpu) depth: Option<vk::Format>,
     pub(in crate::gpu) streams: usize,
     pub(in crate::gpu) writes_depth: bool,
+    /// Whether front face and culling are dynamic: for pipelines that draw geometry.
+    pub(in crate::gpu) culls: bool,
     /// Work group size of a compute pipeline.
     pub(in crate::gpu) local_size: Option<[u32; 3]>,
     name: String,
@@ -185,6 +213,7 @@ impl Pipeline {
             depth: desc.depth.format(),
             streams: desc.vertex.len(),
             writes_depth: desc.depth.is_written(),
+            culls: desc.culls(),
             local_size: desc.stages.iter().find_map(|s| s.local_size),
             name: desc.name.to_owned(),
         };

@@ -3,7 +3,7 @@
 use ash::vk;
 
 use crate::gpu::device::context::Context;
-use crate::gpu::pipeline::{Depth, PipelineDesc};
+use crate::gpu::pipeline::{Blend, Depth, PipelineDesc};
 
 type Created = Result<vk::Pipeline, vk::Result>;
 
@@ -22,8 +22,8 @@ pub(super) fn compute(
     created.map(|p| p[0]).map_err(|(_, result)| result)
 }
 
-/// Creates a graphics pipeline with dynamic viewport and scissor. Pipelines that write depth draw surfaces and also have
-/// dynamic cull mode and front face; full-screen triangles are never culled.
+/// Creates a graphics pipeline with dynamic viewport and scissor. Pipelines that draw geometry also have dynamic cull mode and front
+/// face; full-screen triangles are never culled.
 pub(super) fn graphics(
     context: &Context,
     layout: vk::PipelineLayout,
@@ -43,12 +43,10 @@ pub(super) fn graphics(
         .rasterization_samples(vk::SampleCountFlags::TYPE_1);
     let rasterization = rasterization(desc.depth);
     let depth = depth_state(desc.depth);
-    let opaque = vk::PipelineColorBlendAttachmentState::default()
-        .color_write_mask(vk::ColorComponentFlags::RGBA);
-    let blends = vec![opaque; desc.colors.len()];
+    let blends = vec![blend_state(desc.blend); desc.colors.len()];
     let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
     let dynamic =
-        vk::PipelineDynamicStateCreateInfo::default().dynamic_states(dynamic_states(desc.depth));
+        vk::PipelineDynamicStateCreateInfo::default().dynamic_states(dynamic_states(desc.culls()));
     let mut rendering = vk::PipelineRenderingCreateInfo::default()
         .color_attachment_formats(desc.colors)
         .depth_attachment_format(desc.depth.format().unwrap_or(vk::Format::UNDEFINED));
@@ -70,14 +68,40 @@ pub(super) fn graphics(
     created.map(|p| p[0]).map_err(|(_, result)| result)
 }
 
-fn dynamic_states(depth: Depth) -> &'static [vk::DynamicState] {
+fn blend_state(blend: Blend) -> vk::PipelineColorBlendAttachmentState {
+    let all = vk::PipelineColorBlendAttachmentState::default()
+        .color_write_mask(vk::ColorComponentFlags::RGBA)
+        .blend_enable(blend != Blend::Off);
+    let (zero, one) = (vk::BlendFactor::ZERO, vk::BlendFactor::ONE);
+    let (colour, alpha) = (vk::BlendFactor::SRC_COLOR, vk::BlendFactor::SRC_ALPHA);
+    match blend {
+        Blend::Off => all,
+        Blend::Add => all
+            .src_color_blend_factor(one)
+            .dst_color_blend_factor(one)
+            .src_alpha_blend_factor(one)
+            .dst_alpha_blend_factor(one),
+        Blend::Multiply | Blend::MultiplyAndMost => all
+            .src_color_blend_factor(zero)
+            .dst_color_blend_factor(colour)
+            .src_alpha_blend_factor(zero)
+            .dst_alpha_blend_factor(alpha)
+            .alpha_blend_op(if blend == Blend::Multiply {
+                vk::BlendOp::ADD
+            } else {
+                vk::BlendOp::MAX
+            }),
+    }
+}
+
+fn dynamic_states(culls: bool) -> &'static [vk::DynamicState] {
     const ALL: &[vk::DynamicState] = &[
         vk::DynamicState::VIEWPORT,
         vk::DynamicState::SCISSOR,
         vk::DynamicState::CULL_MODE,
         vk::DynamicState::FRONT_FACE,
     ];
-    if depth.is_written() { ALL } else { &ALL[..2] }
+    if culls { ALL } else { &ALL[..2] }
 }
 
 fn vertex_streams(
@@ -135,7 +159,7 @@ fn depth_state(depth: Depth) -> vk::PipelineDepthStencilStateCreateInfo<'static>
         // A full-screen triangle has depth 0, less than any surface.
         Depth::Surface(_) => vk::CompareOp::LESS,
         Depth::Background(_) => vk::CompareOp::EQUAL,
-        Depth::Off | Depth::Write { .. } => vk::CompareOp::GREATER,
+        Depth::Off | Depth::Test(_) | Depth::Write { .. } => vk::CompareOp::GREATER,
     };
     vk::PipelineDepthStencilStateCreateInfo::default()
         .depth_test_enable(depth != Depth::Off)

@@ -140,9 +140,9 @@ impl<'r> Draws<'_, 'r> {
     /// Sets front face and culling for the following draws.
     ///
     /// # Panics
-    /// When the pipeline does not write depth; only pipelines that do have these dynamic states.
+    /// When the pipeline does not draw geometry; only pipelines that do have these dynamic states.
     pub fn faces(&mut self, faces: Faces) {
-        assert!(self.pass.pipeline.writes_depth, "pass {}", self.pass.name);
+        assert!(self.pass.pipeline.culls, "pass {}", self.pass.name);
         if faces == self.pass.faces {
             return;
         }

@@ -447,12 +447,12 @@ impl<'r> Pass<'r> {
                 self.pipeline.raw(),
             );
         }
-        if self.pipeline.writes_depth {
+        if self.pipeline.culls {
             self.set_faces();
         }
     }
 
-    /// Sets front face and culling, which are dynamic in every pipeline that writes depth.
+    /// Sets front face and culling, which are dynamic in every pipeline that draws geometry.
     pub(in crate::gpu) fn set_faces(&self) {
         let (cull, front) = self.faces.state();
         let (raw, command) = (self.recorder.context.raw(), self.recorder.command);

@@ -29,6 +29,7 @@ use crate::passes::sun_shadow::map::{Casters, Tile};
 use crate::passes::sun_shadow::perspective::{Receivers, fit};
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::surfaces::geometry::Geometry;
+use crate::passes::surfaces::panes::BeforePicture;
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
 use crate::passes::{fullscreen, fullscreen_at, kilo};
@@ -123,6 +124,8 @@ pub struct Gathered<'a> {
     pub sky_irradiance: &'a Image,
     /// Radiance L of sky and ground, kcd/m².
     pub sky_radiance: &'a Image,
+    /// Panes of glass before the picture.
+    pub panes: BeforePicture<'a>,
     /// Irradiance from other surfaces, klx; `None` without bounces.
     pub bounced: Option<HalfSize<'a>>,
 }
@@ -190,7 +193,7 @@ impl Dome {
         let depth = Format::D32_SFLOAT;
         Ok(Self {
             settings,
-            casters: Casters::new(context, geometry, 0.0)?,
+            casters: Casters::new(context, geometry, 0.0)?.with_panes(context, geometry)?,
             gather: gather_pipeline(context, geometry, settings, show, bounces)?,
             resolve: fullscreen(
                 context,
@@ -357,6 +360,7 @@ impl Dome {
             .bounced
             .map_or(&surfaces.normal_material, |b| b.image);
         let pass = recorder.pass("dome: gather", &self.gather);
+        let pass = gathered.panes.sampled_by(pass, gathered.materials);
         let pass = surfaces
             .sampled_by(pass, gathered.materials)
             .sample("frame", gathered.frame, Sampler::Nearest)
@@ -420,6 +424,7 @@ fn gather_pipeline(
             ("SKY", shows_sky(show).into()),
             ("DIRECTIONS", settings.directions),
             ("ALBEDO_IMAGE", geometry.has_albedo().into()),
+            ("PANES", geometry.has_panes().into()),
             ("BOUNCES", bounces.is_any().into()),
             (
                 "SHOW_BOUNCES",

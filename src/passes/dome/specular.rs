@@ -118,6 +118,7 @@ impl SpecularSky {
         self.means.swap(0, 1);
         let [[reflected, lobe], [old_reflected, old_lobe]] = &self.means;
         let pass = recorder.pass("dome: specular", &self.gather);
+        let pass = gathered.panes.sampled_by(pass, gathered.materials);
         gathered
             .surfaces
             .sampled_by(pass, gathered.materials)
@@ -167,6 +168,7 @@ fn gather_pipeline(
             ("FRESNEL", lighting.fresnel.into()),
             ("NORMALIZED", normalized.into()),
             ("ALBEDO_IMAGE", lighting.has_albedo.into()),
+            ("PANES", lighting.panes.is_some().into()),
             ("MATERIAL_COLUMNS", MATERIAL_COLUMNS),
         ],
     )

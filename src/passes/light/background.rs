@@ -53,6 +53,10 @@ impl Background {
     /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, settings: LightingSettings) -> Result<Self> {
         let (sky, empty) = content(settings.show);
+        let mirrors = matches!(
+            settings.show,
+            Show::Beauty | Show::Luminance | Show::SkySpecular
+        );
         let pipeline = |disc: bool| {
             fullscreen_at(
                 context,
@@ -64,6 +68,8 @@ impl Background {
                     ("SKY", sky.into()),
                     ("EMPTY", empty.to_bits()),
                     ("DISC", disc.into()),
+                    ("PANES", settings.panes.is_some().into()),
+                    ("MIRRORED", mirrors.into()),
                 ],
             )
         };
@@ -103,8 +109,10 @@ impl Background {
         } else {
             &self.without_disc
         };
-        recorder
-            .pass("background", pipeline)
+        let pass = recorder.pass("background", pipeline);
+        light
+            .panes
+            .sampled_by(pass, depth)
             .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
             .uniform("view", &view.block())
             .push(&push)

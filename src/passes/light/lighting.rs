@@ -23,6 +23,7 @@ pub use crate::passes::sun_shadow::cascades::Shadows;
 use crate::passes::sun_shadow::cascades::{BLEND, MAX_RADIUS, NORMAL_OFFSET_TEXELS, SunViews};
 use crate::passes::surfaces::gbuffer::Surfaces;
 pub use crate::passes::surfaces::geometry::EmissionSource;
+use crate::passes::surfaces::panes::BeforePicture;
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
 use crate::passes::{fullscreen_at, kilo};
@@ -123,7 +124,7 @@ impl Show {
         }
     }
 
-    fn constants(self, specular: bool, emits: bool) -> [(&'static str, u32); 12] {
+    fn constants(self, specular: bool, emits: bool) -> [(&'static str, u32); 13] {
         let whole = matches!(self, Self::Beauty | Self::Luminance);
         let on = |shown: Self| u32::from(self == shown);
         let addend = |shown: Self| u32::from(whole || self == shown);
@@ -140,6 +141,7 @@ impl Show {
                 "SKY_SPECULAR",
                 u32::from(specular) & addend(Self::SkySpecular),
             ),
+            ("MIRRORED", addend(Self::SkySpecular)),
             ("SHOW_VISIBILITY", on(Self::Visibility)),
             ("SHOW_OCCLUSION", on(Self::Occlusion)),
             ("SHOW_IRRADIANCE", on(Self::Irradiance)),
@@ -205,6 +207,8 @@ pub struct LightingSettings {
     pub has_albedo: bool,
     /// Where L_e of surfaces is. Set by [`crate::frame::Frame`].
     pub emission: EmissionSource,
+    /// Factor on what panes of glass mirror, if there are any. Set by [`crate::frame::Frame`].
+    pub panes: Option<f32>,
     /// Whether ρ_s grows toward grazing angles (Schlick's approximation of Fresnel's equations).
     pub fresnel: bool,
     /// Settings of the sun's shadow lookup.
@@ -228,6 +232,10 @@ pub struct Light<'a> {
     pub sky_irradiance: &'a Image,
     /// Radiance L of sky and ground, kcd/m².
     pub sky_radiance: &'a Image,
+    /// Panes of glass before the picture.
+    pub panes: BeforePicture<'a>,
+    /// What panes let through of the sun's light, in the views of its shadow map; `None` without panes.
+    pub sun_glass: Option<&'a Image>,
 }
 
 /// The lighting pass and its picture.
@@ -287,6 +295,7 @@ impl Lighting {
         constants.push(("AMBIENT", (!is_converging).into()));
         constants.push(("CELLS", (settings.ambient == Ambient::Cells).into()));
         constants.push(("PLANE_SHADOW", is_converging.into()));
+        constants.push(("PANES", settings.panes.is_some().into()));
         constants.push(("CASCADES", settings.shadows.cascades.max(1)));
         constants.push(("PCSS", settings.shadows.penumbrae.into()));
         constants.push(("NORMAL_OFFSET", NORMAL_OFFSET_TEXELS.to_bits()));
@@ -321,6 +330,8 @@ impl Lighting {
         view: &View,
     ) -> &Image {
         let pass = recorder.pass("lighting", &self.pipeline);
+        let pass = light.panes.sampled_by(pass, materials);
+        let sun_glass = light.sun_glass.unwrap_or(materials);
         surfaces
             .sampled_by(pass, materials)
             .sample(
@@ -330,6 +341,7 @@ impl Lighting {
             )
             .sample("ambient", ambient, Sampler::Nearest)
             .sample("shadow_map", light.shadow_map, Sampler::Nearest)
+            .sample("sun_glass", sun_glass, Sampler::Nearest)
             .sample("sky_irradiance", light.sky_irradiance, Sampler::Linear)
             .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
             .uniform("view", &view.block())

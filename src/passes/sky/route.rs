@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use crate::gpu::{
-    Context, Depth, Format, Image, Load, Optional, Pass, Pipeline, PipelineDesc, Recorder, Result,
-    Shader, shaders,
+    Blend, Context, Depth, Format, Image, Load, Optional, Pass, Pipeline, PipelineDesc, Recorder,
+    Result, Shader, shaders,
 };
 
 /// How the texels of a cube are written.
@@ -68,6 +68,7 @@ impl CubePipeline {
             vertex: &[],
             colors,
             depth: Depth::Off,
+            blend: Blend::Off,
             constants,
         };
         Ok(Self {

@@ -5,13 +5,14 @@ use std::sync::Arc;
 use glam::{UVec2, Vec2, Vec3};
 
 use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder, Result,
-    Sampler, shaders,
+    Blend, Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder,
+    Result, Sampler, shaders,
 };
 use crate::gpu_struct;
 
 use crate::passes::sun_shadow::cascades::{MAX_CASCADES, Shadows, SunViews};
 use crate::passes::sun_shadow::fit::{ShadowView, fit_all};
+use crate::passes::sun_shadow::glass::{self, SunGlass};
 use crate::passes::sun_shadow::perspective::{self, Receivers};
 use crate::passes::sun_shadow::receiver_mask::{ReceiverMask, reuse_distance};
 use crate::passes::surfaces::culling::Cull;
@@ -41,6 +42,8 @@ pub(in crate::passes) struct Casters {
     solid: Pipeline,
     /// For alpha-tested surfaces, if there are any.
     cut_outs: Option<Pipeline>,
+    /// For panes of glass, if they are drawn and there are any.
+    panes: Option<Pipeline>,
 }
 
 /// A shadow map in an atlas.
@@ -58,7 +61,7 @@ pub(in crate::passes) struct Tile {
 
 impl Tile {
     /// First texel and size of the rectangle that receivers use.
-    fn rectangle(&self) -> ([u32; 2], [u32; 2]) {
+    pub fn rectangle(&self) -> ([u32; 2], [u32; 2]) {
         let whole = [Vec2::ZERO, Vec2::ONE];
         let corners = self.mask.as_ref().map_or(whole, |mask| mask.rectangle());
         let [low, high] = corners.map(|corner| corner * self.edge as f32);
@@ -68,13 +71,14 @@ impl Tile {
         ((origin + first).to_array(), (end - first).to_array())
     }
 
-    fn cull(&self) -> Cull {
+    /// Culling tests of its casters.
+    pub fn cull(&self) -> Cull {
         self.view.cull().masked(self.mask.clone())
     }
 }
 
 impl Casters {
-    /// Creates the pipelines. `slope_bias` is the slope-scaled depth bias, texels.
+    /// Creates the pipelines. `slope_bias` is the slope-scaled depth bias, texels. Panes of glass are not drawn.
     pub fn new(context: &Arc<Context>, geometry: &Geometry, slope_bias: f32) -> Result<Self> {
         let has_holes = geometry.kinds().any(|kind| kind.cut_out);
         Ok(Self {
@@ -82,7 +86,16 @@ impl Casters {
             cut_outs: has_holes
                 .then(|| pipeline(context, "shadow map, cut-outs", slope_bias, true))
                 .transpose()?,
+            panes: None,
         })
+    }
+
+    /// Also draws panes of glass by chance, for the mean of many maps.
+    pub fn with_panes(mut self, context: &Arc<Context>, geometry: &Geometry) -> Result<Self> {
+        if geometry.has_panes() {
+            self.panes = Some(glass::by_chance(context)?);
+        }
+        Ok(self)
     }
 
     /// Draws the maps of an atlas. Texels outside the bounding rectangle of all lookups are not even cleared.
@@ -111,11 +124,15 @@ impl Casters {
         if let Some(pipeline) = &self.cut_outs {
             record_cut_outs(recorder, pipeline, geometry, tiles, maps);
         }
+        if let Some(pipeline) = &self.panes {
+            let pass = recorder.pass("shadow map, glass", pipeline);
+            glass::draw(pass.depth(maps, Load::Keep), geometry, tiles);
+        }
     }
 }
 
 /// First texel and size of the bounding rectangle of the tiles' rectangles.
-fn around(tiles: &[Tile]) -> ([u32; 2], [u32; 2]) {
+pub(super) fn around(tiles: &[Tile]) -> ([u32; 2], [u32; 2]) {
     let rectangles = tiles.iter().map(Tile::rectangle);
     let ends = rectangles
         .map(|(first, size)| (UVec2::from(first), UVec2::from(first) + UVec2::from(size)));
@@ -164,6 +181,7 @@ fn pipeline(context: &Arc<Context>, name: &str, slope_bias: f32, holes: bool) ->
                 format: Format::D32_SFLOAT,
                 slope_bias,
             },
+            blend: Blend::Off,
             constants: &[],
         },
     )
@@ -183,6 +201,7 @@ pub struct Shadow {
     fit: Fit,
     casters: Casters,
     depth: Image,
+    glass: Option<SunGlass>,
     views: SunViews,
     masks: [Arc<ReceiverMask>; MAX_CASCADES],
     /// Whether the map has been drawn for these views and receivers.
@@ -232,6 +251,7 @@ impl Shadow {
             fit,
             casters: Casters::new(context, geometry, slope_bias)?,
             depth: Image::new(context, &desc)?,
+            glass: SunGlass::new(context, geometry, size)?,
             views: SunViews::one(all),
             masks: std::array::from_fn(|_| Arc::default()),
             is_drawn: false,
@@ -300,8 +320,13 @@ impl Shadow {
         (!self.is_drawn).then_some(&self.depth)
     }
 
-    /// Draws the map unless it is up to date with the last fit. Returns the views and the map.
-    pub fn record(&mut self, recorder: &mut Recorder, geometry: &Geometry) -> (&SunViews, &Image) {
+    /// Draws the map unless it is up to date with the last fit. Returns the views, the map, and what panes of glass let through in the
+    /// same views, if there are any.
+    pub fn record(
+        &mut self,
+        recorder: &mut Recorder,
+        geometry: &Geometry,
+    ) -> (&SunViews, &Image, Option<&Image>) {
         if !std::mem::replace(&mut self.is_drawn, true) {
             let edge = self.depth.size()[1];
             let is_masked = matches!(self.fit, Fit::Cascades(_));
@@ -322,8 +347,12 @@ impl Shadow {
             }
             self.casters
                 .record(recorder, "shadow map", geometry, &tiles, &self.depth);
+            if let Some(glass) = &self.glass {
+                glass.record(recorder, geometry, &tiles);
+            }
         }
-        (&self.views, &self.depth)
+        let glass = self.glass.as_ref().map(SunGlass::image);
+        (&self.views, &self.depth, glass)
     }
 
     /// Invalidates the map, so that the next frame redraws it.

@@ -2,6 +2,7 @@
 
 pub mod cascades;
 pub mod fit;
+mod glass;
 pub mod map;
 pub mod perspective;
 pub mod receiver_mask;

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::gpu::{
-    Context, Depth, Draws, Format, Image, ImageDesc, Load, Pass, Pipeline, PipelineDesc, Recorder,
-    Result, Sampler, Shader, shaders,
+    Blend, Context, Depth, Draws, Format, Image, ImageDesc, Load, Pass, Pipeline, PipelineDesc,
+    Recorder, Result, Sampler, Shader, shaders,
 };
 use crate::gpu_struct;
 
@@ -221,6 +221,7 @@ impl Targets {
                     format: Format::D32_SFLOAT,
                     slope_bias: 0.0,
                 },
+                blend: Blend::Off,
                 constants: &constants,
             },
         )

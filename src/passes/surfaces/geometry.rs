@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use glam::Vec3;
 
+use crate::daylight::glass::internal_transmittance;
 use crate::gpu::{Buffer, BufferKind, Draws, Image, Recorder, Result, upload_buffer};
 use crate::scene::{self, Bounds, Cluster, Layout, Scene};
 
@@ -23,6 +24,9 @@ pub struct Part {
     pub kind: Kind,
     /// Whether it casts shadows.
     pub casts: bool,
+    /// What one passage straight through the glass leaves, linear RGB, if it is a pane: such parts are drawn by
+    /// [`Geometry::draw_panes`] alone.
+    pub glass: Option<Vec3>,
 }
 
 /// Shader features of a part; each kind has a pipeline.
@@ -115,6 +119,8 @@ pub struct Geometry {
     details: Option<[Buffer; 2]>,
     /// Sorted by kind.
     parts: Vec<Part>,
+    /// Panes of glass.
+    panes: Vec<Part>,
     /// Cluster ranges of opaque casters, in index order.
     casting: Vec<Range<usize>>,
     surfaces: Vec<Surface>,
@@ -143,6 +149,8 @@ impl Geometry {
             .map(|texture| upload(recorder, texture))
             .collect();
         let parts = parts(scene, &layout, &surfaces);
+        let (panes, parts): (Vec<Part>, Vec<Part>) =
+            parts.into_iter().partition(|part| part.glass.is_some());
         let clusters = layout.into_owned().clusters;
         let details = if parts.iter().any(|p| p.kind.is_detailed()) {
             Some(upload_details(recorder, scene)?)
@@ -171,6 +179,7 @@ impl Geometry {
             details,
             casting: casting(&parts),
             parts,
+            panes,
             is_specular: surfaces.iter().any(|s| s.is_specular),
             surfaces,
             textures: textures?,
@@ -321,6 +330,27 @@ impl Geometry {
         self.draw_parts(draws, cut_out, cull, bind);
     }
 
+    /// Whether there are panes of glass.
+    pub fn has_panes(&self) -> bool {
+        !self.panes.is_empty()
+    }
+
+    /// Draws positions and normals of panes of glass. `bind` gets what one passage straight through the glass leaves, linear RGB.
+    pub fn draw_panes<'r>(
+        &self,
+        draws: &mut Draws<'_, 'r>,
+        cull: &Cull,
+        mut bind: impl FnMut(&mut Draws<'_, 'r>, Vec3),
+    ) {
+        draws.geometry(&[&self.positions, &self.normals], &self.indices);
+        for part in &self.panes {
+            bind(draws, part.glass.unwrap_or_default());
+            for run in Runs::new(&self.clusters[part.clusters.clone()], cull) {
+                run.draw(draws);
+            }
+        }
+    }
+
     fn draw_parts<'g, 'r>(
         &'g self,
         draws: &mut Draws<'_, 'r>,
@@ -385,11 +415,18 @@ fn parts(scene: &Scene, layout: &Layout, surfaces: &[Surface]) -> Vec<Part> {
         material: part.material,
         kind: surfaces[part.material as usize].kind(part.has_colours),
         casts,
+        glass: scene.materials[part.material as usize].glass.map(internal),
     };
     let mut parts: Vec<Part> = all.map(part).collect();
     // Sorted by kind to minimize pipeline changes.
     parts.sort_by_key(|part| (part.kind, part.material));
     parts
+}
+
+/// What one passage straight through a pane leaves, of its transmittance at normal incidence, linear RGB.
+fn internal(transmittance: [f32; 3]) -> Vec3 {
+    let one = |t: f32| internal_transmittance(f64::from(t)) as f32;
+    Vec3::from(transmittance.map(one))
 }
 
 /// Cluster ranges of opaque casters, in index order, so that runs continue from part to part.

@@ -3,4 +3,5 @@
 pub mod culling;
 pub mod gbuffer;
 pub mod geometry;
+pub mod panes;
 pub(in crate::passes) mod upload;

@@ -1,0 +1,160 @@
+//! Panes of clear glass before the picture: what they let through, and what they mirror. The panes of a pixel are not sorted: the
+//! transmittances of all before the surface are multiplied, and what each mirrors is added undimmed by those before it.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::gpu::{
+    Blend, Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, PipelineDesc, Recorder,
+    Result, Sampler, Shader, shaders,
+};
+use crate::gpu_struct;
+
+use crate::passes::bounces::tree::Tree;
+use crate::passes::kilo;
+use crate::passes::light::lighting::Light;
+use crate::passes::surfaces::culling::Cull;
+use crate::passes::surfaces::geometry::Geometry;
+use crate::passes::view::View;
+
+gpu_struct! {
+    /// The camera.
+    pub struct PaneCamera: camera of PANE_VERT, PANE_THROUGH_FRAG, PANE_MIRROR_FRAG {
+        clip_from_world: [[f32; 4]; 4],
+        eye: Vec3,
+    }
+}
+
+gpu_struct! {
+    /// The glass of a draw, and the factor on what it mirrors.
+    pub struct Push: push of PANE_VERT, PANE_THROUGH_FRAG, PANE_MIRROR_FRAG {
+        internal: Vec3,
+        scale: f32,
+    }
+}
+
+gpu_struct! {
+    /// The directional light of mirrored surfaces.
+    pub struct MirroredSun: sun of PANE_MIRROR_FRAG {
+        direction: Vec3,
+        illuminance: Vec3,
+    }
+}
+
+/// Position and normal.
+const VERTEX: [Format; 2] = [Format::R32G32B32_SFLOAT; 2];
+
+/// Half floats: they can be combined on every device, and what is mirrored is a small part of the sky.
+const FORMAT: Format = Format::R16G16B16A16_SFLOAT;
+
+/// The passes that draw panes, and their images.
+pub struct Panes {
+    through: Pipeline,
+    mirror: Pipeline,
+    /// Transmittance, linear RGB; 1 where there is no pane.
+    transmittance: Image,
+    /// Mirrored radiance, kcd/m²; 0 where there is no pane.
+    mirrored: Image,
+    scale: f32,
+}
+
+impl Panes {
+    /// Creates the passes for pictures of `size` pixels. `scale`: factor on what panes mirror.
+    ///
+    /// # Errors
+    /// Fails when the device cannot create the resources.
+    pub fn new(context: &Arc<Context>, tree: &Tree, size: [u32; 2], scale: f32) -> Result<Self> {
+        let image = |name| Image::new(context, &ImageDesc::flat(name, FORMAT, size));
+        let pipeline = |name, fragment: &'static Shader, blend| {
+            let all = tree.constants();
+            let declared = |name: &str| fragment.constants.iter().any(|c| c.0 == name);
+            let constants: Vec<(&str, u32)> = all.into_iter().filter(|c| declared(c.0)).collect();
+            Pipeline::new(
+                context,
+                &PipelineDesc {
+                    name,
+                    stages: &[&shaders::PANE_VERT, fragment],
+                    vertex: &VERTEX,
+                    colors: &[FORMAT],
+                    depth: Depth::Test(Format::D32_SFLOAT),
+                    blend,
+                    constants: &constants,
+                },
+            )
+        };
+        let (through, mirror) = (&shaders::PANE_THROUGH_FRAG, &shaders::PANE_MIRROR_FRAG);
+        Ok(Self {
+            through: pipeline("panes: through", through, Blend::Multiply)?,
+            mirror: pipeline("panes: mirrored", mirror, Blend::Add)?,
+            transmittance: image("panes: transmittance")?,
+            mirrored: image("panes: mirrored")?,
+            scale,
+        })
+    }
+
+    /// Draws the panes before the surfaces of `depth`.
+    pub fn record(
+        &self,
+        recorder: &mut Recorder,
+        (geometry, tree): (&Geometry, &Tree),
+        depth: &Image,
+        light: &Light<'_>,
+        view: &View,
+    ) {
+        let cull = Cull::camera(view);
+        let camera = PaneCamera {
+            clip_from_world: view.clip_from_world().to_cols_array_2d(),
+            eye: view.camera.eye,
+        };
+        let push = |internal| Push {
+            internal,
+            scale: self.scale,
+        };
+        recorder
+            .pass("panes: through", &self.through)
+            .uniform("camera", &camera)
+            .color(&self.transmittance, Load::Clear([1.0; 4]))
+            .depth_test(depth)
+            .draws(|draws| {
+                geometry.draw_panes(draws, &cull, |draws, glass| draws.push(&push(glass)));
+            });
+        let direct = light.daylight.direct_light();
+        let pass = recorder.pass("panes: mirrored", &self.mirror);
+        tree.bound_to(pass)
+            .uniform("camera", &camera)
+            .uniform(
+                "sun",
+                &MirroredSun {
+                    direction: light.sun_direction,
+                    illuminance: kilo(direct.illuminance),
+                },
+            )
+            .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
+            .sample("sky_irradiance", light.sky_irradiance, Sampler::Linear)
+            .color(&self.mirrored, Load::Clear([0.0; 4]))
+            .depth_test(depth)
+            .draws(|draws| {
+                geometry.draw_panes(draws, &cull, |draws, glass| draws.push(&push(glass)));
+            });
+    }
+}
+
+/// The images of the panes of a frame, if there are any.
+#[derive(Clone, Copy)]
+pub struct BeforePicture<'a>(pub Option<&'a Panes>);
+
+impl<'a> BeforePicture<'a> {
+    /// Samples the images in a pass with `include/panes.glsl`. Without panes the pipeline reads none, but the bindings must be written:
+    /// `other` takes their place.
+    pub fn sampled_by<'r>(self, pass: Pass<'r>, other: &'r Image) -> Pass<'r>
+    where
+        'a: 'r,
+    {
+        let (transmittance, mirrored) = self.0.map_or((other, other), |panes| {
+            (&panes.transmittance, &panes.mirrored)
+        });
+        pass.sample("panes_transmittance", transmittance, Sampler::Nearest)
+            .sample("panes_mirrored", mirrored, Sampler::Nearest)
+    }
+}

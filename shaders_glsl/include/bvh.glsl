@@ -25,6 +25,8 @@ layout(constant_id = 33) const uint MOST_STEPS = 1u;
 const uint OPACITY = 0xffu;
 // Mark of a pane of glass; its internal transmittance times 65535 is in the lower half of the word.
 const uint PANE = 1u << 31;
+// Mark of a pane that is a slab: only the face where light enters counts.
+const uint SLAB = 1u << 30;
 // What panes are to a ray: in the way of light by chance, walls, or nothing.
 const uint PANES_DIM = 0u, PANES_BLOCK = 1u, PANES_ARE_OPEN = 2u;
 // Most children that wait, as `tree.rs` checks.
@@ -120,6 +122,7 @@ float stopped(uint word, vec3 edge1, vec3 edge2, vec3 toward) {
 /// Whether a hit is on a surface and not in a hole of a cut-out or through glass: by chance, in proportion to the opacity.
 bool is_solid(uint word, uint triangle, vec2 barycentrics, vec3 edge1, vec3 edge2, vec3 toward, uint panes) {
     bool is_pane = (word & PANE) != 0u;
+    if ((word & SLAB) != 0u && dot(cross(edge1, edge2), toward) > 0.0) return false;
     if (is_pane && panes != PANES_DIM) return panes == PANES_BLOCK;
     float opacity = is_pane ? stopped(word, edge1, edge2, toward) : float(word & OPACITY) / 255.0;
     return chance(triangle, barycentrics) < opacity;

@@ -20,7 +20,7 @@ use crate::scene::texture::{Encoding, Texture};
 use crate::scene::{Bvh, Layout, LoadOptions, Loaded, Node, Part, Scene};
 
 /// Version of the entry format and of the result of loading a model.
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
 /// Minimum size of a cached model, bytes. Smaller models load as fast as a cache entry.
 pub(super) const MIN_MODEL_BYTES: u64 = 4 << 20;
 /// Limit on the total size of all entries, bytes.

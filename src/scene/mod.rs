@@ -175,6 +175,34 @@ impl Scene {
         casting.fold(Bounds::EMPTY, |all, (part, _)| all.union(part.bounds))
     }
 
+    /// For each triangle, whether it is glass; empty without any.
+    pub(in crate::scene) fn glass_triangles(&self) -> Vec<bool> {
+        if self.materials.iter().all(|m| m.glass.is_none()) {
+            return Vec::new();
+        }
+        let is_glass = |number: u32| self.materials[number as usize].glass.is_some();
+        self.triangle_materials()
+            .into_iter()
+            .map(is_glass)
+            .collect()
+    }
+
+    /// For each triangle, whether it belongs to a slab of glass, whose two faces are one pane: light that leaves it has been dimmed where
+    /// it entered. Empty without glass.
+    pub fn glass_slabs(&self) -> Vec<bool> {
+        let glass = self.glass_triangles();
+        if glass.is_empty() {
+            return glass;
+        }
+        let bodies = Bodies::of(self);
+        let corners = self.indices.chunks_exact(3).zip(glass);
+        let is_slab =
+            |vertex: u32| bodies.list[bodies.of_vertex[vertex as usize] as usize].is_slab();
+        corners
+            .map(|(c, is_glass)| is_glass && is_slab(c[0]))
+            .collect()
+    }
+
     /// Number of the material of each triangle.
     pub fn triangle_materials(&self) -> Vec<u32> {
         let mut material_of = vec![0; self.triangles()];

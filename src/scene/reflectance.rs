@@ -18,8 +18,9 @@ pub struct Mean {
     pub emission: [f32; 3],
     /// Fraction of the area that is there: below 1 for cut-outs.
     pub opacity: f32,
-    /// Transmittance of a pane of glass at normal incidence, linear RGB, 0..1.
-    pub glass: Option<[f32; 3]>,
+    /// Transmittance of a pane of glass at normal incidence, linear RGB, 0..1, and whether the pane is a slab, of whose two faces only the
+    /// one where light enters counts.
+    pub glass: Option<([f32; 3], bool)>,
 }
 
 /// Means of the triangles of a scene.
@@ -29,6 +30,8 @@ pub struct Reflectances<'a> {
     material_of: Vec<u32>,
     /// Mip levels of each texture that maps ρ_d or L_e, the finest first.
     levels: Vec<Vec<Texture>>,
+    /// [`Scene::glass_slabs`].
+    slabs: Vec<bool>,
 }
 
 impl<'a> Reflectances<'a> {
@@ -49,6 +52,7 @@ impl<'a> Reflectances<'a> {
         Self {
             levels: levels.collect(),
             material_of: scene.triangle_materials(),
+            slabs: scene.glass_slabs(),
             scene,
         }
     }
@@ -62,7 +66,7 @@ impl<'a> Reflectances<'a> {
                 diffuse: [0.0; 3],
                 emission: [0.0; 3],
                 opacity: 1.0,
-                glass: material.glass,
+                glass: material.glass.map(|t| (t, self.slabs[triangle as usize])),
             };
         }
         let maps = [material.diffuse_texture, material.emissive_texture];

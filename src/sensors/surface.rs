@@ -19,6 +19,8 @@ pub struct TracedScene<'a> {
     has_cut_outs: bool,
     /// What one passage through the glass of each material leaves, linear RGB, if it is a pane; empty without any.
     panes: Vec<Option<DVec3>>,
+    /// [`Scene::glass_slabs`].
+    slabs: Vec<bool>,
     emitters: Emitters,
     /// Density of sampled points on each triangle, per m²; empty if nothing emits.
     emitter_densities: Vec<f64>,
@@ -80,6 +82,7 @@ impl<'a> TracedScene<'a> {
             material_of: scene.triangle_materials(),
             has_cut_outs: scene.materials.iter().any(|m| m.alpha_cutoff.is_some()),
             panes: panes(&scene.materials),
+            slabs: scene.glass_slabs(),
             scene,
         }
     }
@@ -104,15 +107,13 @@ impl<'a> TracedScene<'a> {
             let Some(hit) = self.bvh.closest(&ray, 0.0, f32::INFINITY, is_solid) else {
                 return met;
             };
-            let Some(internal) = self.pane(&hit) else {
+            let Some([passed, mirrored]) = self.pane(&hit, ray.direction) else {
                 met.point = Some(self.point(&hit, &ray));
                 return met;
             };
             let normal = self.normal(&hit);
             let cosine = normal.dot(ray.direction);
-            let shares = internal.to_array().map(|i| pane(i, f64::from(cosine)));
-            let [passed, mirrored] = [0, 1].map(|i| DVec3::from(shares.map(|share| share[i])));
-            let chance = mirrored.max_element();
+            let chance = mirrored.max_element().min(0.99);
             let is_mirrored = random() < chance;
             let position = ray.origin + hit.distance * ray.direction;
             let ahead = if is_mirrored { -cosine } else { cosine };
@@ -207,12 +208,10 @@ impl<'a> TracedScene<'a> {
         let ray = Ray { origin, direction };
         let through = Cell::new(DVec3::ONE);
         let is_hidden = self.bvh.any(&ray, 0.0, far, |hit: &Hit| {
-            let Some(internal) = self.pane(hit) else {
+            let Some([passed, _]) = self.pane(hit, direction) else {
                 return self.is_solid(hit);
             };
-            let cosine = f64::from(self.normal(hit).dot(direction));
-            let passed = internal.to_array().map(|i| pane(i, cosine)[0]);
-            through.set(through.get() * DVec3::from(passed));
+            through.set(through.get() * passed);
             false
         });
         if is_hidden {
@@ -222,12 +221,18 @@ impl<'a> TracedScene<'a> {
         }
     }
 
-    /// What one passage through the glass that is hit leaves, if it is a pane.
-    fn pane(&self, hit: &Hit) -> Option<DVec3> {
+    /// What a pane that is hit lets through and mirrors, linear RGB; `None` for other surfaces.
+    fn pane(&self, hit: &Hit, direction: Vec3) -> Option<[DVec3; 2]> {
         if self.panes.is_empty() {
             return None;
         }
-        self.panes[self.material_of[hit.triangle as usize] as usize]
+        let internal = self.panes[self.material_of[hit.triangle as usize] as usize]?;
+        let cosine = f64::from(self.normal(hit).dot(direction));
+        if cosine > 0.0 && self.slabs[hit.triangle as usize] {
+            return Some([DVec3::ONE, DVec3::ZERO]);
+        }
+        let shares = internal.to_array().map(|i| pane(i, cosine));
+        Some([0, 1].map(|i| DVec3::from(shares.map(|share| share[i]))))
     }
 
     fn material(&self, hit: &Hit) -> &Material {

@@ -8,6 +8,7 @@ mod model;
 mod atmosphere;
 mod bounces;
 mod emission;
+mod glass;
 mod grey_skies;
 mod irradiance;
 mod moon;

@@ -18,6 +18,7 @@ mod details;
 mod dome;
 mod emission;
 mod furnace;
+mod glass;
 mod golden;
 mod irradiance;
 mod lighting;

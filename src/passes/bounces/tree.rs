@@ -180,15 +180,19 @@ fn texel(v: Vec3, word: u32) -> [u32; 4] {
 /// Mark of a pane of glass in the word of its opacity.
 const PANE: u32 = 1 << 31;
 
+/// Mark of a pane that is a slab: only the face where light enters counts.
+const SLAB: u32 = 1 << 30;
+
 /// The word of a pane of glass: rays have no colour, so it is that of the luminance.
-fn pane_word(normal_transmittance: [f32; 3]) -> u32 {
+fn pane_word((normal_transmittance, is_slab): ([f32; 3], bool)) -> u32 {
     let grey = luminance(Vec3::from(normal_transmittance).as_dvec3());
-    PANE | (glass::internal_transmittance(grey) * 65535.0).round() as u32
+    let slab = if is_slab { SLAB } else { 0 };
+    PANE | slab | (glass::internal_transmittance(grey) * 65535.0).round() as u32
 }
 
 fn triangle_words(triangle: &Triangle, mean: &Mean) -> [[u32; 4]; 3] {
     let opacity = match mean.glass {
-        Some(transmittance) => pane_word(transmittance),
+        Some(pane) => pane_word(pane),
         None => (mean.opacity.clamp(0.0, 1.0) * 255.0).round() as u32,
     };
     let emission = kilo(Vec3::from(mean.emission).as_dvec3());

@@ -15,6 +15,18 @@ pub struct Body {
     /// Whether the surface is closed and its triangles wind counter-clockwise seen from outside. No back face is then visible
     /// from outside.
     pub is_solid: bool,
+    /// Twice the volume over the area, metres: the thickness of a slab. Only of a closed surface.
+    pub thickness: f32,
+}
+
+/// Thickness up to which a closed body of glass is one pane, metres: thicker ones have panes as walls.
+const THICKEST_PANE: f32 = 0.15;
+
+impl Body {
+    /// Whether it is a slab, a pane if it is of glass: light enters it by one face and leaves it by another.
+    pub fn is_slab(&self) -> bool {
+        self.is_solid && self.thickness <= THICKEST_PANE
+    }
 }
 
 /// The bodies of a scene.
@@ -131,6 +143,7 @@ struct Sums {
     /// Apex of the tetrahedra whose volumes are summed, metres. A corner of the body, for precision.
     origin: Option<DVec3>,
     six_volumes: f64,
+    double_area: f64,
     /// Sum of the hashes of the directed edges. Opposite edges cancel, so it is zero if all edges are paired.
     unpaired: u64,
 }
@@ -141,6 +154,7 @@ impl Default for Sums {
             bounds: Bounds::EMPTY,
             origin: None,
             six_volumes: 0.0,
+            double_area: 0.0,
             unpaired: 0,
         }
     }
@@ -158,12 +172,14 @@ impl Sums {
         let origin = *self.origin.get_or_insert(positions[0].as_dvec3());
         let [a, b, c] = positions.map(|p| p.as_dvec3() - origin);
         self.six_volumes += a.dot(b.cross(c));
+        self.double_area += (b - a).cross(c - a).length();
     }
 
     fn body(&self) -> Body {
         Body {
             bounds: self.bounds,
             is_solid: self.unpaired == 0 && self.six_volumes > 0.0,
+            thickness: (2.0 / 3.0 * self.six_volumes / self.double_area.max(1e-30)) as f32,
         }
     }
 }
@@ -212,6 +228,8 @@ mod tests {
         });
         assert_eq!(apart.len(), 2);
         assert!(apart.iter().all(|b| b.is_solid));
+        // 2 abc/(2 (ab + bc + ca)).
+        assert!((apart[0].thickness - 0.1 / 1.25).abs() < 1e-6, "{apart:?}");
         assert_eq!(apart[0].bounds.max, size);
         let touching = bodies(|s| {
             cuboid(s, Vec3::ZERO, size, 6, false);

@@ -57,7 +57,11 @@ impl Clusters {
             indices: scene.indices.clone(),
             ..Self::default()
         };
-        let splitter = Splitter { scene, bodies };
+        let splitter = Splitter {
+            scene,
+            bodies,
+            glass: scene.glass_triangles(),
+        };
         for &(first, count) in runs {
             let start = made.list.len();
             let mut of_kind: [Vec<Item>; 4] = Default::default();
@@ -147,6 +151,8 @@ impl Run<'_> {
 struct Splitter<'s> {
     scene: &'s Scene,
     bodies: &'s Bodies,
+    /// For each triangle, whether it is glass; empty without any.
+    glass: Vec<bool>,
 }
 
 impl Splitter<'_> {
@@ -173,7 +179,10 @@ impl Splitter<'_> {
             normal.is_some_and(|n| face.dot((*n).into()) > 0.0)
         };
         let normals_match_winding = self.corners(triangle).into_iter().all(agrees);
-        Kind::new(self.body(triangle).is_solid, normals_match_winding)
+        let body = self.body(triangle);
+        // The far walls of a glass house are seen through the near ones.
+        let is_open = self.glass.get(triangle as usize) == Some(&true) && !body.is_slab();
+        Kind::new(body.is_solid && !is_open, normals_match_winding)
     }
 
     fn item(&self, triangle: u32) -> Item {

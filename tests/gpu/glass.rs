@@ -1,0 +1,160 @@
+//! Panes of glass in pictures: the light of sun and sky through them, the view through them, what they mirror; against the formulas.
+
+use std::f64::consts::PI;
+
+use glam::{DVec3, Vec3};
+use skylight::daylight::colour::luminance;
+use skylight::daylight::glass::{internal_transmittance, pane};
+use skylight::frame::FrameSettings;
+use skylight::passes::bounces::cells::Bounces;
+use skylight::passes::light::lighting::Show;
+use skylight::scene::{Camera, Material, Scene};
+
+use crate::bounces::{converged, mean, single, with_bounces};
+use crate::gpu::{Device, Model, camera, clear_day, constant_sky, matt, showing};
+
+/// Transmittance at normal incidence of the panes: the luminance is 0.5.
+const TINT: [f32; 3] = [0.4, 0.52, 0.596];
+
+fn glass(transmittance: [f32; 3]) -> Material {
+    Material {
+        glass: Some(transmittance),
+        ..matt(0.0)
+    }
+}
+
+/// A wide pane 2 m above a floor, if there is one.
+fn roofed(material: Option<&Material>) -> Scene {
+    let model = Model::default().ground(3.0, &matt(0.5));
+    let model = match material {
+        Some(material) => model.square([0.0, 2.0, 0.0], 400.0, material),
+        None => model,
+    };
+    model.build()
+}
+
+/// Looks down at the floor from below the pane.
+fn below() -> Camera {
+    camera([0.0, 1.5, 0.01], [0.0, 0.0, 0.0])
+}
+
+fn both() -> [(&'static str, FrameSettings); 2] {
+    let rays = with_bounces(Bounces::UpTo(0), converged(24, 16, 64));
+    [("single", single(24, 16)), ("converged", rays)]
+}
+
+#[test]
+fn the_sun_passes_a_pane_by_its_angle_and_colour() {
+    let mut device = Device::new();
+    for elevation in [70.0, 35.0, 15.0] {
+        let day = clear_day(160.0, elevation);
+        for (name, set) in both() {
+            let set = showing(Show::Sun, set);
+            let mut lit = |scene: &Scene| {
+                let picture = device.picture(scene, set, &day, &below());
+                let texels: Vec<DVec3> = picture.pixels().map(|(_, v)| v).collect();
+                texels.iter().sum::<DVec3>() / texels.len() as f64
+            };
+            let ratio = lit(&roofed(Some(&glass(TINT)))) / lit(&roofed(None));
+            let through = |t: f32| {
+                let internal = internal_transmittance(t.into());
+                pane(internal, f64::to_radians(elevation).sin())[0]
+            };
+            let expected = DVec3::from(TINT.map(through));
+            let error = (ratio / expected - 1.0).abs().max_element();
+            println!("{name}, {elevation} degrees: {ratio:.4} of {expected:.4}");
+            // Texels of the map of panes are half floats.
+            assert!(error < 2e-3, "{name}, {elevation}: {ratio} {expected}");
+        }
+    }
+}
+
+/// The hemispherical transmittance, 2 times the integral of T sin cos, by quadrature.
+fn hemispherical(internal: f64) -> f64 {
+    let n = 4000;
+    let angle = |i: usize| (i as f64 + 0.5) / n as f64 * PI / 2.0;
+    let share = |a: f64| 2.0 * pane(internal, a.cos())[0] * a.sin() * a.cos();
+    (0..n).map(|i| share(angle(i))).sum::<f64>() * PI / 2.0 / n as f64
+}
+
+#[test]
+fn a_uniform_sky_passes_a_pane_from_cells_and_from_shadow_maps() {
+    let mut device = Device::new();
+    let day = constant_sky(1000.0);
+    let scene = roofed(Some(&glass([0.7; 3])));
+    let expected = 0.5 * hemispherical(internal_transmittance(0.7));
+    for (name, set) in both() {
+        let set = showing(Show::Sky, set);
+        let found = mean(&device.picture(&scene, set, &day, &below()));
+        println!("{name}: {found:.4} of {expected:.4} kcd/m2");
+        // Rays pass by chance, and so do texels of the maps.
+        let bound = if name == "single" { 0.05 } else { 0.01 };
+        assert!((found / expected - 1.0).abs() < bound, "{name}: {found}");
+    }
+}
+
+/// Up through the pane: the sky dimmed by angle, and below it what the pane mirrors of a black floor: nothing.
+#[test]
+fn the_view_through_a_pane_is_dimmed_and_mirrors_what_is_there() {
+    let mut device = Device::new();
+    let day = constant_sky(1000.0);
+    let scene = Model::default()
+        .ground(3.0, &matt(0.0))
+        .square([0.0, 2.0, 0.0], 400.0, &glass(TINT))
+        .build();
+    for degrees in [0.0f64, 50.0] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let eye = Vec3::new(0.0, 1.0, 0.0);
+        let target = eye + Vec3::new(sin as f32, cos as f32, 1e-3);
+        let view = Camera {
+            fov_deg: 1.0,
+            ..camera(eye.to_array(), target.to_array())
+        };
+        let internal = TINT.map(|t| internal_transmittance(t.into()));
+        let [through, mirrored] =
+            [0, 1].map(|i| DVec3::from(internal.map(|internal| pane(internal, cos)[i])));
+        // From above, the pane mirrors the sky before what is seen through it: the black floor.
+        let above = Camera {
+            fov_deg: 1.0,
+            ..camera([0.0, 3.0, 0.0], [sin as f32, 3.0 - cos as f32, 1e-3])
+        };
+        for (name, set) in both() {
+            let mut seen = |view: &Camera| {
+                let picture = device.picture(&scene, set, &day, view);
+                picture.at(12, 8)
+            };
+            let (up, down) = (seen(&view), seen(&above));
+            println!("{name}, {degrees}: {up:.4} of {through:.4}, {down:.4} of {mirrored:.4}");
+            for (found, expected) in [(up, through), (down, mirrored)] {
+                let error = (found / expected - 1.0).abs().max_element();
+                assert!(error < 3e-3, "{name}, {degrees}: {found} {expected}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_layers_of_a_picture_with_panes_sum_to_it() {
+    let mut device = Device::new();
+    let day = clear_day(160.0, 40.0);
+    let scene = Model::default()
+        .ground(3.0, &matt(0.5))
+        .quad(
+            [-1.0, 0.0, 1.0],
+            [2.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            &glass(TINT),
+        )
+        .cube([0.0, 0.5, -1.0], 0.5, &matt(0.7))
+        .build();
+    let view = camera([1.0, 1.0, 4.0], [0.0, 0.5, 0.0]);
+    let whole = mean(&device.picture(&scene, single(48, 32), &day, &view));
+    let layers = Show::ADDENDS.map(|show| {
+        let picture = device.picture(&scene, showing(show, single(48, 32)), &day, &view);
+        picture.pixels().map(|(_, v)| luminance(v)).sum::<f64>() / (48.0 * 32.0)
+    });
+    let sum: f64 = layers.iter().sum();
+    println!("{whole:.4} {layers:.4?}");
+    assert!((sum / whole - 1.0).abs() < 5e-3, "{sum} {whole}");
+    assert!(layers[5] > 0.0, "the pane mirrors nothing");
+}

@@ -99,7 +99,7 @@ fn the_view_through_a_pane_is_dimmed_and_mirrors_what_is_there() {
     let mut device = Device::new();
     let day = constant_sky(1000.0);
     let scene = Model::default()
-        .ground(3.0, &matt(0.0))
+        .ground(4000.0, &matt(0.0))
         .square([0.0, 2.0, 0.0], 400.0, &glass(TINT))
         .build();
     for degrees in [0.0f64, 50.0] {

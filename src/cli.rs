@@ -9,7 +9,7 @@ use clap::error::ErrorKind;
 use clap::{Arg, Parser, Subcommand};
 
 pub use args::{
-    BakeArgs, BenchArgs, CompareArgs, DaylightArgs, Layout, Map, Motion, SkyArgs, Sweep,
+    BakeArgs, BenchArgs, CompareArgs, DaylightArgs, Layout, Map, Motion, SkyArgs, Sweep, Texels,
 };
 
 use crate::options::{OptionValues, Optional, choice, decides_light, one_line};

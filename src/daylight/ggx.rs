@@ -91,7 +91,7 @@ mod tests {
     use crate::daylight::sampling::{hammersley, uniform_sphere};
 
     const ROUGHNESSES: [f64; 5] = [0.25, 1.0 / 3.0, 0.5, 0.75, 1.0];
-    
+
     fn directions() -> impl Iterator<Item = DVec3> {
         (0..60).map(|k| uniform_sphere(hammersley(k, 60)))
     }
@@ -146,7 +146,9 @@ mod tests {
         let axis = DVec3::new(0.3, 0.8, -0.52).normalize();
         let p2 = |c: f64| 1.5 * c * c - 0.5;
         let linear = CubePyramid::new(CubeMap::from_fn(128, |d| DVec3::splat(1.0 + d.dot(axis))));
-        let quadratic = CubePyramid::new(CubeMap::from_fn(128, |d| DVec3::splat(1.0 + p2(d.dot(axis)))));
+        let quadratic = CubePyramid::new(CubeMap::from_fn(128, |d| {
+            DVec3::splat(1.0 + p2(d.dot(axis)))
+        }));
         for roughness in ROUGHNESSES {
             let alpha = roughness * roughness;
             let (f1, f2) = (mean_over_lobe(alpha, |c| c), mean_over_lobe(alpha, p2));
@@ -154,12 +156,16 @@ mod tests {
             let mut worst = [0.0f64; 2];
             for r in directions() {
                 let expected = [1.0 + f1 * r.dot(axis), 1.0 + f2 * p2(r.dot(axis))];
-                let found = [&linear, &quadratic].map(|sky| f64::from(prefiltered(sky, r, &samples).x));
+                let found =
+                    [&linear, &quadratic].map(|sky| f64::from(prefiltered(sky, r, &samples).x));
                 for k in 0..2 {
                     worst[k] = worst[k].max((found[k] - expected[k]).abs());
                 }
             }
-            println!("roughness {roughness:.3}: factors {f1:.5} {f2:.5}, worst {:.1e} {:.1e}", worst[0], worst[1]);
+            println!(
+                "roughness {roughness:.3}: factors {f1:.5} {f2:.5}, worst {:.1e} {:.1e}",
+                worst[0], worst[1]
+            );
             assert!(worst[0] < 1e-3 && worst[1] < 1e-3, "{roughness} {worst:?}");
         }
         // D of α = 1 is 1/π everywhere, so that the lobe is a cosine: 2/3 and 1/4.

@@ -52,9 +52,18 @@ fn rms_error(elevation: f64, roughness: f64) -> f64 {
 
 #[test]
 fn prefiltered_skies_are_the_integral_over_the_lobe() {
-    for (elevation, roughness) in [(50.0, 0.25), (50.0, 1.0), (10.0, 0.25), (10.0, 0.5), (10.0, 1.0)] {
+    for (elevation, roughness) in [
+        (50.0, 0.25),
+        (50.0, 1.0),
+        (10.0, 0.25),
+        (10.0, 0.5),
+        (10.0, 1.0),
+    ] {
         let rms = rms_error(elevation, roughness);
-        println!("sun {elevation}, roughness {roughness}: {:.2} % rms", 100.0 * rms);
+        println!(
+            "sun {elevation}, roughness {roughness}: {:.2} % rms",
+            100.0 * rms
+        );
         assert!(rms < 4e-3, "{elevation} {roughness} {rms}");
     }
 }

@@ -170,7 +170,7 @@ fn cube_file(args: &BakeArgs, light: &Light) -> Result<File> {
         Texels::Bc6h => TexelFormat::Bc6h,
     };
     let mut metadata = metadata(args.map, light);
-    metadata.push(("scale".to_owned(), scale.to_string()));
+    metadata.push(("scale".to_owned(), f64::from(scale).to_string()));
     if args.map == Map::Specular {
         metadata.push(("roughness".to_owned(), "level / (levels - 1)".to_owned()));
     }

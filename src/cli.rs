@@ -73,8 +73,9 @@ pub enum Command {
         #[command(flatten)]
         options: OptionValues,
     },
-    /// Write the sky or its irradiance as an environment map, with a JSON file of its units beside it.
+    /// Write the sky, its irradiance or its reflection in rough metals as an environment map, with a JSON file of its units beside it.
     ///
+    /// No map has the discs of sun and moon: the JSON file has them as directional lights.
     /// The options of a picture (its size, camera, tone ..) are accepted and have no effect.
     #[command(mut_args = of_maps)]
     Bake {

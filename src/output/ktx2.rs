@@ -299,9 +299,13 @@ mod tests {
                 let (face, at) = (k / (blocks / 16), k % (blocks / 16));
                 let (x, y) = (4 * (at as u32 % (width / 4)), 4 * (at as u32 / (width / 4)));
                 for (i, j) in (0..edge.min(4)).flat_map(|i| (0..edge.min(4)).map(move |j| (i, j))) {
-                    let texel = level.texels[((face as u32 * edge + y + j) * edge + x + i) as usize];
+                    let texel =
+                        level.texels[((face as u32 * edge + y + j) * edge + x + i) as usize];
                     let read = 0.5 * values[(12 * j + 3 * i) as usize].to_f32();
-                    assert!((read / texel[0] - 1.0).abs() < 0.01, "{edge} {read} {texel:?}");
+                    assert!(
+                        (read / texel[0] - 1.0).abs() < 0.01,
+                        "{edge} {read} {texel:?}"
+                    );
                 }
             }
         }

@@ -34,8 +34,14 @@ impl Cube {
         let scale: f64 = text(&reader, "skylight:scale").parse().expect("a number");
         let half = |b: &[u8]| f16::from_le_bytes([b[0], b[1]]).to_f64();
         let texel = |b: &[u8]| scale * DVec3::new(half(b), half(&b[2..]), half(&b[4..]));
-        let levels = reader.levels().map(|level| level.data.chunks_exact(8).map(texel).collect());
-        Self { levels: levels.collect(), scale, reader }
+        let levels = reader
+            .levels()
+            .map(|level| level.data.chunks_exact(8).map(texel).collect());
+        Self {
+            levels: levels.collect(),
+            scale,
+            reader,
+        }
     }
 
     fn edge(&self, level: usize) -> usize {
@@ -59,7 +65,9 @@ impl Cube {
 fn text(reader: &ktx2::Reader<Vec<u8>>, key: &str) -> String {
     let pair = reader.key_value_data().find(|(name, _)| *name == key);
     let (_, value) = pair.unwrap_or_else(|| panic!("no {key}"));
-    String::from_utf8_lossy(value).trim_end_matches('\0').to_owned()
+    String::from_utf8_lossy(value)
+        .trim_end_matches('\0')
+        .to_owned()
 }
 
 /// Skies of all kinds, by day, at dusk and at night.
@@ -81,13 +89,28 @@ const SKIES: [&str; 11] = [
 fn every_sky_has_its_illuminance_by_day_and_at_night() {
     let folder = tempfile::tempdir().expect("a folder");
     for sky in SKIES {
-        run(folder.path(), &format!("bake --map sky --size 128 -o sky.ktx2 {sky}"));
-        let report: Value = serde_json::from_slice(&run(folder.path(), &format!("sky --json {sky}"))).expect("JSON");
-        let expected = report["sky"]["diffuse_horizontal_lux"].as_f64().expect("lux");
+        run(
+            folder.path(),
+            &format!("bake --map sky --size 128 -o sky.ktx2 {sky}"),
+        );
+        let report: Value =
+            serde_json::from_slice(&run(folder.path(), &format!("sky --json {sky}")))
+                .expect("JSON");
+        let expected = report["sky"]["diffuse_horizontal_lux"]
+            .as_f64()
+            .expect("lux");
         let cube = Cube::read(&folder.path().join("sky.ktx2"));
-        let errors: Vec<f64> = (0..4).map(|level| cube.up(level) / expected - 1.0).collect();
-        let printed: Vec<String> = errors.iter().map(|e| format!("{:.3} %", 100.0 * e)).collect();
-        println!("{sky}: {expected:.3e} lux, scale {}, levels {printed:?}", cube.scale);
+        let errors: Vec<f64> = (0..4)
+            .map(|level| cube.up(level) / expected - 1.0)
+            .collect();
+        let printed: Vec<String> = errors
+            .iter()
+            .map(|e| format!("{:.3} %", 100.0 * e))
+            .collect();
+        println!(
+            "{sky}: {expected:.3e} lux, scale {}, levels {printed:?}",
+            cube.scale
+        );
         assert!(errors[0].abs() < 2e-3, "{sky}: {errors:?}");
     }
 }
@@ -97,9 +120,16 @@ fn a_night_keeps_its_digits() {
     let folder = tempfile::tempdir().expect("a folder");
     let sun = "--sky atmosphere --sun 137,-17 --map sky --size 32";
     run(folder.path(), &format!("bake {sun} -o night.ktx2"));
-    run(folder.path(), &format!("bake {sun} --layout faces -o night.exr"));
+    run(
+        folder.path(),
+        &format!("bake {sun} --layout faces -o night.exr"),
+    );
     let cube = Cube::read(&folder.path().join("night.ktx2"));
-    assert!(cube.scale < 1e-6 && cube.scale.log2().fract() == 0.0, "{}", cube.scale);
+    assert!(
+        cube.scale < 1e-6 && cube.scale.log2().fract() == 0.0,
+        "{}",
+        cube.scale
+    );
     let first = exr::prelude::read_first_rgba_layer_from_file(
         folder.path().join("night_px.exr"),
         |size, _| vec![DVec3::ZERO; size.area()],
@@ -122,9 +152,18 @@ fn the_file_says_what_it_holds() {
     run(folder.path(), line);
     let cube = Cube::read(&folder.path().join("a.ktx2"));
     let header = cube.reader.header();
-    assert_eq!((header.pixel_width, header.face_count, header.level_count), (16, 6, 5));
-    assert_eq!(cube.reader.color_primaries(), Some(ktx2::ColorPrimaries::BT709));
-    assert_eq!(cube.reader.transfer_function(), Some(ktx2::TransferFunction::Linear));
+    assert_eq!(
+        (header.pixel_width, header.face_count, header.level_count),
+        (16, 6, 5)
+    );
+    assert_eq!(
+        cube.reader.color_primaries(),
+        Some(ktx2::ColorPrimaries::BT709)
+    );
+    assert_eq!(
+        cube.reader.transfer_function(),
+        Some(ktx2::TransferFunction::Linear)
+    );
     for (key, value) in [
         ("KTXorientation", "rd"),
         ("skylight:unit", "cd/m^2"),
@@ -146,7 +185,10 @@ fn the_file_says_what_it_holds() {
 fn faces_are_those_of_the_pictures() {
     // The brightest texel is beside the sun: 137°, 25° is on the face +z or +x.
     let folder = tempfile::tempdir().expect("a folder");
-    run(folder.path(), "bake --map sky --size 64 -o a.ktx2 --sky preetham --sun 137,25");
+    run(
+        folder.path(),
+        "bake --map sky --size 64 -o a.ktx2 --sky preetham --sun 137,25",
+    );
     let cube = Cube::read(&folder.path().join("a.ktx2"));
     let (azimuth, elevation) = (137f64.to_radians(), 25f64.to_radians());
     let sun = DVec3::new(
@@ -166,11 +208,17 @@ fn blocks_keep_the_sky() {
     let folder = tempfile::tempdir().expect("a folder");
     let line = "--map sky --size 128 --sky atmosphere --sun 137,-4";
     run(folder.path(), &format!("bake {line} -o half.ktx2"));
-    run(folder.path(), &format!("bake {line} --texels bc6h -o blocks.ktx2"));
+    run(
+        folder.path(),
+        &format!("bake {line} --texels bc6h -o blocks.ktx2"),
+    );
     let exact = Cube::read(&folder.path().join("half.ktx2"));
     let bytes = std::fs::read(folder.path().join("blocks.ktx2")).expect("a file");
     let reader = ktx2::Reader::new(bytes).expect("a KTX2");
-    assert_eq!(reader.header().format, Some(ktx2::Format::BC6H_UFLOAT_BLOCK));
+    assert_eq!(
+        reader.header().format,
+        Some(ktx2::Format::BC6H_UFLOAT_BLOCK)
+    );
     let scale: f64 = text(&reader, "skylight:scale").parse().expect("a number");
     let level = reader.levels().next().expect("a level");
     let mut square = (0.0, 0.0);
@@ -193,13 +241,25 @@ fn blocks_keep_the_sky() {
 fn the_roughest_level_is_the_irradiance_and_the_smoothest_the_sky() {
     let folder = tempfile::tempdir().expect("a folder");
     let sky = "--sky atmosphere --sun 137,25";
-    run(folder.path(), &format!("bake --map specular --size 64 -o m.ktx2 {sky}"));
-    run(folder.path(), &format!("bake --map sky --size 64 -o s.ktx2 {sky}"));
-    run(folder.path(), &format!("bake --map irradiance --size 16 -o e.ktx2 {sky}"));
+    run(
+        folder.path(),
+        &format!("bake --map specular --size 64 -o m.ktx2 {sky}"),
+    );
+    run(
+        folder.path(),
+        &format!("bake --map sky --size 64 -o s.ktx2 {sky}"),
+    );
+    run(
+        folder.path(),
+        &format!("bake --map irradiance --size 16 -o e.ktx2 {sky}"),
+    );
     let read = |name: &str| Cube::read(&folder.path().join(name));
     let (specular, sky, irradiance) = (read("m.ktx2"), read("s.ktx2"), read("e.ktx2"));
     assert_eq!(specular.levels.len(), 3);
-    assert_eq!(text(&specular.reader, "skylight:roughness"), "level / (levels - 1)");
+    assert_eq!(
+        text(&specular.reader, "skylight:roughness"),
+        "level / (levels - 1)"
+    );
     assert_eq!(specular.levels[0], sky.levels[0]);
     // GGX of roughness 1 is a cosine lobe.
     let mut worst = 0f64;
@@ -213,14 +273,26 @@ fn the_roughest_level_is_the_irradiance_and_the_smoothest_the_sky() {
 #[test]
 fn pictures_of_a_specular_map_are_one_for_each_roughness() {
     let folder = tempfile::tempdir().expect("a folder");
-    run(folder.path(), "bake --map specular --size 32 --layout faces -o m.exr --sky cie-5 --sun 137,25");
+    run(
+        folder.path(),
+        "bake --map specular --size 32 --layout faces -o m.exr --sky cie-5 --sun 137,25",
+    );
     let text = std::fs::read_to_string(folder.path().join("m.json")).expect("a sidecar");
     let sidecar: Value = serde_json::from_str(&text).expect("JSON");
     let files = sidecar["files"].as_array().expect("files");
     assert_eq!(files.len(), 12);
-    assert_eq!((&files[0]["name"], &files[0]["width"]), (&"m_m0_px.exr".into(), &32.into()));
-    assert_eq!((&files[11]["name"], &files[11]["width"]), (&"m_m1_nz.exr".into(), &16.into()));
-    assert_eq!((&files[5]["roughness"], &files[6]["roughness"]), (&0.0.into(), &1.0.into()));
+    assert_eq!(
+        (&files[0]["name"], &files[0]["width"]),
+        (&"m_m0_px.exr".into(), &32.into())
+    );
+    assert_eq!(
+        (&files[11]["name"], &files[11]["width"]),
+        (&"m_m1_nz.exr".into(), &16.into())
+    );
+    assert_eq!(
+        (&files[5]["roughness"], &files[6]["roughness"]),
+        (&0.0.into(), &1.0.into())
+    );
     for file in files {
         let name = file["name"].as_str().expect("a name");
         assert!(folder.path().join(name).is_file(), "{name}");

@@ -52,7 +52,10 @@ fn bake(folder: &Path, sky: &str) -> Value {
 #[test]
 fn mitsuba_sees_the_same_sky() {
     let folder = tempfile::tempdir().expect("a folder");
-    let sidecar = bake(folder.path(), &format!("--sky preetham --sun {},{}", SUN.0, SUN.1));
+    let sidecar = bake(
+        folder.path(),
+        &format!("--sky preetham --sun {},{}", SUN.0, SUN.1),
+    );
     let Some(found) = mitsuba(folder.path(), "planes") else {
         return;
     };
@@ -96,7 +99,10 @@ fn planes_under_an_atmosphere_have_our_illuminance() {
         ];
         let mitsubas = ["sky", "sky_and_sun"].map(|key| luminance(&found[key]));
         let errors = [0, 1].map(|i| mitsubas[i] / ours[i] - 1.0);
-        println!("sun {sun}: {mitsubas:.4?} and {ours:.4?} lux, {:.3?} %", errors.map(|e| 100.0 * e));
+        println!(
+            "sun {sun}: {mitsubas:.4?} and {ours:.4?} lux, {:.3?} %",
+            errors.map(|e| 100.0 * e)
+        );
         assert!(errors.iter().all(|e| e.abs() < 3e-3), "{sun}: {errors:?}");
     }
 }

@@ -85,7 +85,10 @@ fn a_constant_sky_stays_what_it_is() {
     for level in 0..ggx::levels(EDGE) as usize {
         let cube = device.read_cube(again.level(level).expect("a level"));
         for (_, found, texel) in cube.iter() {
-            worst.see((found - 1.0).abs().max_element(), format!("again {level} {texel}"));
+            worst.see(
+                (found - 1.0).abs().max_element(),
+                format!("again {level} {texel}"),
+            );
         }
     }
     worst.finish();

@@ -9,6 +9,7 @@ mod atmosphere;
 mod bounces;
 mod emission;
 mod glass;
+mod ggx;
 mod grey_skies;
 mod irradiance;
 mod moon;

@@ -569,7 +569,7 @@ fn outputs_that_cannot_be_written_are_named_before_the_work() {
 }
 
 #[test]
-fn missing_helpers_are_warnings_that_quiet_silences() {
+fn missing_helpers_are_warnings_that_no_warnings_silences() {
     let place = Place::new();
     place.put("nomtl.obj", &OBJ.replace("m.mtl", "gone.mtl"));
     place.put("notex.obj", &OBJ.replace("m.mtl", "t.mtl"));
@@ -582,9 +582,21 @@ fn missing_helpers_are_warnings_that_quiet_silences() {
         }
         png(&place.path().join("a.png"));
         fs::remove_file(place.path().join("a.png")).expect("it was there");
-        place.render(&[scene, "-o", "a.png", "--quiet"]).silently();
+        let quiet = place.render(&[scene, "-o", "a.png", "--quiet"]).succeeded();
+        assert_eq!(quiet.stderr, ended.stderr, "quiet hides progress");
+        place
+            .render(&[scene, "-o", "a.png", "--no-warnings"])
+            .silently();
         png(&place.path().join("a.png"));
+        fs::remove_file(place.path().join("a.png")).expect("it was there");
+        place
+            .render(&[scene, "-o", "a.png", "--strict"])
+            .failed(1, &["error: ", part, "--strict", "nothing is written"]);
+        assert!(!place.path().join("a.png").exists(), "nothing is written");
     }
+    place
+        .render(&["m.obj", "-o", "a.png", "--strict"])
+        .silently();
     // Cut off within its last face: the complete faces are drawn.
     place.put("cut.obj", &OBJ[..OBJ.len() - 6]);
     let ended = place.render(&["cut.obj", "-o", "a.png"]).succeeded();
@@ -592,7 +604,12 @@ fn missing_helpers_are_warnings_that_quiet_silences() {
     let hazy = ["m.obj", "-o", "a.png", "--turbidity", "90"];
     let ended = place.render(&hazy).succeeded();
     assert!(ended.stderr.contains("turbidity"), "{}", ended.stderr);
-    place.render(&[&hazy[..], &["--quiet"]].concat()).silently();
+    place
+        .render(&[&hazy[..], &["--no-warnings"]].concat())
+        .silently();
+    place
+        .render(&[&hazy[..], &["--strict"]].concat())
+        .failed(1, &["turbidity", "--strict"]);
 }
 
 #[test]

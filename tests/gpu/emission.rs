@@ -142,6 +142,7 @@ fn panel(lamp: &Material) -> Scene {
             .flat_map(|texel| texel.repeat(32))
             .collect(),
         encoding: Encoding::Srgb,
+        wrap: Default::default(),
     }];
     scene
 }

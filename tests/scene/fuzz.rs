@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use skylight::cli::{self, CliExit};
-use skylight::scene::{LoadOptions, Scene, load};
+use skylight::scene::{LoadOptions, Scene, Up, load};
 
 use crate::support::{assert_valid, glb};
 
@@ -23,6 +23,8 @@ const LIMIT_PER_BYTE: Duration = Duration::from_micros(50);
 /// Small limits, so that exceeding them shows.
 const OPTIONS: LoadOptions = LoadOptions {
     smooth_deg: None,
+    up: Up::Y,
+    unit: None,
     max_texture_edge: 512,
     max_texture_bytes: 4 << 20,
     max_file_bytes: 1 << 20,

@@ -14,12 +14,22 @@ struct Loss {
     what: &'static str,
     count: usize,
     first: String,
+    /// Whether triangles are lost, not only something of their look.
+    of_shape: bool,
 }
 
 impl Losses {
     /// Counts a loss of the kind `what`, a plural noun with what became of it; `place` names this one.
     pub fn add(&mut self, what: &'static str, place: impl FnOnce() -> String) {
         self.add_many(what, 1, place);
+    }
+
+    /// Counts a loss of triangles: it is told of before others.
+    pub fn add_shape(&mut self, what: &'static str, place: impl FnOnce() -> String) {
+        self.add(what, place);
+        if let Some(loss) = self.0.iter_mut().find(|loss| loss.what == what) {
+            loss.of_shape = true;
+        }
     }
 
     /// Counts several losses of a kind; `place` names the first of them.
@@ -33,21 +43,26 @@ impl Losses {
                 what,
                 count,
                 first: shortened(&printable(&place()), MAX_DETAIL),
+                of_shape: false,
             }),
         }
     }
 
     /// Takes over the losses of a part.
     pub fn append(&mut self, other: Self) {
-        for Loss { what, count, first } in other.0 {
-            self.add_many(what, count, || first);
+        for loss in other.0 {
+            match self.0.iter_mut().find(|own| own.what == loss.what) {
+                Some(own) => own.count += loss.count,
+                None => self.0.push(loss),
+            }
         }
     }
 
     /// One line for each kind.
     pub fn lines(&self) -> impl Iterator<Item = String> {
-        self.0
-            .iter()
+        let shapes = self.0.iter().filter(|loss| loss.of_shape);
+        shapes
+            .chain(self.0.iter().filter(|loss| !loss.of_shape))
             .map(|loss| format!("{} {}; first: {}", loss.count, loss.what, loss.first))
     }
 }
@@ -73,10 +88,12 @@ mod tests {
         losses.add("lines left out", || "line 3".to_owned());
         losses.add("faces not drawn", || "é".repeat(500));
         losses.add_many("lines left out", 4, || "line 9".to_owned());
+        losses.add_shape("primitives not drawn", || "meshes[0]".to_owned());
         losses.add_many("pictures", 0, || unreachable!());
         let lines: Vec<String> = losses.lines().collect();
-        assert_eq!(lines[0], "5 lines left out; first: line 3");
-        assert_eq!(lines.len(), 2);
-        assert!(lines[1].chars().count() < 160 && lines[1].ends_with(".."));
+        assert_eq!(lines[0], "1 primitives not drawn; first: meshes[0]");
+        assert_eq!(lines[1], "5 lines left out; first: line 3");
+        assert_eq!(lines.len(), 3);
+        assert!(lines[2].chars().count() < 160 && lines[2].ends_with(".."));
     }
 }

@@ -59,12 +59,13 @@ fn chunk(bytes: &[u8], wanted: u32) -> Option<&[u8]> {
 pub fn parse(bytes: &[u8]) -> Result<Value, String> {
     let padding = |byte: &u8| byte.is_ascii_whitespace() || *byte == 0;
     let end = bytes.iter().rposition(|byte| !padding(byte));
-    let bytes = &bytes[..end.map_or(0, |end| end + 1)];
-    let plain = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let plain = &bytes[..end.map_or(0, |end| end + 1)];
+    let plain = plain.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(plain);
     if let Ok(value) = serde_json::from_slice(plain) {
         return Ok(value);
     }
-    let repaired = Repair::of(&text_of(bytes));
+    let repaired =
+        Repair::of(text_of(bytes).trim_end_matches(|c: char| c.is_whitespace() || c == '\0'));
     serde_json::from_str(&repaired).map_err(|error| {
         let what = one_line(&error.to_string());
         format!("no glTF that can be read ({what}); export it again")

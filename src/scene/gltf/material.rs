@@ -51,7 +51,15 @@ impl Materials {
         }
         let item = index.map(|i| source.root.get("materials").at(i));
         let surface = match item.filter(|item| item.exists()) {
-            Some(item) => Reader { source, item }.surface(),
+            Some(item) => {
+                let number = index.unwrap_or_default();
+                Reader {
+                    source,
+                    number,
+                    item,
+                }
+                .surface()
+            }
             None => {
                 if primitive.get("material").exists() {
                     let place =
@@ -73,6 +81,7 @@ impl Materials {
 /// Reads one material.
 struct Reader<'r, 'p, 'j> {
     source: Source<'r, 'p, 'j>,
+    number: usize,
     item: Item<'j>,
 }
 
@@ -90,9 +99,9 @@ impl<'j> Reader<'_, '_, 'j> {
         let first = placed.next().map(|(info, _)| transform(*info));
         let (texcoord_set, texture_from_mesh) = first.unwrap_or((0, Affine2::IDENTITY));
         if placed.any(|(info, _)| Some(transform(*info)) != first) {
-            let name = material.name.clone();
-            let what = "materials whose maps have different texture coordinates drawn with those of the first map";
-            self.source.losses.add(what, || format!("\"{name}\""));
+            let place = format!("materials[{}] \"{}\"", self.number, material.name);
+            let what = "materials whose maps differ in their texture coordinates drawn with those of the first map";
+            self.source.losses.add(what, || place);
         }
         let has_normal_map = material.normal_texture.is_some();
         let index = if material.is_drawn() {

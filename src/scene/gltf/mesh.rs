@@ -98,11 +98,10 @@ impl Primitive<'_, '_> {
         let accessor = self
             .buffers
             .accessor(accessor.ok_or("it has no positions")?, self.limit)?;
-        let draco = "KHR_draco_mesh_compression";
-        if accessor.view.is_none() && self.item.extension(draco).exists() {
-            return Err(format!(
-                "compressed by Draco ({draco}): export or transform it without"
-            ));
+        let draco = self.item.extension("KHR_draco_mesh_compression");
+        if accessor.view.is_none() && draco.exists() {
+            let what = "Draco compression is not read, export or transform it without";
+            return Err(what.to_owned());
         }
         if accessor.width != 3 {
             return Err("its positions are no vectors of three".to_owned());

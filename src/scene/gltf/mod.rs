@@ -314,7 +314,7 @@ impl Model<'_> {
             };
             let read = self.read_primitive(builder, &mut primitive, weights, skin);
             if let Err(why) = &read {
-                losses.add("primitives not drawn", || format!("{place}: {why}"));
+                losses.add_shape("primitives not drawn", || format!("{place}: {why}"));
             }
             self.report.losses = losses;
             let Some((faces, surface, origin)) = read.ok().flatten() else {

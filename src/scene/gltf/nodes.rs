@@ -31,7 +31,7 @@ impl Graph {
             let mut own = Losses::default();
             walk.from(&roots, &mut own);
             if walk.draws() {
-                if scene != chosen {
+                if scene != chosen && scenes.at(chosen).exists() {
                     losses.add("scenes without anything to draw passed over", || {
                         format!("scenes[{chosen}]; drawn instead: scenes[{scene}]")
                     });

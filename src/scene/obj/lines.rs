@@ -126,7 +126,9 @@ impl LineReader {
             Statement::Other => return,
         };
         if let Err(why) = result {
-            self.out.losses.add(what, || format!("line {at}: {why}"));
+            self.out
+                .losses
+                .add_shape(what, || format!("line {at}: {why}"));
         }
     }
 

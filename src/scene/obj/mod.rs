@@ -23,7 +23,7 @@ use crate::scene::placement::Placement;
 use crate::scene::texture::linear_from_srgb;
 
 /// Longest list of reasons why there is nothing to draw, characters.
-const MAX_REASONS: usize = 110;
+const MAX_REASONS: usize = 125;
 
 /// Adds the model at `path` to the scene.
 ///

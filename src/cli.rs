@@ -182,7 +182,7 @@ fn file_taken_for_help(words: &[OsString]) -> Option<&str> {
 
 /// Hides an option that decides a picture from the help of a command that makes none.
 fn hidden_if_of_pictures(arg: Arg) -> Arg {
-    const OF_THE_COMMAND: [&str; 2] = ["preset", "quiet"];
+    const OF_THE_COMMAND: [&str; 4] = ["preset", "quiet", "no-warnings", "strict"];
     let name = arg.get_long().unwrap_or_default();
     let is_shared = arg.get_help_heading().is_some();
     let hidden = is_shared && !decides_light(name) && !OF_THE_COMMAND.contains(&name);

@@ -23,6 +23,14 @@ pub enum Error {
     /// A file of sensors that cannot be used.
     #[error(transparent)]
     Grid(#[from] GridError),
+    /// A warning, of which `--strict` makes an error.
+    #[error("{first}{more}; --strict makes warnings errors: nothing is written")]
+    Strict {
+        /// The first warning.
+        first: String,
+        /// How many more there are, or nothing.
+        more: String,
+    },
     /// The device.
     #[error(transparent)]
     Gpu(#[from] GpuError),

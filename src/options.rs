@@ -37,7 +37,7 @@ pub use choices::{Choice, name};
 pub(crate) use choices::{choice, choice_enum, choices};
 pub use given::OptionValues;
 pub use resolve::ResolveError;
-pub(crate) use resolve::shortest;
+pub(crate) use resolve::{in_world, shortest};
 pub use sun_input::SunInput;
 pub use values::{
     AerosolInput, AoResolution, Direction, ExposureMode, Fresnel, Penumbra, Place, Preset, Size,
@@ -52,6 +52,7 @@ use crate::passes::dome::gather::{DomeSettings, MOST_DIRECTIONS};
 use crate::passes::occlusion::ssao::SsaoSettings;
 use crate::passes::sky::irradiance::IrradianceSettings;
 use crate::scene::{DEFAULT_FOV_DEG, LoadOptions};
+pub use crate::scene::{Unit, Up};
 use values::Written;
 
 /// An invalid value or name. The message is one line that names it and says how to fix it.
@@ -342,6 +343,16 @@ options! {
             smooth: Option<f64>,
         }
 
+        "Model" [] {
+            /// Axis of the model that points up. Cameras and sensors keep the axes of the picture: +Y up.
+            #[arg(value_name = "AXIS", value_parser = choice::<Up>(), default_value_t)]
+            up: Up,
+            /// Unit of the model's lengths: light depends on size. By default metres, with a warning if the size is implausible. In a scene
+            /// file, the keys `up` and `unit` of a mesh override these options.
+            #[arg(value_name = "UNIT", value_parser = choice::<Unit>())]
+            unit: Option<Unit>,
+        }
+
         "Limits" [] {
             /// Let a model read libraries and pictures outside of its own folder tree.
             allow_outside: bool,
@@ -369,8 +380,12 @@ options! {
             /// Vulkan device: part of its name, or its number in `skylight info`.
             #[arg(value_name = "NAME|INDEX")]
             device: Option<String>,
-            /// No progress, no warnings.
+            /// No progress; warnings stay.
             quiet: bool,
+            /// No warnings.
+            no_warnings: bool,
+            /// Every warning is an error: nothing is drawn or written, and the exit code is 1.
+            strict: bool,
             /// Check every Vulkan call with the validation layers; slow.
             validate: bool,
             /// Do without something that the device has, as on a device that lacks it.

@@ -2,13 +2,14 @@
 
 use std::fmt::Write as _;
 
+use glam::DVec3;
 use serde_json::json;
 
 use super::job::Job;
-use super::progress;
+use super::{progress, tell};
 use crate::cli::DaylightArgs;
 use crate::error::Result;
-use crate::options::{OptionValues, shortest};
+use crate::options::{OptionValues, in_world, shortest};
 use crate::output::print;
 use crate::sensors::{Accuracy, Lights, Reading, Sensor, TracedScene, measure, read_grid};
 
@@ -17,8 +18,8 @@ use crate::sensors::{Accuracy, Lights, Reading, Sensor, TracedScene, measure, re
 /// # Errors
 /// Fails when the grid or the model cannot be read, or when options are invalid.
 pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
-    let sensors = read_grid(&args.grid)?;
     let job = Job::new(Some(&args.scene), options)?;
+    let sensors = read_grid(&args.grid, job.scene.origin)?;
     let accuracy = Accuracy {
         relative_error: args.error,
         max_paths: args.max_paths,
@@ -30,18 +31,17 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
     bar.finish_and_clear();
     let rows: Vec<(Sensor, Reading)> = sensors.into_iter().zip(readings).collect();
     let imprecise = imprecise(&rows, args);
-    if let Some(line) = imprecise.as_ref().filter(|_| !job.settings.quiet) {
-        eprintln!("warning: {line}");
-    }
+    tell(&job.settings, imprecise.iter())?;
+    let origin = job.scene.origin;
     let text = if args.json {
         let warnings = job.warnings().chain(&imprecise);
         let warnings: Vec<&String> = warnings.collect();
-        let list: Vec<_> = rows.iter().map(|(s, r)| object(s, r)).collect();
+        let list: Vec<_> = rows.iter().map(|(s, r)| object(s, r, origin)).collect();
         format!("{:#}\n", json!({ "sensors": list, "warnings": warnings }))
     } else if args.csv {
-        csv(&rows)
+        csv(&rows, origin)
     } else {
-        table(&rows)
+        table(&rows, origin)
     };
     print(&text)
 }
@@ -61,9 +61,9 @@ fn imprecise(rows: &[(Sensor, Reading)], args: &DaylightArgs) -> Option<String> 
 }
 
 /// Columns of JSON and CSV: metres, unit vector, lux.
-fn columns(sensor: &Sensor, reading: &Reading) -> [(&'static str, f64); 11] {
-    let (p, n) = (sensor.position, sensor.normal);
-    let [x, y, z, nx, ny, nz] = [p.x, p.y, p.z, n.x, n.y, n.z].map(shortest);
+fn columns(sensor: &Sensor, reading: &Reading, origin: DVec3) -> [(&'static str, f64); 11] {
+    let [x, y, z] = in_world(sensor.position, origin);
+    let [nx, ny, nz] = sensor.normal.to_array().map(shortest);
     [
         ("x", x),
         ("y", y),
@@ -79,20 +79,20 @@ fn columns(sensor: &Sensor, reading: &Reading) -> [(&'static str, f64); 11] {
     ]
 }
 
-fn object(sensor: &Sensor, reading: &Reading) -> serde_json::Value {
-    let columns = columns(sensor, reading).into_iter();
+fn object(sensor: &Sensor, reading: &Reading, origin: DVec3) -> serde_json::Value {
+    let columns = columns(sensor, reading, origin).into_iter();
     columns
         .map(|(name, value)| (name.to_owned(), value))
         .collect()
 }
 
-fn csv(rows: &[(Sensor, Reading)]) -> String {
+fn csv(rows: &[(Sensor, Reading)], origin: DVec3) -> String {
     let line = |cells: Vec<String>| cells.join(",") + "\n";
-    let names = columns(&Sensor::default(), &Reading::default());
+    let names = columns(&Sensor::default(), &Reading::default(), DVec3::ZERO);
     let head = line(names.map(|(name, _)| name.to_owned()).to_vec());
     let rows = rows.iter().map(|(sensor, reading)| {
         line(
-            columns(sensor, reading)
+            columns(sensor, reading, origin)
                 .map(|(_, value)| value.to_string())
                 .to_vec(),
         )
@@ -100,19 +100,19 @@ fn csv(rows: &[(Sensor, Reading)]) -> String {
     head + &rows.collect::<String>()
 }
 
-fn table(rows: &[(Sensor, Reading)]) -> String {
+fn table(rows: &[(Sensor, Reading)], origin: DVec3) -> String {
     let head = format!(
         "{:>9}{:>9}{:>9}{:>12}{:>12}{:>12}{:>12}{:>10}\n",
         "x, m", "y", "z", "sky, lux", "sun", "reflected", "total", "error"
     );
     rows.iter().fold(head, |mut text, (s, r)| {
-        let p = s.position;
+        let [x, y, z] = in_world(s.position, origin);
         let _ = writeln!(
             text,
             "{:>9.2}{:>9.2}{:>9.2}{:>12.1}{:>12.1}{:>12.1}{:>12.1}{:>10.1}",
-            p.x,
-            p.y,
-            p.z,
+            x,
+            y,
+            z,
             r.sky_direct,
             r.sun_direct,
             r.reflected,

@@ -8,6 +8,7 @@ use std::thread;
 use glam::UVec2;
 
 use super::light::{conditions, sun_position};
+use super::{check_strict, tell};
 use crate::daylight::colour::luminance;
 use crate::daylight::exposure::{KEY, factor_from_ev100};
 use crate::daylight::sample_count::ErrorEstimate;
@@ -91,18 +92,14 @@ pub struct Job {
 const DARK_LUX: f64 = std::f64::consts::PI;
 
 impl Job {
-    /// Loads the scene and resolves the options. Prints warnings to stderr unless `--quiet` is set.
+    /// Loads the scene and resolves the options. Tells the warnings ([`tell`]).
     ///
     /// # Errors
-    /// A scene that cannot be read, or invalid options.
+    /// A scene that cannot be read, invalid options, or a warning with `--strict`.
     pub fn new(path: Option<&Path>, user: &OptionValues) -> Result<Self> {
         let loaded = scene::load_with_progress(path, &load_options(&user.alone()?), &|_, _| ())?;
         let job = Self::of(path, loaded, user)?;
-        if !job.settings.quiet {
-            for warning in job.warnings() {
-                eprintln!("warning: {warning}");
-            }
-        }
+        tell(&job.settings, job.warnings())?;
         Ok(job)
     }
 
@@ -116,7 +113,7 @@ impl Job {
         let daylight = Daylight::new(&conditions(&settings, &sun));
         let mut scene = std::mem::take(&mut loaded.scene);
         scene.scale_emission(settings.emission_scale as f32);
-        let camera = settings.camera(&scene.bounds);
+        let camera = settings.camera(&scene.bounds, scene.origin);
         let name = path.map_or("bundled".to_owned(), |p| p.display().to_string());
         Ok(Self {
             settings,
@@ -131,8 +128,16 @@ impl Job {
     }
 
     /// Warnings about the scene and its light, one line each.
-    pub fn warnings(&self) -> impl Iterator<Item = &String> {
+    pub fn warnings(&self) -> impl Iterator<Item = &String> + Clone {
         self.scene.warnings.iter().chain(&self.daylight.warnings)
+    }
+
+    /// Fails with the first warning if `--strict` is set.
+    ///
+    /// # Errors
+    /// See above.
+    pub fn check_strict(&self) -> Result<()> {
+        check_strict(&self.settings, self.warnings())
     }
 
     /// Updates sun and daylight to these options.
@@ -161,7 +166,7 @@ impl Job {
             )
         });
         let (job, context) = (job?, context?);
-        if !job.settings.quiet {
+        if !(job.settings.quiet || job.settings.no_warnings) {
             notice(&context);
         }
         Ok((job, context))
@@ -268,7 +273,7 @@ impl Job {
 
     /// The options with the current camera.
     pub fn options_in_view(&self) -> Options {
-        self.settings.with_camera(&self.camera)
+        self.settings.with_camera(&self.camera, self.scene.origin)
     }
 
     /// Metadata for the image file: the options that reproduce the image, and figures of its light.

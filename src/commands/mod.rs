@@ -28,7 +28,9 @@ pub mod view;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::Command;
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::options::Options;
+use crate::scene::shortened;
 
 /// Runs a command.
 ///
@@ -61,6 +63,36 @@ pub fn run(command: Command) -> Result<()> {
         } => startup::run(device, without),
         Command::Info { without, .. } => info::run(without.as_slice()),
     }
+}
+
+/// Longest first warning in the error of `--strict`, characters.
+const MAX_STRICT: usize = 120;
+
+/// Tells warnings on stderr, unless `--no-warnings` is set.
+///
+/// # Errors
+/// With `--strict`, the first warning.
+fn tell<'w>(settings: &Options, warnings: impl Iterator<Item = &'w String> + Clone) -> Result<()> {
+    check_strict(settings, warnings.clone())?;
+    if !settings.no_warnings {
+        warnings.for_each(|warning| eprintln!("warning: {warning}"));
+    }
+    Ok(())
+}
+
+/// Fails with the first warning if `--strict` is set.
+fn check_strict<'w>(settings: &Options, warnings: impl Iterator<Item = &'w String>) -> Result<()> {
+    let mut warnings = warnings.filter(|_| settings.strict);
+    let Some(first) = warnings.next() else {
+        return Ok(());
+    };
+    Err(Error::Strict {
+        first: shortened(first, MAX_STRICT),
+        more: match warnings.count() {
+            0 => String::new(),
+            n => format!(" (and {n} more)"),
+        },
+    })
 }
 
 /// A progress bar; hidden in a pipe, when `quiet`, or with fewer than two steps.

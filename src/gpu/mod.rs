@@ -29,7 +29,7 @@ pub use device::startup::Step;
 pub use device::surface::{Surface, WindowHandles};
 pub use error::{GpuError, Result};
 pub use memory::buffer::{Buffer, BufferKind};
-pub use memory::image::{Image, ImageDesc, ImageKind, Sampler};
+pub use memory::image::{Image, ImageDesc, ImageKind, Outside, Sampler};
 pub use memory::read_back::{Pixels, Texel, copy_texel, read_back};
 pub use memory::upload::{upload_buffer, upload_texture};
 pub use pipeline::cache::CacheState;

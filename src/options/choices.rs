@@ -8,7 +8,7 @@ use clap::{Arg, Command};
 
 use super::{
     Ambient, Filter, IrradianceMethod, Optional, Phong, Quantity, Reflections, Show, SkyModel,
-    SunPositionMethod, ToneCurve, Visibility,
+    SunPositionMethod, ToneCurve, Unit, Up, Visibility,
 };
 
 /// An enum whose variants are values of an option.
@@ -121,6 +121,17 @@ macro_rules! choice_enum {
 pub(crate) use choice_enum;
 
 choices! {
+    Up {
+        Y = "y": "+Y, with +X east and −Z north, as in glTF",
+        Z = "z": "+Z, with +X east and +Y north, as in GIS, BIM and CAD",
+    }
+    Unit {
+        Mm = "mm": "Millimetre",
+        Cm = "cm": "Centimetre",
+        M = "m": "Metre",
+        In = "in": "Inch, 25.4 mm",
+        Ft = "ft": "Foot, 304.8 mm",
+    }
     Ambient {
         Cells = "cells": "Cells of irradiance in the scene: the true visibility of the sky, and bounces",
         Ssao = "ssao": "Screen-space ambient occlusion of the open sky, no bounces: the lecture's A",

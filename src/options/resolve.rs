@@ -1,7 +1,7 @@
 //! Resolves the values of all sources to [`Options`]: precedence, and the cameras, moments and tables of a scene file.
 
 use clap::parser::ValueSource;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::{
     Ambient, OptionValues, Options, OptionsError, Preset, Reflections, SkyModel, Visibility,
@@ -155,6 +155,8 @@ impl Options {
         let bytes = |mib: u32| u64::from(mib) << 20;
         LoadOptions {
             smooth_deg: self.smooth.map(|degrees| degrees as f32),
+            up: self.up,
+            unit: self.unit,
             max_texture_edge: self.max_texture_edge,
             max_texture_bytes: bytes(self.max_texture_mib),
             max_file_bytes: bytes(self.max_file_mib),
@@ -164,9 +166,9 @@ impl Options {
         }
     }
 
-    /// The camera for a model within `bounds`; what is not given is chosen to frame the model.
-    pub fn camera(&self, bounds: &Bounds) -> Camera {
-        let point = |p: [f64; 3]| Vec3::from(p.map(|v| v as f32));
+    /// The camera for a model within `bounds`, relative to `origin`; what is not given is chosen to frame the model.
+    pub fn camera(&self, bounds: &Bounds, origin: DVec3) -> Camera {
+        let point = |p: [f64; 3]| (DVec3::from(p) - origin).as_vec3();
         Camera::from_parts(
             self.eye.map(point),
             self.target.map(point),
@@ -181,10 +183,10 @@ impl Options {
         Camera::framing(bounds, DEFAULT_FOV_DEG, self.aspect())
     }
 
-    /// These options with `camera` instead of their own.
+    /// These options with `camera`, relative to `origin`, instead of their own.
     #[must_use]
-    pub fn with_camera(&self, camera: &Camera) -> Self {
-        let point = |p: Vec3| Some(p.to_array().map(shortest));
+    pub fn with_camera(&self, camera: &Camera, origin: DVec3) -> Self {
+        let point = |p: Vec3| Some(in_world(p, origin));
         Self {
             eye: point(camera.eye),
             target: point(camera.target),
@@ -204,6 +206,16 @@ impl From<&[(&str, &str)]> for OptionValues {
         let owned = |(name, text): &(&str, &str)| ((*name).to_owned(), (*text).to_owned());
         Self::from(pairs.iter().map(owned).collect::<Vec<_>>())
     }
+}
+
+/// A point relative to `origin` in world space, with as many digits as it has.
+pub(crate) fn in_world(point: Vec3, origin: DVec3) -> [f64; 3] {
+    let coordinate = |axis: usize| match origin[axis] {
+        0.0 => shortest(point[axis]),
+        // Whole metres and an `f32` that is small beside them: hundredths of a millimetre are what is left.
+        far => ((far + f64::from(point[axis])) * 1e5).round() / 1e5,
+    };
+    [0, 1, 2].map(coordinate)
 }
 
 /// The decimal number with the fewest digits that rounds to the same `f32`.

@@ -3,16 +3,19 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
+use glam::{Affine3A, DAffine3, DVec3};
+
 use crate::scene::error::{SceneError, printable};
 use crate::scene::files::Files;
 use crate::scene::material::{MAX_EMISSION, Material, MaterialKey, bounded_emission};
+use crate::scene::origin;
 use crate::scene::progress::Reporter;
+use crate::scene::size;
 use crate::scene::texture::picture::{TextureKey, TextureStore};
 use crate::scene::{LoadOptions, Scene};
 
 /// Maximum number of warnings per scene: a malicious file could cause millions.
 const MAX_WARNINGS: usize = 100;
-
 /// A scene under construction, and where its files are read from.
 #[derive(Debug)]
 pub(super) struct Builder<'p> {
@@ -24,6 +27,8 @@ pub(super) struct Builder<'p> {
     /// Number of threads to use, at least 1.
     pub threads: usize,
     materials: HashMap<MaterialKey, u32>,
+    /// Whether the scene's origin is chosen: by its first model.
+    has_origin: bool,
     /// Files with emission out of range.
     bad_emission: HashSet<PathBuf>,
     allow_outside: bool,
@@ -40,6 +45,7 @@ impl<'p> Builder<'p> {
             progress,
             threads: threads.map_or(1, usize::from),
             materials: HashMap::new(),
+            has_origin: false,
             bad_emission: HashSet::new(),
             allow_outside: options.allow_outside,
             max_triangles: options.max_triangles,
@@ -50,6 +56,39 @@ impl<'p> Builder<'p> {
     pub fn begin_model(&mut self, path: &Path) {
         if !self.allow_outside {
             self.files.confine_to(path);
+        }
+    }
+
+    /// Chooses the scene's origin from points of the first model in world space, metres: where it lies, if that is far from the
+    /// world's origin in relation to its size. Positions relative to it keep their digits in `f32`. Reorders the points.
+    pub fn choose_origin(&mut self, path: &Path, points: &mut Vec<DVec3>) {
+        points.retain(|point| point.is_finite());
+        if self.has_origin || points.is_empty() {
+            return;
+        }
+        self.has_origin = true;
+        let middle = origin::middle(points);
+        self.scene.origin = middle.origin();
+        if middle.is_geocentric() {
+            let what = "coordinates are geocentric (ECEF): +Y is not up there, and sun and sky are tilted; export it in a local frame with +Y up";
+            self.warn(path, what);
+        }
+    }
+
+    /// The transform to the space of the scene's positions, of points that are given relative to `origin` of their own space.
+    pub fn scene_from_world(&self, world_from_own: DAffine3, origin: DVec3) -> Affine3A {
+        let moved = world_from_own.transform_point3(origin) - self.scene.origin;
+        DAffine3::from_mat3_translation(world_from_own.matrix3, moved).as_affine3a()
+    }
+
+    /// Warns of a scene whose size in metres is implausible, unless its unit was given.
+    pub fn warn_of_size(&mut self, path: &Path, has_unit: bool) {
+        let size = size::implausible(&self.scene).filter(|_| !has_unit);
+        if let Some(size) = size {
+            let what = format!(
+                "the scene {size}, and light depends on size; if its unit is not the metre, give --unit mm, cm, in or ft (or --unit m)"
+            );
+            self.warn(path, &what);
         }
     }
 
@@ -149,12 +188,14 @@ impl<'p> Builder<'p> {
         bounded
     }
 
-    /// Mean red, green and blue of an image, 0..1 as encoded; 1 (with a warning) if that fails.
-    pub fn mean(&mut self, owner: &Path, path: &Path) -> [f32; 3] {
-        let mean = self.textures.mean(&self.files, path);
-        mean.unwrap_or_else(|what| {
-            self.warn(owner, &what);
-            [1.0; 3]
-        })
+    /// Mean red, green, blue and alpha of an image, 0..1 as encoded; 1 (with a warning) if that fails.
+    pub fn mean(&mut self, owner: &Path, path: &Path) -> [f32; 4] {
+        match self.textures.mean(&self.files, path) {
+            Ok(mean) => mean.unwrap_or([1.0; 4]),
+            Err(what) => {
+                self.warn(owner, &what);
+                [1.0; 4]
+            }
+        }
     }
 }

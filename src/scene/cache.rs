@@ -8,6 +8,7 @@ use std::fs;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::scene::bounds::Bounds;
@@ -16,7 +17,7 @@ use crate::scene::culling::layout::{FlatLayout, clusters, ranges};
 use crate::scene::files::{Digest, ReadFile, digest};
 use crate::scene::material::Material;
 use crate::scene::scene_file::NamedOptions;
-use crate::scene::texture::{Encoding, Texture};
+use crate::scene::texture::{Encoding, Texture, Wrap};
 use crate::scene::{Bvh, Layout, LoadOptions, Loaded, Node, Part, Scene};
 
 /// Version of the entry format and of the result of loading a model.
@@ -38,6 +39,7 @@ struct Head {
     materials: Vec<Material>,
     textures: Vec<Picture>,
     bounds: Bounds,
+    origin: DVec3,
     warnings: Vec<String>,
     options: Vec<NamedOptions>,
     cameras: Vec<NamedOptions>,
@@ -53,6 +55,7 @@ struct Picture {
     width: u32,
     height: u32,
     encoding: Encoding,
+    wrap: [Wrap; 2],
 }
 
 /// Path of the entry of a model.
@@ -233,6 +236,7 @@ impl Head {
             width: t.width,
             height: t.height,
             encoding: t.encoding,
+            wrap: t.wrap,
         };
         Self {
             version: VERSION,
@@ -241,6 +245,7 @@ impl Head {
             materials: scene.materials.clone(),
             textures: scene.textures.iter().map(picture).collect(),
             bounds: scene.bounds,
+            origin: scene.origin,
             warnings: scene.warnings.clone(),
             options: loaded.options.clone(),
             cameras: loaded.cameras.clone(),
@@ -266,6 +271,7 @@ impl Head {
             parts: self.parts.clone(),
             materials: self.materials.clone(),
             bounds: self.bounds,
+            origin: self.origin,
             warnings: self.warnings.clone(),
             ..Scene::default()
         };
@@ -285,6 +291,7 @@ impl Picture {
             width: self.width,
             height: self.height,
             encoding: self.encoding,
+            wrap: self.wrap,
         })
     }
 }

@@ -1,13 +1,14 @@
 //! File sources: the disk, or files compiled into the program.
 
-use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
+use memchr::memchr_iter;
 use serde::{Deserialize, Serialize};
 
 use crate::scene::error::SceneError;
+use crate::scene::names::{Listings, spellings};
 
 /// BLAKE3 hash of a file.
 pub(super) type Digest = [u8; 32];
@@ -30,6 +31,9 @@ impl ReadFile {
     }
 }
 
+/// Start of the file that stands for a file kept elsewhere (Git LFS, specification 1).
+const LFS_POINTER: &[u8] = b"version https://git-lfs.github.com/spec/";
+
 /// A source of files.
 #[derive(Debug, Clone)]
 pub(super) struct Files {
@@ -40,6 +44,7 @@ pub(super) struct Files {
     left: Cell<u64>,
     /// Folder that must contain the files of a model, at any depth; `None` for no restriction.
     confined_to: Option<PathBuf>,
+    listings: RefCell<Listings>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -67,6 +72,7 @@ impl Files {
             record: None,
             left: Cell::new(max_bytes),
             confined_to: None,
+            listings: RefCell::default(),
         }
     }
 
@@ -77,6 +83,7 @@ impl Files {
             record: None,
             left: Cell::new(u64::MAX),
             confined_to: None,
+            listings: RefCell::default(),
         }
     }
 
@@ -104,24 +111,37 @@ impl Files {
         self.confined_to = folder.canonicalize().ok();
     }
 
-    /// Looks up a file named in a model, relative to the model's folder: first the name as written, then with backslashes as
-    /// separators, then its last component alone (for absolute paths from another machine).
+    /// Looks up a file named in a model, relative to the model's folder, by all its [`spellings`]: first as they are, then without
+    /// regard to case if that means one file.
     pub fn find(&self, folder: &Path, name: &str) -> Lookup {
-        let forward: Cow<str> = if name.contains('\\') {
-            name.replace('\\', "/").into()
-        } else {
-            name.into()
-        };
-        let last = forward.rsplit('/').next().unwrap_or(&forward);
-        let candidates = [folder.join(name), folder.join(&*forward), folder.join(last)];
-        let mut there = candidates.iter().filter(|path| self.has(path));
-        match there.clone().find(|path| self.is_inside(path)) {
-            Some(path) => Lookup::Found(self.canonical_name(path)),
-            None => there
-                .next()
-                .map_or(Lookup::Missing(candidates[1].clone()), |path| {
-                    Lookup::Outside(path.clone())
-                }),
+        self.find_any(folder, &spellings(name, false))
+    }
+
+    /// The same for a URI, whose percent-encoding is decoded first.
+    pub fn find_uri(&self, folder: &Path, uri: &str) -> Lookup {
+        self.find_any(folder, &spellings(uri, true))
+    }
+
+    fn find_any(&self, folder: &Path, names: &[String]) -> Lookup {
+        let mut outside = None;
+        for path in names.iter().map(|name| folder.join(name)) {
+            if self.has(&path) {
+                if self.is_inside(&path) {
+                    return Lookup::Found(self.canonical_name(&path));
+                }
+                outside.get_or_insert(path);
+            }
+        }
+        if let Source::Disk { .. } = self.source {
+            let mut listings = self.listings.borrow_mut();
+            let mut folded = names.iter().filter_map(|name| listings.find(folder, name));
+            if let Some(path) = folded.find(|path| self.is_inside(path)) {
+                return Lookup::Found(self.canonical_name(&path));
+            }
+        }
+        match outside {
+            Some(path) => Lookup::Outside(path),
+            None => Lookup::Missing(folder.join(names.first().map_or("", String::as_str))),
         }
     }
 
@@ -157,6 +177,9 @@ impl Files {
         match self.source {
             Source::Disk { max_bytes } => {
                 let bytes = read_disk(path, max_bytes)?;
+                if bytes.starts_with(LFS_POINTER) {
+                    return Err(SceneError::Pointer(path.to_owned()));
+                }
                 let left = self.left.get().checked_sub(bytes.len() as u64);
                 self.left.set(left.ok_or_else(|| SceneError::TooMuch {
                     path: path.to_owned(),
@@ -189,15 +212,15 @@ impl Files {
         }
     }
 
-    /// Reads a file as text. Bytes that are not valid UTF-8 (names from old exporters) become replacement characters.
+    /// Reads a file as text with `\n` or `\r\n` as line ends.
     pub fn read_text(&self, path: &Path) -> Result<String, SceneError> {
-        let bytes = self.read(path)?;
-        if let Some(rest) = bytes.strip_prefix(b"\xEF\xBB\xBF") {
-            return Ok(String::from_utf8_lossy(rest).into_owned());
+        let mut bytes = self.read(path)?;
+        end_lines(&mut bytes);
+        if bytes.starts_with(&[0xEF, 0xBB, 0xBF]) || utf16(&bytes).is_some() {
+            return Ok(text_of(&bytes));
         }
         // Valid UTF-8 is not copied, because models are large.
-        Ok(String::from_utf8(bytes)
-            .unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned()))
+        Ok(String::from_utf8(bytes).unwrap_or_else(|error| latin(error.as_bytes())))
     }
 
     /// Whether [`Files::read`] would find a file, without reading it.
@@ -217,6 +240,46 @@ impl Files {
             Source::Disk { .. } => path.is_file(),
             Source::Embedded(files) => files.iter().any(|(name, _)| Path::new(name) == path),
         }
+    }
+}
+
+/// The text of a file, without a byte order mark: UTF-8 or UTF-16, and Latin-1 where it is neither (names from old exporters).
+pub(super) fn text_of(bytes: &[u8]) -> String {
+    let plain = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    utf16(bytes).unwrap_or_else(|| latin(plain))
+}
+
+/// UTF-8, with the bytes that are not as letters of Latin-1.
+pub(super) fn latin(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(bytes.len());
+    for chunk in bytes.utf8_chunks() {
+        text.push_str(chunk.valid());
+        text.extend(chunk.invalid().iter().map(|byte| char::from(*byte)));
+    }
+    text
+}
+
+/// UTF-16 with a byte order mark, as some shells of Windows write it.
+fn utf16(bytes: &[u8]) -> Option<String> {
+    let read: fn([u8; 2]) -> u16 = match bytes {
+        [0xFF, 0xFE, ..] => u16::from_le_bytes,
+        [0xFE, 0xFF, ..] => u16::from_be_bytes,
+        _ => return None,
+    };
+    let units: Vec<u16> = bytes[2..]
+        .chunks_exact(2)
+        .map(|pair| read([pair[0], pair[1]]))
+        .collect();
+    Some(String::from_utf16_lossy(&units))
+}
+
+/// Makes `\n` of each `\r` that ends a line alone, as on old Macs.
+fn end_lines(bytes: &mut [u8]) {
+    let alone = |i: &usize| bytes.get(i + 1).is_none_or(|next| *next != b'\n');
+    let ends: Vec<usize> = memchr_iter(b'\r', bytes).filter(alone).collect();
+    // In UTF-16, the byte after it is the other half of the character.
+    if utf16(&bytes[..bytes.len().min(4)]).is_none() {
+        ends.into_iter().for_each(|i| bytes[i] = b'\n');
     }
 }
 
@@ -281,5 +344,24 @@ fn unreadable(path: &Path, error: &std::io::Error) -> SceneError {
             path,
             reason: error.to_string(),
         },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_of_any_encoding_and_line_end() {
+        let read = |bytes: &'static [u8]| {
+            let files = Files::embedded(vec![("a", bytes)].leak());
+            files.read_text(Path::new("a")).expect("embedded")
+        };
+        assert_eq!(read(b"v 1\rv 2\r"), "v 1\nv 2\n");
+        assert_eq!(read(b"v 1\r\nv 2\r\n"), "v 1\r\nv 2\r\n");
+        assert_eq!(read(b"\xEF\xBB\xBFv 1"), "v 1");
+        assert_eq!(read(b"\xFF\xFEv\0 \x001\0\n\0"), "v 1\n");
+        assert_eq!(read(b"\xFE\xFF\0v\0 \x001"), "v 1");
+        assert_eq!(read(b"caf\xE9\r"), "café\n");
     }
 }

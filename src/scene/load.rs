@@ -2,13 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use glam::Affine3A;
-
 use crate::scene::builder::Builder;
 use crate::scene::bundled::{BUNDLED, bundled_name, load_bundled};
 use crate::scene::error::printable;
 use crate::scene::files::Files;
-use crate::scene::obj::{Placement, append_obj};
+use crate::scene::obj::append_obj;
+use crate::scene::placement::{Placement, Unit, Up, upright};
 use crate::scene::progress::{Progress, Reporter};
 use crate::scene::scene_file::{
     NamedCamera, NamedMoment, NamedOptions, SceneFileOptions, camera_table,
@@ -21,6 +20,11 @@ pub struct LoadOptions {
     /// Crease angle below which corners without a normal are smoothed, degrees, 0..180. `None`: by smoothing groups, or flat
     /// without them. The `smooth` key of a mesh in a scene file overrides it.
     pub smooth_deg: Option<f32>,
+    /// The axis of models that points up; the `up` key of a mesh in a scene file overrides it. Default: +Y.
+    pub up: Up,
+    /// The unit of models; the `unit` key of a mesh in a scene file overrides it. `None`: metres, with a warning if the size of a
+    /// model is implausible.
+    pub unit: Option<Unit>,
     /// Maximum edge length of an image, texels; larger images are not decoded. Default: 16 384.
     pub max_texture_edge: u32,
     /// Limit on the total size of decoded images, bytes. Default: 1 GiB.
@@ -40,6 +44,8 @@ impl Default for LoadOptions {
     fn default() -> Self {
         Self {
             smooth_deg: None,
+            up: Up::Y,
+            unit: None,
             max_texture_edge: 16_384,
             max_texture_bytes: 1 << 30,
             max_file_bytes: 1 << 32,
@@ -144,10 +150,11 @@ pub(super) fn load_from(
         Some("toml") => scene_file::append_scene(&mut builder, path, options)?,
         _ => {
             let placement = Placement {
-                world_from_mesh: Affine3A::IDENTITY,
+                world_from_mesh: upright(options.up, options.unit.unwrap_or(Unit::M)),
                 smooth_deg: options.smooth_deg,
             };
             let cameras = append_model(&mut builder, path, &placement)?;
+            builder.warn_of_size(path, options.unit.is_some());
             let first = cameras.first().map(|c| c.options.clone());
             SceneFileOptions {
                 options: first.map(camera_table).into_iter().collect(),

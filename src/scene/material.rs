@@ -191,9 +191,85 @@ pub(super) fn phong_of(surface: &MetallicRoughness) -> ([f32; 3], [f32; 3], f32)
     (diffuse, specular, shininess)
 }
 
+/// A surface in the specular-glossiness model of KHR_materials_pbrSpecularGlossiness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SpecularGlossiness {
+    /// Diffuse colour, linear RGB, 0..1.
+    pub diffuse: [f32; 3],
+    /// Reflectance at normal incidence, linear RGB, 0..1.
+    pub specular: [f32; 3],
+    /// 1 − perceptual roughness, 0..1.
+    pub glossiness: f32,
+}
+
+/// Reflectance at normal incidence of a dielectric of index 1.5.
+const DIELECTRIC: f32 = 0.04;
+
+/// Converts a specular-glossiness surface to ρ_d, ρ_s and p, by the rules of [`phong_of`]: ρ_s = g F0, and the diffuse colour
+/// loses what is reflected beyond the reflectance of a dielectric (the specification: c_diff = diffuse (1 − max F0); its conversion
+/// to a base colour divides by 1 − 0.04). What a rough surface does not reflect specularly it scatters.
+pub(super) fn phong_of_glossiness(surface: &SpecularGlossiness) -> ([f32; 3], [f32; 3], f32) {
+    let unit = |v: f32| {
+        if v.is_finite() {
+            v.clamp(0.0, 1.0)
+        } else {
+            0.0
+        }
+    };
+    let specular = surface.specular.map(unit);
+    let strongest = specular.into_iter().fold(0.0, f32::max);
+    let kept = ((1.0 - strongest) / (1.0 - DIELECTRIC)).min(1.0);
+    let gloss = unit(surface.glossiness) * unit(surface.glossiness);
+    let rough = MetallicRoughness {
+        base: [0.0; 3],
+        metallic: 0.0,
+        roughness: 1.0 - unit(surface.glossiness),
+        ior: 1.5,
+        specular: [1.0; 3],
+    };
+    let (_, _, shininess) = phong_of(&rough);
+    let scattered = |f0: f32| (1.0 - gloss) * (f0 - DIELECTRIC).max(0.0);
+    let diffuse =
+        std::array::from_fn(|i| unit(unit(surface.diffuse[i]) * kept + scattered(specular[i])));
+    (diffuse, specular.map(|f0| gloss * f0), shininess)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn glossiness_gives_what_roughness_gives() {
+        let gloss = |diffuse, specular, glossiness| {
+            phong_of_glossiness(&SpecularGlossiness {
+                diffuse,
+                specular,
+                glossiness,
+            })
+        };
+        let close = |a: ([f32; 3], [f32; 3], f32), b: ([f32; 3], [f32; 3], f32)| {
+            let colours = a.0.iter().chain(&a.1).zip(b.0.iter().chain(&b.1));
+            colours.into_iter().all(|(a, b)| (a - b).abs() < 1e-4) && (a.2 - b.2).abs() < 1e-3 * b.2
+        };
+        for roughness in [0.0, 0.3, 1.0] {
+            let plastic = MetallicRoughness {
+                roughness,
+                ..PLASTIC
+            };
+            let own = gloss(PLASTIC.base, [0.04; 3], 1.0 - roughness);
+            assert!(close(own, phong_of(&plastic)), "{roughness}: {own:?}");
+        }
+        let (diffuse, specular, _) = gloss([0.0; 3], [0.9, 0.6, 0.3], 1.0);
+        assert_eq!(
+            (diffuse, specular),
+            ([0.0; 3], [0.9, 0.6, 0.3]),
+            "a polished metal"
+        );
+        let (diffuse, ..) = gloss([0.0; 3], [0.9; 3], 0.0);
+        assert!((diffuse[0] - 0.86).abs() < 1e-6, "a rough metal scatters");
+        let (diffuse, specular, p) = gloss([f32::NAN; 3], [9.0; 3], f32::NAN);
+        assert!(diffuse[0] <= 1.0 && specular[0] == 0.0 && p == 1.0);
+    }
 
     const PLASTIC: MetallicRoughness = MetallicRoughness {
         base: [0.8, 0.4, 0.2],

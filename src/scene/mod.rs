@@ -1,7 +1,8 @@
 //! Models, materials, textures, cameras and scene files; independent of the device.
 //!
 //! [`load`] reads a scene file or a model into a [`Scene`]: all meshes in world space, in one arena of vertices and indices,
-//! ready for upload. World space is right-handed, in metres, with +Y up, +X east and −Z north.
+//! ready for upload. World space is right-handed, in metres, with +Y up, +X east and −Z north; it is read in `f64`. Positions are
+//! kept in `f32` relative to [`Scene::origin`], which is not zero for models with the coordinates of a map.
 
 mod bounds;
 mod builder;
@@ -17,16 +18,23 @@ mod glass;
 mod gltf;
 mod hills;
 mod load;
+mod losses;
 mod material;
 mod mesh;
+mod names;
+mod number;
 mod obj;
+mod origin;
+mod placement;
 mod progress;
 mod reflectance;
 mod scene_file;
+mod size;
 mod texture;
 
 use std::borrow::Cow;
 
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 pub use bounds::Bounds;
@@ -41,11 +49,13 @@ pub use error::SceneError;
 pub(crate) use error::shown;
 pub use hills::hills;
 pub use load::{LoadOptions, Loaded, load, load_with_progress};
+pub(crate) use losses::shortened;
 pub use material::{MAX_EMISSION, Material};
+pub use placement::{Unit, Up};
 pub use progress::Progress;
 pub use reflectance::{Mean, Reflectances};
 pub use scene_file::{NamedCamera, NamedMoment, NamedOptions};
-pub use texture::{Encoding, Texture};
+pub use texture::{Encoding, Texture, Wrap};
 
 use load::append_model;
 use material::bounded_emission;
@@ -56,7 +66,9 @@ const UNITLESS: f32 = 1.0;
 /// A scene: one arena of vertices, parts that draw ranges of it, materials and textures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// Vertex positions in world space, metres.
+    /// The point of world space that the positions are relative to, metres: zero, unless the model lies far from the world's origin.
+    pub origin: DVec3,
+    /// Vertex positions relative to `origin`, with the axes of world space, metres.
     pub positions: Vec<[f32; 3]>,
     /// Unit normals in world space, one per position.
     pub normals: Vec<[f32; 3]>,
@@ -75,7 +87,7 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Textures, indexed by the texture fields of [`Material`].
     pub textures: Vec<Texture>,
-    /// Bounds of all parts, metres.
+    /// Bounds of all parts, relative to `origin`, metres.
     pub bounds: Bounds,
     /// Import warnings, one line each.
     pub warnings: Vec<String>,
@@ -103,6 +115,7 @@ pub struct Part {
 impl Default for Scene {
     fn default() -> Self {
         Self {
+            origin: DVec3::ZERO,
             positions: Vec::new(),
             normals: Vec::new(),
             texcoords: Vec::new(),

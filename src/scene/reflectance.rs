@@ -175,11 +175,12 @@ fn barycentric_points(n: u32, spread: bool) -> impl Iterator<Item = [f32; 3]> {
     })
 }
 
-/// The texel at texture coordinates, which repeat.
+/// The texel at texture coordinates.
 fn nearest(texture: &Texture, uv: Vec2) -> [f32; 4] {
-    let at = |v: f32, n: u32| ((v - v.floor()) * n as f32) as u32;
-    let x = at(uv.x, texture.width).min(texture.width - 1);
-    let y = at(uv.y, texture.height).min(texture.height - 1);
+    let [u, v] = texture.wrap;
+    let at = |v: f32, n: u32| (v * n as f32).floor() as i64;
+    let x = u.texel(at(uv.x, texture.width), texture.width);
+    let y = v.texel(at(uv.y, texture.height), texture.height);
     texture.linear(x, y)
 }
 
@@ -209,6 +210,7 @@ mod tests {
                 height: size[1],
                 rgba8,
                 encoding: Encoding::Srgb,
+                wrap: Default::default(),
             }],
             ..Scene::default()
         }

@@ -5,16 +5,24 @@
 
 use std::path::{Path, PathBuf};
 
-use glam::{Affine3A, EulerRot, Mat3, Quat, Vec3};
+use glam::{DAffine3, DQuat, DVec3, EulerRot};
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use crate::scene::builder::Builder;
 use crate::scene::error::SceneError;
-use crate::scene::obj::Placement;
+use crate::scene::placement::{Placement, Unit, Up, upright};
 use crate::scene::{LoadOptions, append_model};
 
-const MESH_KEYS: &[&str] = &["file", "translate", "rotate", "scale", "up", "smooth"];
+const MESH_KEYS: &[&str] = &[
+    "file",
+    "translate",
+    "rotate",
+    "scale",
+    "up",
+    "unit",
+    "smooth",
+];
 
 /// Pairs of option name and value, as on the command line.
 type Pairs = Vec<(String, String)>;
@@ -67,6 +75,8 @@ pub(super) fn append_scene(
         builder.progress = whole.part(i, meshes.len());
         append_model(builder, &folder.join(&mesh.file), &mesh.placement)?;
     }
+    let has_unit = defaults.unit.is_some() || meshes.iter().any(|mesh| mesh.has_unit);
+    builder.warn_of_size(path, has_unit);
     Ok(SceneFileOptions {
         options,
         cameras,
@@ -108,6 +118,8 @@ fn known_keys(table: &Table, place: &str, known: &[&str]) -> Result<(), String> 
 struct Mesh {
     file: PathBuf,
     placement: Placement,
+    /// Whether its size is meant as it is.
+    has_unit: bool,
 }
 
 fn meshes(table: &Table, defaults: &LoadOptions) -> Result<Vec<Mesh>, String> {
@@ -142,39 +154,57 @@ fn mesh(entry: &Value, defaults: &LoadOptions) -> Result<Mesh, String> {
         Some(value) => Some(
             number(value)
                 .filter(|d| (0.0..=180.0).contains(d))
-                .ok_or("smooth must be 0..180 degrees")?,
+                .ok_or("smooth must be 0..180 degrees")? as f32,
         ),
         None => defaults.smooth_deg,
     };
     Ok(Mesh {
         file,
         placement: Placement {
-            world_from_mesh: transform(table)?,
+            world_from_mesh: transform(table, defaults)?,
             smooth_deg,
         },
+        has_unit: ["unit", "scale"].iter().any(|key| table.contains_key(*key)),
     })
 }
 
-/// Applies `up`, then `scale`, then `rotate` about x, y and z in this order, then `translate`.
-fn transform(table: &Table) -> Result<Affine3A, String> {
-    let translate = vector(table, "translate")?.unwrap_or(Vec3::ZERO);
-    let rotate = vector(table, "rotate")?.unwrap_or(Vec3::ZERO) * 1f32.to_radians();
+/// Applies `up` and `unit`, then `scale`, then `rotate` about x, y and z in this order, then `translate`, metres.
+fn transform(table: &Table, defaults: &LoadOptions) -> Result<DAffine3, String> {
+    let translate = vector(table, "translate")?.unwrap_or(DVec3::ZERO);
+    let rotate = vector(table, "rotate")?.unwrap_or(DVec3::ZERO) * 1f64.to_radians();
     let scale = scale(table)?;
-    let upright = match table.get("up").map(|up| up.as_str()) {
-        None | Some(Some("y")) => Mat3::IDENTITY,
-        Some(Some("z")) => Mat3::from_cols(Vec3::X, Vec3::NEG_Z, Vec3::Y),
+    let up = match table.get("up").map(|up| up.as_str()) {
+        None => defaults.up,
+        Some(Some("y")) => Up::Y,
+        Some(Some("z")) => Up::Z,
         Some(_) => return Err("up of a [[mesh]] must be \"y\" or \"z\"".to_owned()),
     };
-    let rotation = Quat::from_euler(EulerRot::ZYX, rotate.z, rotate.y, rotate.x);
-    let placed = Affine3A::from_scale_rotation_translation(scale, rotation, translate);
-    Ok(placed * Affine3A::from_mat3(upright))
+    let unit = match table.get("unit").map(|unit| unit.as_str()) {
+        None => defaults.unit.unwrap_or(Unit::M),
+        Some(name) => unit(name.unwrap_or_default())
+            .ok_or("unit of a [[mesh]] must be \"mm\", \"cm\", \"m\", \"in\" or \"ft\"")?,
+    };
+    let rotation = DQuat::from_euler(EulerRot::ZYX, rotate.z, rotate.y, rotate.x);
+    let placed = DAffine3::from_scale_rotation_translation(scale, rotation, translate);
+    Ok(placed * upright(up, unit))
 }
 
-fn scale(table: &Table) -> Result<Vec3, String> {
+fn unit(name: &str) -> Option<Unit> {
+    Some(match name {
+        "mm" => Unit::Mm,
+        "cm" => Unit::Cm,
+        "m" => Unit::M,
+        "in" => Unit::In,
+        "ft" => Unit::Ft,
+        _ => return None,
+    })
+}
+
+fn scale(table: &Table) -> Result<DVec3, String> {
     let scale = match table.get("scale") {
-        None => Vec3::ONE,
-        Some(Value::Array(_)) => vector(table, "scale")?.unwrap_or(Vec3::ONE),
-        Some(value) => Vec3::splat(number(value).ok_or("scale must be a number or three")?),
+        None => DVec3::ONE,
+        Some(Value::Array(_)) => vector(table, "scale")?.unwrap_or(DVec3::ONE),
+        Some(value) => DVec3::splat(number(value).ok_or("scale must be a number or three")?),
     };
     // Outside this range a model is a point or overflows.
     let sound = scale.abs().min_element() >= 1e-6 && scale.abs().max_element() <= 1e6;
@@ -183,22 +213,22 @@ fn scale(table: &Table) -> Result<Vec3, String> {
         .ok_or_else(|| "scale must be 0.000001 to 1000000 (negative mirrors)".to_owned())
 }
 
-fn number(value: &Value) -> Option<f32> {
+fn number(value: &Value) -> Option<f64> {
     let number = value
         .as_float()
-        .or_else(|| value.as_integer().map(|i| i as f64))? as f32;
+        .or_else(|| value.as_integer().map(|i| i as f64))?;
     number.is_finite().then_some(number)
 }
 
-fn vector(table: &Table, key: &str) -> Result<Option<Vec3>, String> {
+fn vector(table: &Table, key: &str) -> Result<Option<DVec3>, String> {
     let Some(value) = table.get(key) else {
         return Ok(None);
     };
-    let numbers: Option<Vec<f32>> = value
+    let numbers: Option<Vec<f64>> = value
         .as_array()
         .and_then(|list| list.iter().map(number).collect());
     match numbers.as_deref() {
-        Some([x, y, z]) => Ok(Some(Vec3::new(*x, *y, *z))),
+        Some([x, y, z]) => Ok(Some(DVec3::new(*x, *y, *z))),
         _ => Err(format!(
             "{key} must be three numbers, for instance [0, 1.5, 0]"
         )),

@@ -1,3 +1,5 @@
+use glam::Vec3;
+
 use super::*;
 use crate::scene::Loaded;
 use crate::scene::files::Files;
@@ -29,6 +31,10 @@ fn transforms_apply_in_the_documented_order() {
     assert_eq!(positions("translate = [1, 2, 3]")[0], [2.0, 2.0, 3.0]);
     assert_eq!(positions("scale = 2")[1], [0.0, 0.0, 4.0]);
     assert_eq!(positions("up = \"z\"")[1], [0.0, 2.0, 0.0]);
+    assert_eq!(
+        positions("unit = \"cm\"\nscale = 2\ntranslate = [0, 1, 0]")[1],
+        [0.0, 1.0, 0.04]
+    );
     let turned = positions("rotate = [0, 90, 0]\ntranslate = [0, 0, 5]")[0];
     assert!(
         (Vec3::from(turned) - Vec3::new(0.0, 0.0, 4.0)).length() < 1e-6,
@@ -110,6 +116,7 @@ fn nonsense_is_named() {
             "translate must be three numbers",
         ),
         (format!("{mesh}up = \"x\""), "up of a [[mesh]]"),
+        (format!("{mesh}unit = \"km\""), "unit of a [[mesh]]"),
         (format!("{mesh}smooth = 300"), "smooth must be"),
         (
             format!("{mesh}[sky]\nturbidity = [[1]]"),

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use glam::Vec3;
+use glam::DVec3;
 use thiserror::Error;
 
 use super::Sensor;
@@ -39,7 +39,7 @@ pub enum GridError {
 /// Largest file that is read, bytes: some ten million sensors.
 const MAX_BYTES: u64 = 1 << 30;
 
-/// Reads the sensors of a file, in its order.
+/// Reads the sensors of a file, in its order, relative to the `origin` of a scene.
 ///
 /// A line has three numbers, a position in metres, and may have three more, a normal of any length (up without them). Numbers are
 /// separated by blanks or commas; a first line of words names columns and is left out; lines after `#` are comments. A `.pts`
@@ -47,7 +47,7 @@ const MAX_BYTES: u64 = 1 << 30;
 ///
 /// # Errors
 /// A file that cannot be read, a line that is no sensor, or no sensor at all.
-pub fn read_grid(path: &Path) -> Result<Vec<Sensor>, GridError> {
+pub fn read_grid(path: &Path, origin: DVec3) -> Result<Vec<Sensor>, GridError> {
     let unreadable = |reason: String| GridError::Unreadable {
         path: path.to_owned(),
         reason,
@@ -61,7 +61,7 @@ pub fn read_grid(path: &Path) -> Result<Vec<Sensor>, GridError> {
     let is_z_up = path
         .extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("pts"));
-    parse(text.trim_start_matches('\u{feff}'), is_z_up).map_err(|fault| match fault {
+    parse(text.trim_start_matches('\u{feff}'), is_z_up, origin).map_err(|fault| match fault {
         Some((line, what)) => GridError::Line {
             path: path.to_owned(),
             line,
@@ -74,7 +74,7 @@ pub fn read_grid(path: &Path) -> Result<Vec<Sensor>, GridError> {
 }
 
 /// Sensors of a text; of an error the line and what is wrong, or nothing where no sensor is.
-fn parse(text: &str, is_z_up: bool) -> Result<Vec<Sensor>, Option<(usize, String)>> {
+fn parse(text: &str, is_z_up: bool, origin: DVec3) -> Result<Vec<Sensor>, Option<(usize, String)>> {
     let mut sensors = Vec::new();
     let mut has_header = false;
     for (at, line) in text.lines().enumerate() {
@@ -91,7 +91,7 @@ fn parse(text: &str, is_z_up: bool) -> Result<Vec<Sensor>, Option<(usize, String
             has_header = true;
             continue;
         }
-        sensors.push(sensor(&words, is_z_up).map_err(|what| Some((at + 1, what)))?);
+        sensors.push(sensor(&words, is_z_up, origin).map_err(|what| Some((at + 1, what)))?);
     }
     if sensors.is_empty() {
         return Err(None);
@@ -99,15 +99,15 @@ fn parse(text: &str, is_z_up: bool) -> Result<Vec<Sensor>, Option<(usize, String
     Ok(sensors)
 }
 
-fn sensor(words: &[&str], is_z_up: bool) -> Result<Sensor, String> {
-    let number = |word: &&str| match word.parse::<f32>() {
+fn sensor(words: &[&str], is_z_up: bool, origin: DVec3) -> Result<Sensor, String> {
+    let number = |word: &&str| match word.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
         _ => Err(format!("\"{word}\" is no number")),
     };
-    let values: Vec<f32> = words.iter().map(number).collect::<Result<_, _>>()?;
+    let values: Vec<f64> = words.iter().map(number).collect::<Result<_, _>>()?;
     let (position, normal) = match values[..] {
-        [x, y, z] => (Vec3::new(x, y, z), None),
-        [x, y, z, a, b, c] => (Vec3::new(x, y, z), Some(Vec3::new(a, b, c))),
+        [x, y, z] => (DVec3::new(x, y, z), None),
+        [x, y, z, a, b, c] => (DVec3::new(x, y, z), Some(DVec3::new(a, b, c))),
         _ => {
             return Err(format!(
                 "{} numbers; a sensor is x y z, or x y z and a normal",
@@ -115,22 +115,22 @@ fn sensor(words: &[&str], is_z_up: bool) -> Result<Sensor, String> {
             ));
         }
     };
-    let world = |v: Vec3| {
+    let world = |v: DVec3| {
         if is_z_up {
-            Vec3::new(v.x, v.z, -v.y)
+            DVec3::new(v.x, v.z, -v.y)
         } else {
             v
         }
     };
     let normal = match normal {
-        None => Vec3::Y,
+        None => DVec3::Y,
         Some(normal) => world(normal)
             .try_normalize()
             .ok_or("a normal of no length; give a direction, or leave it out for up")?,
     };
     Ok(Sensor {
-        position: world(position),
-        normal,
+        position: (world(position) - origin).as_vec3(),
+        normal: normal.as_vec3(),
     })
 }
 
@@ -139,7 +139,7 @@ mod tests {
     use super::*;
 
     fn points(text: &str, is_z_up: bool) -> Vec<([f32; 3], [f32; 3])> {
-        let sensors = parse(text, is_z_up).expect("sensors");
+        let sensors = parse(text, is_z_up, DVec3::ZERO).expect("sensors");
         let plain = sensors
             .iter()
             .map(|s| (s.position.to_array(), s.normal.to_array()));
@@ -164,8 +164,15 @@ mod tests {
     }
 
     #[test]
+    fn points_on_a_map_keep_their_digits() {
+        let origin = DVec3::new(5e5, 0.0, -6.1e6);
+        let sensors = parse("500001.125 6100002.0625 0.8", true, origin).expect("a sensor");
+        assert_eq!(sensors[0].position.to_array(), [1.125, 0.8, -2.0625]);
+    }
+
+    #[test]
     fn lines_that_are_no_sensors_are_named() {
-        let fault = |text| parse(text, false).expect_err("a fault");
+        let fault = |text| parse(text, false, DVec3::ZERO).expect_err("a fault");
         assert_eq!(fault("x y z\n# nothing\n"), None);
         let line = |text| fault(text).expect("a line");
         assert_eq!(line("1 2 3\n1 2\n").0, 2);

@@ -21,7 +21,7 @@ use crate::daylight::colour::luminance;
 /// A point and the side from which light is counted.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sensor {
-    /// World space, metres.
+    /// Relative to the scene's origin, metres.
     pub position: Vec3,
     /// Unit vector.
     pub normal: Vec3,

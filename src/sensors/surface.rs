@@ -338,17 +338,15 @@ pub(super) fn lifted(position: Vec3, normal: Vec3) -> Vec3 {
     position + OFFSET * (1.0 + position.abs().max_element()) * normal
 }
 
-/// Bilinear lookup of the finest level, repeating, in linear light.
+/// Bilinear lookup of the finest level in linear light.
 fn sample(texture: &Texture, uv: Vec2) -> [f32; 4] {
     let size = Vec2::new(texture.width as f32, texture.height as f32);
-    let at = (uv - uv.floor()) * size - 0.5;
+    let at = uv * size - 0.5;
     let (low, share) = (at.floor(), at - at.floor());
     let texel = |dx: f32, dy: f32| {
-        let wrap = |v: f32, n: u32| (v as i64).rem_euclid(i64::from(n)) as u32;
-        let (x, y) = (
-            wrap(low.x + dx, texture.width),
-            wrap(low.y + dy, texture.height),
-        );
+        let [u, v] = texture.wrap;
+        let x = u.texel((low.x + dx) as i64, texture.width);
+        let y = v.texel((low.y + dy) as i64, texture.height);
         texture.linear(x, y)
     };
     let (a, b, c, d) = (

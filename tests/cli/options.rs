@@ -469,10 +469,6 @@ fn bad_scenes_end_with_1_and_touch_nothing() {
     place.put("old.png", "old");
     place.put("empty.obj", "");
     place.put("cut.obj", &OBJ[..27]);
-    place.put(
-        "cut-vertex.obj",
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nv 0 1",
-    );
     place.put("model.gltf", "{}");
     place.put("text.txt", "v 0 0 0");
     fs::create_dir(place.path().join("folder")).expect("a folder");
@@ -496,17 +492,16 @@ fn bad_scenes_end_with_1_and_touch_nothing() {
     place.put("gone.toml", "[[mesh]]\nfile = \"gone.obj\"\n");
     place.put("none.toml", "");
     let before = place.contents();
-    let cases: [(&[&str], &[&str]); 18] = [
+    let cases: [(&[&str], &[&str]); 17] = [
         (&["no.obj"], &["no.obj", "no such file"]),
         (&["m.obj/x.obj"], &["m.obj/x.obj", "no such file"]),
         (&["folder"], &["folder is a directory", ".obj"]),
         (&["folder.obj"], &["folder.obj is a directory"]),
         (&["empty.obj"], &["empty.obj has no triangles"]),
-        (&["cut.obj"], &["cut.obj, line 3"]),
-        (&["cut-vertex.obj"], &["cut-vertex.obj, line 5"]),
+        (&["cut.obj"], &["cut.obj has no triangles", "line 3"]),
         (
             &["model.gltf"],
-            &["model.gltf", "not a usable glTF", "export it again"],
+            &["model.gltf has no triangles", "export it"],
         ),
         (&["text.txt"], &["text.txt", ".obj"]),
         (&["key.toml"], &["key.toml", "\"turbidty\"", "turbidity"]),
@@ -569,7 +564,7 @@ fn outputs_that_cannot_be_written_are_named_before_the_work() {
 }
 
 #[test]
-fn missing_helpers_are_warnings_that_quiet_silences() {
+fn missing_helpers_are_warnings_that_no_warnings_silences() {
     let place = Place::new();
     place.put("nomtl.obj", &OBJ.replace("m.mtl", "gone.mtl"));
     place.put("notex.obj", &OBJ.replace("m.mtl", "t.mtl"));
@@ -582,9 +577,29 @@ fn missing_helpers_are_warnings_that_quiet_silences() {
         }
         png(&place.path().join("a.png"));
         fs::remove_file(place.path().join("a.png")).expect("it was there");
-        place.render(&[scene, "-o", "a.png", "--quiet"]).silently();
+        let quiet = place.render(&[scene, "-o", "a.png", "--quiet"]).succeeded();
+        assert_eq!(quiet.stderr, ended.stderr, "quiet hides progress");
+        place
+            .render(&[scene, "-o", "a.png", "--no-warnings"])
+            .silently();
         png(&place.path().join("a.png"));
+        fs::remove_file(place.path().join("a.png")).expect("it was there");
+        place
+            .render(&[scene, "-o", "a.png", "--strict"])
+            .failed(1, &["error: ", part, "--strict", "nothing is written"]);
+        assert!(!place.path().join("a.png").exists(), "nothing is written");
     }
+    place
+        .render(&["m.obj", "-o", "a.png", "--strict"])
+        .silently();
+    // Cut off within a vertex that no face has.
+    place.put("vertex.obj", &format!("{OBJ}v 0 1"));
+    let ended = place.render(&["vertex.obj", "-o", "a.png"]).succeeded();
+    assert!(
+        ended.stderr.contains("needs three numbers"),
+        "{}",
+        ended.stderr
+    );
     // Cut off within its last face: the complete faces are drawn.
     place.put("cut.obj", &OBJ[..OBJ.len() - 6]);
     let ended = place.render(&["cut.obj", "-o", "a.png"]).succeeded();
@@ -592,7 +607,12 @@ fn missing_helpers_are_warnings_that_quiet_silences() {
     let hazy = ["m.obj", "-o", "a.png", "--turbidity", "90"];
     let ended = place.render(&hazy).succeeded();
     assert!(ended.stderr.contains("turbidity"), "{}", ended.stderr);
-    place.render(&[&hazy[..], &["--quiet"]].concat()).silently();
+    place
+        .render(&[&hazy[..], &["--no-warnings"]].concat())
+        .silently();
+    place
+        .render(&[&hazy[..], &["--strict"]].concat())
+        .failed(1, &["turbidity", "--strict"]);
 }
 
 #[test]

@@ -104,6 +104,7 @@ fn an_emissive_texture_lights_where_it_is_bright() {
         height: 1,
         rgba8: texels.flat_map(|v: u8| [v, v, v, 255]).collect(),
         encoding: Encoding::Srgb,
+        wrap: Default::default(),
     }];
     let whole = at_points(&scene, 1 << 16);
     // Texture coordinates of the square run along x.

@@ -19,6 +19,7 @@ fn map_of(direction: Vec3) -> Texture {
         height: 2,
         rgba8: [x, y, z, 255].repeat(4),
         encoding: Encoding::Linear,
+        wrap: Default::default(),
     }
 }
 

@@ -54,6 +54,7 @@ pub fn glossy_scene() -> Scene {
             .flat_map(|i: u8| shade((i ^ (i >> 4)) & 1))
             .collect(),
         encoding: Encoding::Srgb,
+        wrap: Default::default(),
     };
     scene.textures = vec![
         texture("chequers", |odd| [200 * odd + 40, 150, 90 + 100 * odd, 255]),

@@ -2,8 +2,8 @@
 
 use crate::gpu::Device;
 use skylight::gpu::{
-    Blend, BufferKind, ContextOptions, Depth, Format, Image, ImageDesc, Load, Optional, Pipeline,
-    PipelineDesc, Recorder, Sampler, Timing, shaders, upload_buffer, upload_texture,
+    Blend, BufferKind, ContextOptions, Depth, Format, Image, ImageDesc, Load, Optional, Outside,
+    Pipeline, PipelineDesc, Recorder, Sampler, Timing, shaders, upload_buffer, upload_texture,
 };
 use skylight::passes::picture::accumulate;
 use skylight::passes::sun_shadow::map::CutOutPush;
@@ -61,7 +61,11 @@ fn draw_uploaded_quad(device: &mut Device, size: u32, opaque: u32) -> Vec<f32> {
             .push(&push)
             .depth(&target, Load::Clear([0.0; 4]))
             .draws(|draws| {
-                draws.texture("diffuse_map", &texture, Sampler::Repeat);
+                draws.texture(
+                    "diffuse_map",
+                    &texture,
+                    Sampler::Surface(Outside::Repeat, Outside::Repeat),
+                );
                 draws.geometry(&[&positions, &uvs], &indices);
                 draws.indexed(0, 6);
             });

@@ -3,6 +3,8 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod breaks;
+mod cases;
 mod emission;
 mod files;
 mod fuzz;

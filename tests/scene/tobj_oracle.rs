@@ -92,7 +92,7 @@ fn ours(scene: &Scene, compared: Compared) -> HashMap<Triangle, Vec<Normals>> {
             let white = [u16::MAX; 4];
             let corners = vertices.map(|v| {
                 let colour = scene.colours.get(v).copied().unwrap_or(white);
-                corner(compared, scene.positions[v], scene.texcoords[v], colour)
+                corner(compared, in_file(scene, v), scene.texcoords[v], colour)
             });
             let normals = vertices.map(|v| bits(scene.normals[v]));
             let key = (named(compared, name), corners);
@@ -209,6 +209,16 @@ fn theirs(
         }
     }
     Ok(found)
+}
+
+/// A position in the coordinates of the file.
+fn in_file(scene: &Scene, vertex: usize) -> [f32; 3] {
+    let position = scene.positions[vertex];
+    if scene.origin == DVec3::ZERO {
+        return position;
+    }
+    let relative = DVec3::from(position.map(f64::from));
+    (scene.origin + relative).as_vec3().into()
 }
 
 /// Area vector of a triangle, doubled: along the normal, m².

@@ -103,15 +103,16 @@ impl App {
             return;
         };
         self.interface.loading(None);
-        let (user, size) = (&self.user, window_size(stage));
+        let (user, options, size) = (&self.user, &self.options, window_size(stage));
         let opened = match *result {
             Ok(loaded) => stage.work(|rec| Document::open(rec, path.clone(), loaded, user, size)),
             Err(error) => Err(error.into()),
         };
+        let opened = opened.and_then(|document| document.job.check_strict().map(|()| document));
         match opened {
             Ok(document) => {
-                for warning in document.job.warnings() {
-                    self.interface.say(warning);
+                for warning in document.job.warnings().filter(|_| !options.no_warnings) {
+                    self.interface.warn(warning);
                 }
                 stage
                     .window

@@ -303,7 +303,7 @@ fn named_cameras(loaded: &Loaded, user: &OptionValues) -> Viewpoints {
         user.remove(&["eye", "target", "fov"]);
         user.set("camera", name);
         let options = Options::resolve(&user, loaded).ok()?;
-        Some(options.camera(&loaded.scene.bounds))
+        Some(options.camera(&loaded.scene.bounds, loaded.scene.origin))
     };
     let list = loaded.cameras.iter().filter_map(|named| {
         Some(Viewpoint {

@@ -176,7 +176,7 @@ impl ApplicationHandler<Message> for App {
         }
         if let Some(document) = &self.document
             && let Err(error) = super::resume::keep(document)
-            && !self.options.quiet
+            && !self.options.no_warnings
         {
             eprintln!("warning: {error}");
         }

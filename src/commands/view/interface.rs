@@ -58,7 +58,7 @@ pub(super) struct Interface {
 }
 
 impl Interface {
-    /// Starts with the panel open and everything else closed. `quiet` suppresses warnings.
+    /// Starts with the panel open and everything else closed. `quiet` suppresses notices.
     pub(super) fn new(quiet: bool) -> Self {
         Self {
             is_visible: true,
@@ -81,6 +81,11 @@ impl Interface {
     /// Shows a notice for a few seconds.
     pub(super) fn say(&mut self, text: &str) {
         self.notes.say(text);
+    }
+
+    /// Shows a warning for a few seconds, also with `--quiet`.
+    pub(super) fn warn(&mut self, text: &str) {
+        self.notes.warn(text);
     }
 
     /// Shows an error until the user dismisses it.

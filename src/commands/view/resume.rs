@@ -41,7 +41,10 @@ pub(super) fn keep(document: &Document) -> Result<()> {
         reason,
     };
     let camera = document.controls.camera();
-    let options = document.job.settings.with_camera(&camera);
+    let options = document
+        .job
+        .settings
+        .with_camera(&camera, document.job.scene.origin);
     let text = to_text(&options).map_err(failed)?;
     if let Some(folder) = file.parent() {
         std::fs::create_dir_all(folder).map_err(|e| failed(e.to_string()))?;

@@ -318,7 +318,7 @@ impl Context {
     }
 
     pub(in crate::gpu) fn sampler(&self, sampler: Sampler) -> vk::Sampler {
-        self.samplers[sampler as usize]
+        self.samplers[sampler.index()]
     }
 
     /// Sets the debug name of a handle, shown in validation messages and captures.

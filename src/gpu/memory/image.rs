@@ -412,15 +412,50 @@ pub enum Sampler {
     Nearest,
     /// Bilinear (seamless across cube faces), trilinear between mip levels, clamped to the edge.
     Linear,
-    /// Trilinear, repeating; for surface textures.
-    Repeat,
+    /// Trilinear, for surface textures, with what is outside of the picture along u and v.
+    Surface(Outside, Outside),
 }
 
-const SAMPLERS: [Sampler; 3] = [Sampler::Nearest, Sampler::Linear, Sampler::Repeat];
+/// What a surface texture shows outside of its picture, along one side.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Outside {
+    /// The picture again.
+    Repeat,
+    /// The picture mirrored, then again.
+    Mirror,
+    /// The edge.
+    Clamp,
+}
+
+const SAMPLERS: [Sampler; 11] = {
+    use Outside::{Clamp, Mirror, Repeat};
+    [
+        Sampler::Nearest,
+        Sampler::Linear,
+        Sampler::Surface(Repeat, Repeat),
+        Sampler::Surface(Repeat, Mirror),
+        Sampler::Surface(Repeat, Clamp),
+        Sampler::Surface(Mirror, Repeat),
+        Sampler::Surface(Mirror, Mirror),
+        Sampler::Surface(Mirror, Clamp),
+        Sampler::Surface(Clamp, Repeat),
+        Sampler::Surface(Clamp, Mirror),
+        Sampler::Surface(Clamp, Clamp),
+    ]
+};
 
 impl Sampler {
     /// Number of samplers.
     pub(in crate::gpu) const COUNT: usize = SAMPLERS.len();
+
+    /// Its place among all samplers.
+    pub(in crate::gpu) fn index(self) -> usize {
+        match self {
+            Self::Nearest => 0,
+            Self::Linear => 1,
+            Self::Surface(u, v) => 2 + 3 * u as usize + v as usize,
+        }
+    }
 }
 
 /// Creates all samplers, in the order of [`Sampler`].
@@ -439,18 +474,24 @@ pub(in crate::gpu) fn create_samplers(
 fn sampler_info(sampler: Sampler) -> vk::SamplerCreateInfo<'static> {
     let (filter, mipmap) = match sampler {
         Sampler::Nearest => (vk::Filter::NEAREST, vk::SamplerMipmapMode::NEAREST),
-        Sampler::Linear | Sampler::Repeat => (vk::Filter::LINEAR, vk::SamplerMipmapMode::LINEAR),
+        Sampler::Linear | Sampler::Surface(..) => {
+            (vk::Filter::LINEAR, vk::SamplerMipmapMode::LINEAR)
+        }
     };
-    let address = match sampler {
-        Sampler::Repeat => vk::SamplerAddressMode::REPEAT,
-        Sampler::Nearest | Sampler::Linear => vk::SamplerAddressMode::CLAMP_TO_EDGE,
+    let [u, v] = match sampler {
+        Sampler::Surface(u, v) => [u, v].map(|outside| match outside {
+            Outside::Repeat => vk::SamplerAddressMode::REPEAT,
+            Outside::Mirror => vk::SamplerAddressMode::MIRRORED_REPEAT,
+            Outside::Clamp => vk::SamplerAddressMode::CLAMP_TO_EDGE,
+        }),
+        Sampler::Nearest | Sampler::Linear => [vk::SamplerAddressMode::CLAMP_TO_EDGE; 2],
     };
     vk::SamplerCreateInfo::default()
         .mag_filter(filter)
         .min_filter(filter)
         .mipmap_mode(mipmap)
-        .address_mode_u(address)
-        .address_mode_v(address)
-        .address_mode_w(address)
+        .address_mode_u(u)
+        .address_mode_v(v)
+        .address_mode_w(v)
         .max_lod(vk::LOD_CLAMP_NONE)
 }

@@ -6,7 +6,7 @@ use glam::{UVec2, Vec2, Vec3};
 
 use crate::gpu::{
     Blend, Context, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Recorder,
-    Result, Sampler, shaders,
+    Result, shaders,
 };
 use crate::gpu_struct;
 
@@ -156,7 +156,7 @@ fn record_cut_outs(
                 draws.window(tile.origin, [tile.edge; 2], tile.rectangle());
                 geometry.draw_cut_outs(draws, &tile.cull(), |draws, bound| {
                     let map = bound.diffuse_map.unwrap_or(bound.white);
-                    draws.texture("diffuse_map", map, Sampler::Repeat);
+                    draws.texture("diffuse_map", map.image, map.sampler);
                     draws.push(&CutOutPush {
                         shadow_from_world: tile.view.shadow_from_world.to_cols_array_2d(),
                         cutoff: bound.cutoff,

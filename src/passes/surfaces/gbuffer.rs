@@ -306,7 +306,7 @@ impl Gbuffer {
                     geometry.draw_detailed(draws, &cull, |draws, bound| {
                         switch(draws, &self.detailed, &mut current, bound.kind);
                         let normal_map = bound.normal_map.unwrap_or(bound.white);
-                        draws.texture("normal_map", normal_map, Sampler::Repeat);
+                        draws.texture("normal_map", normal_map.image, normal_map.sampler);
                         bind(draws, bound);
                     });
                 });
@@ -331,11 +331,11 @@ fn switch<'r>(
 fn bind(draws: &mut Draws<'_, '_>, bound: &Bound<'_>, has_emission: bool) {
     let maps = [bound.diffuse_map, bound.specular_map];
     let [diffuse_map, specular_map] = maps.map(|map| map.unwrap_or(bound.white));
-    draws.texture("diffuse_map", diffuse_map, Sampler::Repeat);
-    draws.texture("specular_map", specular_map, Sampler::Repeat);
+    draws.texture("diffuse_map", diffuse_map.image, diffuse_map.sampler);
+    draws.texture("specular_map", specular_map.image, specular_map.sampler);
     if has_emission {
         let map = bound.emissive_map.unwrap_or(bound.white);
-        draws.texture("emissive_map", map, Sampler::Repeat);
+        draws.texture("emissive_map", map.image, map.sampler);
     }
     draws.push(&Push::of(bound));
 }

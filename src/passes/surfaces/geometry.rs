@@ -6,8 +6,10 @@ use std::ops::Range;
 use glam::Vec3;
 
 use crate::daylight::glass::internal_transmittance;
-use crate::gpu::{Buffer, BufferKind, Draws, Image, Recorder, Result, upload_buffer};
-use crate::scene::{self, Bounds, Cluster, Layout, Scene};
+use crate::gpu::{
+    Buffer, BufferKind, Draws, Image, Outside, Recorder, Result, Sampler, upload_buffer,
+};
+use crate::scene::{self, Bounds, Cluster, Layout, Scene, Texture, Wrap};
 
 use crate::passes::surfaces::culling::{Cull, Runs};
 use crate::passes::surfaces::upload::{surface, upload, upload_details, upload_materials, white};
@@ -90,13 +92,13 @@ pub struct Bound<'g> {
     /// ρ_d, 0..1; a factor on its map.
     pub diffuse: Vec3,
     /// Map of ρ_d.
-    pub diffuse_map: Option<&'g Image>,
+    pub diffuse_map: Option<Map<'g>>,
     /// Map of the factor on ρ_s.
-    pub specular_map: Option<&'g Image>,
+    pub specular_map: Option<Map<'g>>,
     /// Normal map.
-    pub normal_map: Option<&'g Image>,
+    pub normal_map: Option<Map<'g>>,
     /// Map of the factor on L_e.
-    pub emissive_map: Option<&'g Image>,
+    pub emissive_map: Option<Map<'g>>,
     /// Factor on the slopes of the normal map.
     pub normal_scale: f32,
     /// Whether it has a ρ_s.
@@ -104,7 +106,16 @@ pub struct Bound<'g> {
     /// Alpha of the map of ρ_d below which fragments are discarded; 0: no alpha test.
     pub cutoff: f32,
     /// Placeholder for missing maps.
-    pub white: &'g Image,
+    pub white: Map<'g>,
+}
+
+/// A texture, and how it is looked up.
+#[derive(Clone, Copy)]
+pub struct Map<'g> {
+    /// The texture.
+    pub image: &'g Image,
+    /// Its sampler.
+    pub sampler: Sampler,
 }
 
 /// The uploaded scene.
@@ -124,7 +135,7 @@ pub struct Geometry {
     /// Cluster ranges of opaque casters, in index order.
     casting: Vec<Range<usize>>,
     surfaces: Vec<Surface>,
-    textures: Vec<Image>,
+    textures: Vec<(Image, Sampler)>,
     white: Image,
     is_specular: bool,
     materials: Image,
@@ -143,10 +154,10 @@ impl Geometry {
             upload_buffer(recorder, name, BufferKind::Vertex, bytes)
         };
         let surfaces: Vec<Surface> = scene.materials.iter().map(surface).collect();
-        let textures: Result<Vec<Image>> = scene
+        let textures: Result<Vec<_>> = scene
             .textures
             .iter()
-            .map(|texture| upload(recorder, texture))
+            .map(|texture| Ok((upload(recorder, texture)?, sampler(texture))))
             .collect();
         let parts = parts(scene, &layout, &surfaces);
         let (panes, parts): (Vec<Part>, Vec<Part>) =
@@ -373,7 +384,13 @@ impl Geometry {
 
     fn bound(&self, part: &Part) -> Bound<'_> {
         let s = &self.surfaces[part.material as usize];
-        let map = |index: Option<usize>| index.map(|i| &self.textures[i]);
+        let map = |index: Option<usize>| {
+            let (image, sampler) = &self.textures[index?];
+            Some(Map {
+                image,
+                sampler: *sampler,
+            })
+        };
         Bound {
             kind: part.kind,
             material: part.material,
@@ -385,9 +402,22 @@ impl Geometry {
             normal_scale: s.normal_scale,
             is_specular: s.is_specular,
             cutoff: s.cutoff.unwrap_or(0.0),
-            white: &self.white,
+            white: Map {
+                image: &self.white,
+                sampler: Sampler::Surface(Outside::Repeat, Outside::Repeat),
+            },
         }
     }
+}
+
+/// The sampler of a texture.
+fn sampler(texture: &Texture) -> Sampler {
+    let [u, v] = texture.wrap.map(|wrap| match wrap {
+        Wrap::Repeat => Outside::Repeat,
+        Wrap::Mirror => Outside::Mirror,
+        Wrap::Clamp => Outside::Clamp,
+    });
+    Sampler::Surface(u, v)
 }
 
 /// Whether a cluster needs no maps and no test for the side of its normals.

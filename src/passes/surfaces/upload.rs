@@ -87,6 +87,7 @@ pub(in crate::passes) fn white() -> Texture {
         height: 1,
         rgba8: vec![255; 4],
         encoding: Encoding::Srgb,
+        wrap: Default::default(),
     }
 }
 

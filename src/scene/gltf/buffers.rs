@@ -1,20 +1,39 @@
-//! glTF buffers and accessors. Every range is checked before anything is allocated.
+//! glTF buffers, views and accessors. Every range is checked before anything is allocated; a buffer that is missing or cut off
+//! costs only what lies in it.
 
+use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
+use std::ops::Range;
 use std::path::Path;
 use std::rc::Rc;
 
 use base64::Engine;
-use gltf::accessor::{Accessor, DataType, Dimensions};
+use base64::alphabet::STANDARD;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use percent_encoding::percent_decode_str;
 
 use crate::scene::builder::Builder;
 use crate::scene::files::Lookup;
+use crate::scene::gltf::item::Item;
+use crate::scene::gltf::meshopt::{Plan, compression};
+use crate::scene::losses::shortened;
 use crate::scene::texture::picture::EmbeddedImage;
 
-/// The bytes of all buffers.
+/// Limit on all decompressed views together, bytes.
+const MAX_DECOMPRESSED: usize = 2 << 30;
+
+/// Bytes that several parts may share, or why they cannot be read.
+type Shared = Result<Rc<Vec<u8>>, String>;
+
+/// The buffers of a file, and its accessors.
 #[derive(Debug)]
-pub struct Buffers(Vec<Rc<Vec<u8>>>);
+pub struct Buffers<'j> {
+    root: Item<'j>,
+    bytes: Vec<Shared>,
+    /// Views that were decompressed.
+    decompressed: RefCell<HashMap<usize, Shared>>,
+    decompressed_left: Cell<usize>,
+}
 
 /// What a URI refers to.
 pub enum Uri {
@@ -24,178 +43,292 @@ pub enum Uri {
     File(Lookup),
 }
 
+/// Base64 with or without padding: some exporters leave it out.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &STANDARD,
+    GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::Indifferent)
+        .with_decode_allow_trailing_bits(true),
+);
+
 /// Resolves a URI of the model at `path`.
 pub fn resolve(builder: &Builder, path: &Path, uri: &str) -> Result<Uri, String> {
     if let Some(data) = uri.strip_prefix("data:") {
         let (kind, text) = data.split_once(',').ok_or("a data URI has no comma")?;
         if !kind.ends_with(";base64") {
-            return Err("a data URI is not base64".to_owned());
+            return Ok(Uri::Data(percent_decode_str(text).collect()));
         }
-        let bytes = base64::engine::general_purpose::STANDARD.decode(text);
+        let has_blanks = text.contains(|c: char| c.is_ascii_whitespace() || "-_%".contains(c));
+        let bytes = if has_blanks {
+            let plain = percent_decode_str(text).decode_utf8_lossy();
+            let plain: String = plain.split_ascii_whitespace().collect();
+            BASE64.decode(plain.replace('-', "+").replace('_', "/"))
+        } else {
+            BASE64.decode(text)
+        };
         return bytes
             .map(Uri::Data)
             .map_err(|_| "a data URI has invalid base64".to_owned());
     }
-    let name = percent_decode_str(uri).decode_utf8_lossy();
     let folder = path.parent().unwrap_or(Path::new(""));
-    Ok(Uri::File(builder.files.find(folder, &name)))
+    Ok(Uri::File(builder.files.find_uri(folder, uri)))
 }
 
-impl Buffers {
+/// A range of bytes that holds elements.
+struct View {
+    bytes: Rc<Vec<u8>>,
+    range: Range<usize>,
+    /// Bytes from one element to the next; `None` if they are packed.
+    stride: Option<usize>,
+}
+
+impl<'j> Buffers<'j> {
     /// Reads all buffers. Buffers with the same source share their bytes.
-    pub fn read<'a>(builder: &Builder, path: &Path, gltf: &'a gltf::Gltf) -> Result<Self, String> {
+    pub fn read(builder: &Builder, path: &Path, root: Item<'j>, binary: Option<Vec<u8>>) -> Self {
         // A malicious file could name the same source a thousand times.
-        let mut known: HashMap<Option<&str>, Rc<Vec<u8>>> = HashMap::new();
-        let blob = gltf.blob.clone().map(|blob| (None, Rc::new(blob)));
-        known.extend(blob);
-        let mut read = |buffer: gltf::Buffer<'a>| {
-            let uri = match buffer.source() {
-                gltf::buffer::Source::Bin => None,
-                gltf::buffer::Source::Uri(uri) => Some(uri),
-            };
-            let bytes = match (known.get(&uri), uri) {
-                (Some(bytes), _) => bytes.clone(),
-                (None, None) => return Err("the binary chunk is missing".to_owned()),
-                (None, Some(text)) => Rc::new(read_uri(builder, path, text)?),
-            };
-            known.insert(uri, bytes.clone());
-            if bytes.len() < buffer.length() {
-                return Err(format!("buffer {} is truncated", buffer.index()));
-            }
-            Ok(bytes)
-        };
-        gltf.buffers()
-            .map(&mut read)
-            .collect::<Result<_, _>>()
-            .map(Self)
+        let mut known: HashMap<Option<&str>, Shared> = HashMap::new();
+        let missing = || "a buffer without a URI needs the binary chunk of a GLB".to_owned();
+        known.insert(None, binary.map(Rc::new).ok_or_else(missing));
+        let buffers = root.get("buffers").items().map(|buffer| {
+            let uri = buffer.get("uri").text();
+            let read = || read_uri(builder, path, uri.unwrap_or_default()).map(Rc::new);
+            known.entry(uri).or_insert_with(read).clone()
+        });
+        Self {
+            root,
+            bytes: buffers.collect(),
+            decompressed: RefCell::default(),
+            decompressed_left: Cell::new(MAX_DECOMPRESSED),
+        }
     }
 
     /// An image stored in a buffer view.
-    pub fn picture(&self, view: &gltf::buffer::View<'_>) -> Result<EmbeddedImage, String> {
-        let length = self.view(view)?.len();
-        Ok(EmbeddedImage {
-            bytes: self.0[view.buffer().index()].clone(),
-            range: view.offset()..view.offset() + length,
+    pub fn picture(&self, view: usize) -> Result<EmbeddedImage, String> {
+        let View { bytes, range, .. } = self.view(view)?;
+        Ok(EmbeddedImage { bytes, range })
+    }
+
+    fn view(&self, number: usize) -> Result<View, String> {
+        let view = self.root.get("bufferViews").at(number);
+        if !view.exists() {
+            return Err(format!("bufferViews[{number}] does not exist"));
+        }
+        let Some(extension) = compression(view) else {
+            let (bytes, range) = self.range(number, view)?;
+            let stride = view.get("byteStride").index().filter(|stride| *stride > 0);
+            return Ok(View {
+                bytes,
+                range,
+                stride,
+            });
+        };
+        let (bytes, range) = self.range(number, extension)?;
+        let plan = Plan::of(extension, range.len())
+            .ok_or_else(|| format!("bufferViews[{number}] has an unknown compression"))?;
+        let mut known = self.decompressed.borrow_mut();
+        let decode = || {
+            let size = plan.bytes().unwrap_or(usize::MAX);
+            let left = self.decompressed_left.get().checked_sub(size);
+            let damaged = format!("the compressed bufferViews[{number}] is damaged");
+            self.decompressed_left
+                .set(left.ok_or("too much is compressed")?);
+            plan.decode(&bytes[range]).map(Rc::new).ok_or(damaged)
+        };
+        let bytes = known.entry(number).or_insert_with(decode).clone()?;
+        Ok(View {
+            range: 0..bytes.len(),
+            bytes,
+            stride: Some(plan.stride),
         })
     }
 
-    /// The bytes of a buffer view.
-    pub fn view(&self, view: &gltf::buffer::View<'_>) -> Result<&[u8], String> {
-        let end = view.offset().checked_add(view.length());
-        let bytes = self.0.get(view.buffer().index());
-        end.and_then(|end| bytes?.get(view.offset()..end))
-            .ok_or_else(|| format!("buffer view {} exceeds its buffer", view.index()))
+    /// The buffer of a view or of its compressed form, and the range in it.
+    fn range(&self, number: usize, view: Item<'_>) -> Result<(Rc<Vec<u8>>, Range<usize>), String> {
+        let range = || {
+            let start = view.get("byteOffset").index_or(0)?;
+            let end = start.checked_add(view.get("byteLength").index()?)?;
+            Some(start..end)
+        };
+        let range = range().ok_or_else(|| format!("bufferViews[{number}] has no valid range"))?;
+        let buffer = view.get("buffer").index().and_then(|i| self.bytes.get(i));
+        let bytes = buffer
+            .ok_or_else(|| format!("bufferViews[{number}] has no buffer"))?
+            .clone()?;
+        if range.end > bytes.len() {
+            return Err(format!(
+                "bufferViews[{number}] exceeds its buffer, which may be cut off"
+            ));
+        }
+        Ok((bytes, range))
     }
 
-    /// Reads at most `limit` elements of an accessor as `N` numbers each. Missing components are 0; normalised integers map to
-    /// 0..1 or −1..1.
-    pub fn floats<const N: usize>(
-        &self,
-        accessor: &Accessor<'_>,
-        limit: usize,
-    ) -> Result<Vec<[f32; N]>, String> {
-        let layout = Layout::of(accessor, limit)?;
+    /// An accessor of at most `limit` elements.
+    pub fn accessor(&self, number: usize, limit: usize) -> Result<Accessor<'j>, String> {
+        let item = self.root.get("accessors").at(number);
+        if !item.exists() {
+            return Err(format!("accessors[{number}] does not exist"));
+        }
+        let accessor = Accessor::of(item, number)
+            .ok_or_else(|| format!("accessors[{number}] has no valid type, count or offset"))?;
+        if accessor.count > limit {
+            let count = accessor.count;
+            return Err(format!(
+                "accessors[{number}] has {count} elements, the limit is {limit}"
+            ));
+        }
+        Ok(accessor)
+    }
+
+    /// Reads an accessor as `N` numbers for each element. Missing components are 0; normalised integers map to 0..1 or −1..1.
+    pub fn floats<const N: usize>(&self, accessor: &Accessor<'_>) -> Result<Vec<[f32; N]>, String> {
+        let (kind, width) = (accessor.kind, accessor.width);
         let read = |bytes: &[u8]| {
             let number = |i: usize| {
-                let at = i * layout.size;
-                number(
-                    &bytes[at..at + layout.size],
-                    layout.kind,
-                    accessor.normalized(),
-                )
+                let at = i * kind.size();
+                number_of(&bytes[at..at + kind.size()], kind, accessor.normalised)
             };
-            std::array::from_fn(|i| if i < layout.width { number(i) } else { 0.0 })
+            std::array::from_fn(|i| if i < width { number(i) } else { 0.0 })
         };
-        let mut values = match accessor.view() {
+        let mut values = match accessor.view {
             Some(view) => {
-                let bytes = self.elements(&view, accessor.offset(), &layout)?;
-                bytes.map(read).collect()
+                let elements = self.elements(view, accessor.offset, accessor.layout())?;
+                elements.map(read)
             }
-            None => vec![[0.0; N]; layout.count],
+            None => vec![[0.0; N]; accessor.count],
         };
-        self.replace_sparse(accessor, &layout, &mut values, read)?;
+        self.replace_sparse(accessor, &mut values, read)?;
         Ok(values)
     }
 
-    /// Reads at most `limit` indices from an accessor.
-    pub fn indices(&self, accessor: &Accessor<'_>, limit: usize) -> Result<Vec<u32>, String> {
-        let layout = Layout::of(accessor, limit)?;
-        let kind = layout.kind;
-        let view = accessor.view();
-        let (1, Some(view), None) = (layout.width, view, accessor.sparse()) else {
-            return Err("the indices have an unsupported type".to_owned());
+    /// At most about `most` elements of an accessor, spread over it; replaced ones are not looked at.
+    pub fn sample(&self, number: usize, most: usize) -> Result<Vec<[f32; 3]>, String> {
+        let accessor = self.accessor(number, usize::MAX)?;
+        let (3, Some(view)) = (accessor.width, accessor.view) else {
+            return Ok(Vec::new());
         };
-        let elements = self.elements(&view, accessor.offset(), &layout)?;
-        Ok(elements.map(|bytes| index(bytes, kind)).collect())
+        let (kind, step) = (accessor.kind, accessor.count.div_ceil(most.max(1)).max(1));
+        let elements = self.elements(view, accessor.offset, accessor.layout())?;
+        let size = kind.size();
+        let component = |bytes: &[u8], i: usize| {
+            number_of(&bytes[i * size..(i + 1) * size], kind, accessor.normalised)
+        };
+        let read = |i: usize| {
+            let bytes = elements.at(i);
+            [0, 1, 2].map(|k| component(bytes, k))
+        };
+        Ok((0..accessor.count).step_by(step).map(read).collect())
     }
 
-    fn replace_sparse<const N: usize>(
+    /// Reads an accessor as `N` whole numbers for each element, missing ones 0.
+    pub fn integers<const N: usize>(
         &self,
         accessor: &Accessor<'_>,
-        layout: &Layout,
-        values: &mut [[f32; N]],
-        read: impl Fn(&[u8]) -> [f32; N],
+    ) -> Result<Vec<[u32; N]>, String> {
+        let (kind, width) = (accessor.kind, accessor.width);
+        let whole = matches!(kind, Kind::U8 | Kind::U16 | Kind::U32);
+        let (true, Some(view)) = (whole, accessor.view) else {
+            let number = accessor.number;
+            return Err(format!("accessors[{number}] does not hold whole numbers"));
+        };
+        let read = |bytes: &[u8]| {
+            let number = |i: usize| index(&bytes[i * kind.size()..][..kind.size()], kind);
+            std::array::from_fn(|i| if i < width { number(i) } else { 0 })
+        };
+        let elements = self.elements(view, accessor.offset, accessor.layout())?;
+        let mut values = elements.map(read);
+        self.replace_sparse(accessor, &mut values, read)?;
+        Ok(values)
+    }
+
+    fn replace_sparse<T>(
+        &self,
+        accessor: &Accessor<'_>,
+        values: &mut [T],
+        read: impl Fn(&[u8]) -> T,
     ) -> Result<(), String> {
-        let Some(sparse) = accessor.sparse() else {
+        let sparse = accessor.sparse;
+        if !sparse.exists() {
             return Ok(());
-        };
-        let count = sparse.count();
-        if count > layout.count {
-            return Err(format!(
-                "accessor {} replaces more elements than it has",
-                accessor.index()
-            ));
         }
-        let (kind, places) = (sparse.indices().index_type(), sparse.indices());
-        let (kind, size) = match kind {
-            gltf::accessor::sparse::IndexType::U8 => (DataType::U8, 1),
-            gltf::accessor::sparse::IndexType::U16 => (DataType::U16, 2),
-            gltf::accessor::sparse::IndexType::U32 => (DataType::U32, 4),
+        let wrong = || format!("accessors[{}].sparse is not valid", accessor.number);
+        let count = sparse.get("count").index().filter(|n| *n <= accessor.count);
+        let count = count.ok_or_else(wrong)?;
+        let place = |key: &str| {
+            let part = sparse.get(key);
+            let view = part.get("bufferView").index();
+            view.zip(part.get("byteOffset").index_or(0))
+                .ok_or_else(wrong)
         };
-        let index_layout = Layout {
+        let kind = Kind::of(sparse.get("indices").get("componentType"));
+        let kind = kind.filter(|kind| matches!(kind, Kind::U8 | Kind::U16 | Kind::U32));
+        let kind = kind.ok_or_else(wrong)?;
+        let ((view, offset), layout) = (
+            place("indices")?,
+            Layout {
+                count,
+                element: kind.size(),
+            },
+        );
+        let places = self
+            .elements(view, offset, layout)?
+            .map(|bytes| index(bytes, kind));
+        let (view, offset) = place("values")?;
+        let layout = Layout {
             count,
-            kind,
-            size,
-            width: 1,
+            ..accessor.layout()
         };
-        let value_layout = Layout { count, ..*layout };
-        let places = self.elements(&places.view(), places.offset(), &index_layout)?;
-        let values_at = self.elements(
-            &sparse.values().view(),
-            sparse.values().offset(),
-            &value_layout,
-        )?;
-        for (place, new) in places.zip(values_at) {
-            let value = values.get_mut(index(place, kind) as usize);
-            *value.ok_or_else(|| {
-                format!(
-                    "accessor {} replaces an element that does not exist",
-                    accessor.index()
-                )
-            })? = read(new);
+        let new = self.elements(view, offset, layout)?.map(read);
+        for (place, new) in places.into_iter().zip(new) {
+            *values.get_mut(place as usize).ok_or_else(wrong)? = new;
         }
         Ok(())
     }
 
-    /// The bytes of each element.
-    fn elements<'b>(
-        &'b self,
-        view: &gltf::buffer::View<'_>,
-        offset: usize,
-        layout: &Layout,
-    ) -> Result<impl Iterator<Item = &'b [u8]> + use<'b>, String> {
-        let element = layout.size * layout.width;
-        let stride = view.stride().unwrap_or(element).max(1);
+    fn elements(&self, view: usize, offset: usize, layout: Layout) -> Result<Elements, String> {
+        let exceeded = || format!("an accessor exceeds bufferViews[{view}]");
+        let View {
+            bytes,
+            range,
+            stride,
+        } = self.view(view)?;
+        let stride = stride.unwrap_or(layout.element);
         let needed = (layout.count.max(1) - 1)
             .checked_mul(stride)
-            .and_then(|n| n.checked_add(element));
-        let bytes = self.view(view)?;
-        let bytes = bytes.get(offset..).unwrap_or_default();
-        if needed.is_none_or(|needed| needed > bytes.len()) || stride < element {
-            return Err(format!("an accessor exceeds buffer view {}", view.index()));
+            .and_then(|n| n.checked_add(layout.element)?.checked_add(offset));
+        if needed.is_none_or(|needed| needed > range.len()) || stride < layout.element {
+            return Err(exceeded());
         }
-        let count = layout.count;
-        Ok((0..count).map(move |i| &bytes[i * stride..i * stride + element]))
+        Ok(Elements {
+            bytes,
+            start: range.start + offset,
+            stride,
+            layout,
+        })
+    }
+}
+
+/// Number and size of elements, bytes.
+#[derive(Debug, Clone, Copy)]
+struct Layout {
+    count: usize,
+    element: usize,
+}
+
+/// Elements of an accessor; their range was checked.
+struct Elements {
+    bytes: Rc<Vec<u8>>,
+    start: usize,
+    stride: usize,
+    layout: Layout,
+}
+
+impl Elements {
+    fn at(&self, i: usize) -> &[u8] {
+        &self.bytes[self.start + i * self.stride..][..self.layout.element]
+    }
+
+    fn map<T>(&self, read: impl Fn(&[u8]) -> T) -> Vec<T> {
+        (0..self.layout.count).map(|i| read(self.at(i))).collect()
     }
 }
 
@@ -204,7 +337,7 @@ fn read_uri(builder: &Builder, path: &Path, uri: &str) -> Result<Vec<u8>, String
     match resolve(builder, path, uri)? {
         Uri::Data(bytes) => Ok(bytes),
         Uri::File(Lookup::Found(file)) => builder.files.read(&file).map_err(|e| e.to_string()),
-        Uri::File(Lookup::Missing(file)) => Err(format!("{} is missing", file.display())),
+        Uri::File(Lookup::Missing(_)) => Err(format!("{} is missing", shortened(uri, 60))),
         Uri::File(Lookup::Outside(file)) => Err(format!(
             "{} is outside the model's folder; pass --allow-outside to allow it",
             file.display()
@@ -212,60 +345,111 @@ fn read_uri(builder: &Builder, path: &Path, uri: &str) -> Result<Vec<u8>, String
     }
 }
 
-/// Memory layout of an accessor's elements.
-#[derive(Debug, Clone, Copy)]
-struct Layout {
-    count: usize,
-    kind: DataType,
-    /// Bytes per component.
-    size: usize,
-    /// Components per element.
-    width: usize,
+/// Type of a component.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
 }
 
-impl Layout {
-    fn of(accessor: &Accessor<'_>, limit: usize) -> Result<Self, String> {
-        let count = accessor.count();
-        if count > limit {
-            let index = accessor.index();
-            return Err(format!(
-                "accessor {index} has {count} elements, the limit is {limit}"
-            ));
-        }
-        let width = match accessor.dimensions() {
-            Dimensions::Scalar => 1,
-            Dimensions::Vec2 => 2,
-            Dimensions::Vec3 => 3,
-            Dimensions::Vec4 => 4,
-            _ => return Err(format!("accessor {} has a matrix type", accessor.index())),
-        };
-        Ok(Self {
-            count,
-            kind: accessor.data_type(),
-            size: accessor.data_type().size(),
-            width,
+impl Kind {
+    fn of(item: Item<'_>) -> Option<Self> {
+        Some(match item.index()? {
+            5120 => Self::I8,
+            5121 => Self::U8,
+            5122 => Self::I16,
+            5123 => Self::U16,
+            5125 => Self::U32,
+            5126 => Self::F32,
+            _ => return None,
         })
+    }
+
+    /// Bytes.
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
     }
 }
 
-fn index(bytes: &[u8], kind: DataType) -> u32 {
+/// A checked accessor.
+#[derive(Debug, Clone, Copy)]
+pub struct Accessor<'j> {
+    number: usize,
+    /// Number of elements.
+    pub count: usize,
+    kind: Kind,
+    /// Components of an element.
+    pub width: usize,
+    normalised: bool,
+    /// `None` for zeros.
+    pub view: Option<usize>,
+    offset: usize,
+    sparse: Item<'j>,
+}
+
+impl<'j> Accessor<'j> {
+    fn of(item: Item<'j>, number: usize) -> Option<Self> {
+        let kind = Kind::of(item.get("componentType"))?;
+        let width = match item.get("type").text()? {
+            "SCALAR" => 1,
+            "VEC2" => 2,
+            "VEC3" => 3,
+            "VEC4" => 4,
+            // Smaller types and matrices have padded columns; nothing that is drawn has them.
+            "MAT4" if kind == Kind::F32 => 16,
+            _ => return None,
+        };
+        let view = item.get("bufferView");
+        Some(Self {
+            number,
+            count: item.get("count").index()?,
+            kind,
+            width,
+            normalised: item.get("normalized").flag().unwrap_or(false),
+            view: if view.exists() {
+                Some(view.index()?)
+            } else {
+                None
+            },
+            offset: item.get("byteOffset").index_or(0)?,
+            sparse: item.get("sparse"),
+        })
+    }
+
+    fn layout(&self) -> Layout {
+        Layout {
+            count: self.count,
+            element: self.kind.size() * self.width,
+        }
+    }
+}
+
+fn index(bytes: &[u8], kind: Kind) -> u32 {
     match (kind, bytes) {
-        (DataType::U8, [a]) => u32::from(*a),
-        (DataType::U16, [a, b]) => u32::from(u16::from_le_bytes([*a, *b])),
-        (DataType::U32, [a, b, c, d]) => u32::from_le_bytes([*a, *b, *c, *d]),
-        // An invalid index, so that the mesh is rejected.
+        (Kind::U8, [a]) => u32::from(*a),
+        (Kind::U16, [a, b]) => u32::from(u16::from_le_bytes([*a, *b])),
+        (Kind::U32, [a, b, c, d]) => u32::from_le_bytes([*a, *b, *c, *d]),
+        // An invalid index, so that it is not used.
         _ => u32::MAX,
     }
 }
 
 /// Conversion of normalised integers: glTF 2.0, section 3.11.
-fn number(bytes: &[u8], kind: DataType, normalised: bool) -> f32 {
+fn number_of(bytes: &[u8], kind: Kind, normalised: bool) -> f32 {
     let (value, largest) = match (kind, bytes) {
-        (DataType::F32, [a, b, c, d]) => return f32::from_le_bytes([*a, *b, *c, *d]),
-        (DataType::I8, [a]) => (f32::from(*a as i8), 127.0),
-        (DataType::I16, [a, b]) => (f32::from(i16::from_le_bytes([*a, *b])), 32_767.0),
-        (DataType::U8, _) => (index(bytes, kind) as f32, 255.0),
-        (DataType::U16, _) => (index(bytes, kind) as f32, 65_535.0),
+        (Kind::F32, [a, b, c, d]) => return f32::from_le_bytes([*a, *b, *c, *d]),
+        (Kind::I8, [a]) => (f32::from(*a as i8), 127.0),
+        (Kind::I16, [a, b]) => (f32::from(i16::from_le_bytes([*a, *b])), 32_767.0),
+        (Kind::U8, _) => (index(bytes, kind) as f32, 255.0),
+        (Kind::U16, _) => (index(bytes, kind) as f32, 65_535.0),
         _ => (index(bytes, kind) as f32, 4_294_967_295.0),
     };
     if normalised {
@@ -281,14 +465,14 @@ mod tests {
 
     #[test]
     fn numbers_of_every_kind() {
-        assert_eq!(number(&1.5f32.to_le_bytes(), DataType::F32, false), 1.5);
-        assert_eq!(number(&[255], DataType::U8, true), 1.0);
-        assert_eq!(number(&[0x81], DataType::I8, true), -1.0);
-        assert_eq!(number(&[0x80], DataType::I8, true), -1.0, "−128 is clamped");
-        assert_eq!(number(&[0xff, 0xff], DataType::U16, true), 1.0);
-        assert_eq!(number(&[0x01, 0x80], DataType::I16, true), -1.0);
-        assert_eq!(number(&[7, 0], DataType::U16, false), 7.0);
-        assert_eq!(index(&[1, 2], DataType::U16), 0x0201);
-        assert_eq!(index(&[1, 2], DataType::U8), u32::MAX);
+        assert_eq!(number_of(&1.5f32.to_le_bytes(), Kind::F32, false), 1.5);
+        assert_eq!(number_of(&[255], Kind::U8, true), 1.0);
+        assert_eq!(number_of(&[0x81], Kind::I8, true), -1.0);
+        assert_eq!(number_of(&[0x80], Kind::I8, true), -1.0, "−128 is clamped");
+        assert_eq!(number_of(&[0xff, 0xff], Kind::U16, true), 1.0);
+        assert_eq!(number_of(&[0x01, 0x80], Kind::I16, true), -1.0);
+        assert_eq!(number_of(&[7, 0], Kind::U16, false), 7.0);
+        assert_eq!(index(&[1, 2], Kind::U16), 0x0201);
+        assert_eq!(index(&[1, 2], Kind::U8), u32::MAX);
     }
 }

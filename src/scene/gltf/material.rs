@@ -1,17 +1,24 @@
 //! glTF materials, converted to ρ_d, ρ_s and p by [`phong_of`], and L_e.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use glam::{Affine2, Vec2};
-use gltf::material::AlphaMode;
 
 use crate::scene::builder::Builder;
 use crate::scene::files::Lookup;
+use crate::scene::glass;
 use crate::scene::gltf::buffers::{Buffers, Uri, resolve};
-use crate::scene::material::{MTL_DEFAULT, Material, MetallicRoughness, phong_of};
+use crate::scene::gltf::extensions::Told;
+use crate::scene::gltf::item::Item;
+use crate::scene::losses::Losses;
+use crate::scene::material::{
+    MTL_DEFAULT, Material, MetallicRoughness, SpecularGlossiness, phong_of, phong_of_glossiness,
+};
 use crate::scene::mesh::soup::{MaterialUse, NONE};
-use crate::scene::texture::picture::{EmbeddedImage, TextureKey};
+use crate::scene::texture::Wrap;
+use crate::scene::texture::picture::{EmbeddedImage, TextureKey, TextureKind};
 
 /// A material as used by meshes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,78 +26,87 @@ pub struct Surface {
     /// The material; its texture transform has v pointing down.
     pub material: MaterialUse,
     /// Index of the texture coordinate set.
-    pub texcoord_set: u32,
+    pub texcoord_set: usize,
 }
 
-/// All materials of a file.
-#[derive(Debug)]
-pub struct Materials {
-    surfaces: Vec<Surface>,
-    /// Used for primitives without a material.
-    default: Surface,
+/// The materials that meshes use, read when first used.
+#[derive(Debug, Default)]
+pub struct Materials(HashMap<Option<usize>, Surface>);
+
+/// What materials are read from and told to.
+pub struct Source<'r, 'p, 'j> {
+    pub builder: &'r mut Builder<'p>,
+    pub path: &'r Path,
+    pub root: Item<'j>,
+    pub buffers: &'r Buffers<'j>,
+    pub losses: &'r mut Losses,
+    pub told: &'r mut Told,
 }
 
 impl Materials {
-    /// Reads all materials and their textures.
-    pub fn read(
-        builder: &mut Builder,
-        path: &Path,
-        gltf: &gltf::Document,
-        buffers: &Buffers,
-    ) -> Self {
-        let mut reader = Reader {
-            builder,
-            path,
-            buffers,
-        };
-        let surfaces = gltf.materials().map(|m| reader.surface(&m)).collect();
-        let grey = reader.builder.add_material(MTL_DEFAULT);
-        Self {
-            surfaces,
-            default: Surface {
-                material: MaterialUse::plain(grey),
-                texcoord_set: 0,
-            },
-        }
-    }
-
     /// The material of a primitive.
-    pub fn of(&self, material: &gltf::Material<'_>) -> Surface {
-        let known = material.index().and_then(|i| self.surfaces.get(i));
-        known.copied().unwrap_or(self.default)
+    pub fn of(&mut self, source: Source<'_, '_, '_>, primitive: Item<'_>) -> Surface {
+        let index = primitive.get("material").index();
+        if let Some(surface) = self.0.get(&index) {
+            return *surface;
+        }
+        let item = index.map(|i| source.root.get("materials").at(i));
+        let surface = match item.filter(|item| item.exists()) {
+            Some(item) => {
+                let number = index.unwrap_or_default();
+                Reader {
+                    source,
+                    number,
+                    item,
+                }
+                .surface()
+            }
+            None => {
+                if primitive.get("material").exists() {
+                    let place =
+                        || index.map_or("material".to_owned(), |i| format!("materials[{i}]"));
+                    let what = "materials that do not exist drawn grey";
+                    source.losses.add(what, place);
+                }
+                Surface {
+                    material: MaterialUse::plain(source.builder.add_material(MTL_DEFAULT)),
+                    texcoord_set: 0,
+                }
+            }
+        };
+        self.0.insert(index, surface);
+        surface
     }
 }
 
-struct Reader<'r, 'p> {
-    builder: &'r mut Builder<'p>,
-    path: &'r Path,
-    buffers: &'r Buffers,
+/// Reads one material.
+struct Reader<'r, 'p, 'j> {
+    source: Source<'r, 'p, 'j>,
+    number: usize,
+    item: Item<'j>,
 }
 
-impl Reader<'_, '_> {
-    fn surface(&mut self, source: &gltf::Material<'_>) -> Surface {
-        let pbr = source.pbr_metallic_roughness();
-        let colour = pbr.base_color_texture();
-        let normal = source.normal_texture();
-        let material = self.material(source);
-        let emissive = source.emissive_texture();
-        let emissive = emissive.filter(|_| material.emissive_texture.is_some());
-        let (texcoord_set, texture_from_mesh) = match (&colour, &normal, &emissive) {
-            (Some(info), ..) | (None, None, Some(info)) => transform(info),
-            (None, Some(info), _) => (info.tex_coord(), Affine2::IDENTITY),
-            (None, None, None) => (0, Affine2::IDENTITY),
-        };
-        if emissive.is_some_and(|info| transform(&info) != (texcoord_set, texture_from_mesh)) {
-            let what = "an emissive texture has texture coordinates of its own; those of the other maps are used";
-            self.builder.warn(self.path, what);
-        }
-        if normal.is_some_and(|n| n.tex_coord() != texcoord_set) {
-            let what = "a normal map has its own set of texture coordinates; the base colour's set is used";
-            self.builder.warn(self.path, what);
+impl<'j> Reader<'_, '_, 'j> {
+    fn surface(&mut self) -> Surface {
+        self.source.told.see(self.item);
+        let (material, colour) = self.material();
+        let emissive = self.item.get("emissiveTexture");
+        let maps = [
+            (colour, material.diffuse_texture),
+            (self.item.get("normalTexture"), material.normal_texture),
+            (emissive, material.emissive_texture),
+        ];
+        let mut placed = maps.iter().filter(|(_, texture)| texture.is_some());
+        let first = placed.next().map(|(info, _)| transform(*info));
+        let (texcoord_set, texture_from_mesh) = first.unwrap_or((0, Affine2::IDENTITY));
+        if placed.any(|(info, _)| Some(transform(*info)) != first) {
+            let place = format!("materials[{}] \"{}\"", self.number, material.name);
+            let what = "materials whose maps differ in their texture coordinates drawn with those of the first map";
+            self.source.losses.add(what, || place);
         }
         let has_normal_map = material.normal_texture.is_some();
         let index = if material.is_drawn() {
-            self.builder.add_material(material)
+            self.source.builder.add_material(material)
         } else {
             NONE
         };
@@ -104,28 +120,39 @@ impl Reader<'_, '_> {
         }
     }
 
-    fn material(&mut self, source: &gltf::Material<'_>) -> Material {
-        let pbr = source.pbr_metallic_roughness();
-        let [r, g, b, alpha] = pbr.base_color_factor();
-        let cutoff = match source.alpha_mode() {
-            AlphaMode::Opaque => None,
-            AlphaMode::Mask => Some(source.alpha_cutoff().unwrap_or(0.5)),
-            AlphaMode::Blend => Some(0.5),
+    /// The material, and the texture of its ρ_d as the file gives it.
+    fn material(&mut self) -> (Material, Item<'j>) {
+        let cutoff = match self.item.get("alphaMode").text() {
+            Some("MASK") => Some(self.item.get("alphaCutoff").float(0.5)),
+            Some("BLEND") => Some(0.5),
+            _ => None,
         };
-        let colour = pbr.base_color_texture();
-        let diffuse_texture = colour.and_then(|info| self.colour(&info.texture(), cutoff));
-        let normal = source.normal_texture();
-        let normal_texture = normal.as_ref().and_then(|info| {
-            let picture = self.picture(&info.texture().source())?;
-            let wanted = TextureKey::Normals(picture, 1f32.to_bits());
-            self.builder.texture(self.path, wanted)
-        });
-        let (emission, emissive_texture) = self.emitted(source);
-        let surface = self.metallic_roughness(source, [r, g, b]);
-        let (diffuse, specular, shininess) = phong_of(&surface);
+        let gloss = self.item.extension("KHR_materials_pbrSpecularGlossiness");
+        let pbr = self.item.get("pbrMetallicRoughness");
+        let (factor, map) = if gloss.is_object() {
+            (gloss.get("diffuseFactor"), gloss.get("diffuseTexture"))
+        } else {
+            (pbr.get("baseColorFactor"), pbr.get("baseColorTexture"))
+        };
+        let [r, g, b, alpha] = factor.floats([1.0; 4]);
+        let base = [r, g, b];
+        let (diffuse, specular, shininess) = if gloss.is_object() {
+            phong_of_glossiness(&self.specular_glossiness(gloss, base))
+        } else {
+            phong_of(&self.metallic_roughness(pbr, base))
+        };
+        let kind = match cutoff {
+            None => TextureKind::Colour,
+            Some(_) => TextureKind::ColourAndAlpha as fn(PathBuf) -> TextureKind,
+        };
+        let diffuse_texture = self.texture(map, kind);
+        let normal = self.item.get("normalTexture");
+        let normal_texture =
+            self.texture(normal, |path| TextureKind::Normals(path, 1f32.to_bits()));
+        let (emission, emissive_texture) = self.emitted();
         let finite = |v: f32| if v.is_finite() { v } else { 1.0 };
-        Material {
-            name: source.name().unwrap_or_default().to_owned(),
+        let material = Material {
+            name: self.item.get("name").text().unwrap_or_default().to_owned(),
             diffuse,
             specular,
             shininess,
@@ -138,103 +165,203 @@ impl Reader<'_, '_> {
             diffuse_texture,
             specular_texture: None,
             normal_texture,
-            normal_scale: finite(normal.map_or(1.0, |n| n.scale())),
+            normal_scale: finite(normal.get("scale").float(1.0)),
             emission,
             emissive_texture,
-            ..MTL_DEFAULT
+            glass: self.glass(base, alpha, map),
+        };
+        (material, map)
+    }
+
+    /// The glass of a transmitting material, or of one that is blended without a texture: with one it is a cut-out.
+    fn glass(&mut self, base: [f32; 3], alpha: f32, map: Item<'_>) -> Option<[f32; 3]> {
+        let transmission = self.item.extension("KHR_materials_transmission");
+        let factor = transmission.get("transmissionFactor").float(0.0);
+        let blends = self.item.get("alphaMode").text() == Some("BLEND") && !map.is_object();
+        if factor > 0.0 && transmission.get("transmissionTexture").is_object() {
+            let instead = "its factor holds for the whole material";
+            self.source
+                .told
+                .tell("transmissionTexture of KHR_materials_transmission", instead);
         }
+        glass::of_gltf(base, factor, blends.then_some(alpha))
     }
 
     /// L_e, in the candelas per square metre of the specification, and its texture.
-    fn emitted(&mut self, source: &gltf::Material<'_>) -> ([f32; 3], Option<usize>) {
-        let strength = source.emissive_strength().unwrap_or(1.0);
-        let factor = source.emissive_factor().map(|v| v * strength);
-        let name = source.name().unwrap_or_default();
-        let emission = self.builder.emission(self.path, name, factor);
-        let texture = source.emissive_texture();
-        let texture = texture.filter(|_| emission != [0.0; 3]);
-        let texture = texture.and_then(|info| self.colour(&info.texture(), None));
-        (emission, texture)
+    fn emitted(&mut self) -> ([f32; 3], Option<usize>) {
+        let strength = self.item.extension("KHR_materials_emissive_strength");
+        let strength = strength.get("emissiveStrength").float(1.0);
+        let factor = self.item.get("emissiveFactor").floats([0.0; 3]);
+        let name = self.item.get("name").text().unwrap_or_default();
+        let factor = factor.map(|v| v * strength);
+        let emission = self.source.builder.emission(self.source.path, name, factor);
+        if emission == [0.0; 3] {
+            return (emission, None);
+        }
+        let texture = self.item.get("emissiveTexture");
+        (emission, self.texture(texture, TextureKind::Colour))
     }
 
     /// Roughness and metalness textures are replaced by their means, because p is constant over a material.
-    fn metallic_roughness(
-        &mut self,
-        source: &gltf::Material<'_>,
-        base: [f32; 3],
-    ) -> MetallicRoughness {
-        let pbr = source.pbr_metallic_roughness();
-        let map = pbr.metallic_roughness_texture();
-        let picture = map.and_then(|info| self.picture(&info.texture().source()));
-        let [_, roughness, metallic] =
-            picture.map_or([1.0; 3], |path| self.builder.mean(self.path, &path));
-        let specular = source.specular();
-        let factor = specular.as_ref().map_or(1.0, |s| s.specular_factor());
-        let colour = specular.map_or([1.0; 3], |s| s.specular_color_factor());
+    fn metallic_roughness(&mut self, pbr: Item<'_>, base: [f32; 3]) -> MetallicRoughness {
+        let [_, roughness, metallic, _] = self.mean(pbr.get("metallicRoughnessTexture"));
+        let specular = self.item.extension("KHR_materials_specular");
+        let factor = specular.get("specularFactor").float(1.0);
+        let colour = specular.get("specularColorFactor").floats([1.0; 3]);
+        let ior = self.item.extension("KHR_materials_ior");
+        if self.item.extension("KHR_materials_unlit").exists() {
+            let instead = "its surfaces are lit like matt ones";
+            self.source.told.tell("KHR_materials_unlit", instead);
+            return MetallicRoughness {
+                base,
+                metallic: 0.0,
+                roughness: 1.0,
+                ior: 1.5,
+                specular: [0.0; 3],
+            };
+        }
         MetallicRoughness {
             base,
-            metallic: pbr.metallic_factor() * metallic,
-            roughness: pbr.roughness_factor() * roughness,
-            ior: source.ior().unwrap_or(1.5),
+            metallic: pbr.get("metallicFactor").float(1.0) * metallic,
+            roughness: pbr.get("roughnessFactor").float(1.0) * roughness,
+            ior: ior.get("ior").float(1.5),
             specular: colour.map(|c| c * factor),
         }
     }
 
-    fn colour(&mut self, texture: &gltf::Texture<'_>, cutoff: Option<f32>) -> Option<usize> {
-        let picture = self.picture(&texture.source())?;
-        let wanted = if cutoff.is_some() {
-            TextureKey::ColourAndAlpha(picture)
-        } else {
-            TextureKey::Colour(picture)
-        };
-        self.builder.texture(self.path, wanted)
+    /// The texture is replaced by its mean, as those of metallic-roughness are.
+    fn specular_glossiness(&mut self, gloss: Item<'_>, diffuse: [f32; 3]) -> SpecularGlossiness {
+        let [r, g, b, glossiness] = self.mean(gloss.get("specularGlossinessTexture"));
+        let [fr, fg, fb] = gloss.get("specularFactor").floats([1.0; 3]);
+        let linear = crate::scene::texture::linear_from_srgb;
+        SpecularGlossiness {
+            diffuse,
+            specular: [fr * linear(r), fg * linear(g), fb * linear(b)],
+            glossiness: gloss.get("glossinessFactor").float(1.0) * glossiness,
+        }
     }
 
-    /// The path of an image; embedded images get a synthetic one.
-    fn picture(&mut self, image: &gltf::Image<'_>) -> Option<PathBuf> {
-        let mut name = self.path.as_os_str().to_owned();
-        name.push(format!(" image {}", image.index()));
-        let name = PathBuf::from(name);
-        let bytes = match image.source() {
-            gltf::image::Source::View { view, .. } => self.buffers.picture(&view).map(Some),
-            gltf::image::Source::Uri { uri, .. } => match resolve(self.builder, self.path, uri) {
-                Ok(Uri::File(Lookup::Found(path) | Lookup::Missing(path))) => return Some(path),
-                Ok(Uri::File(Lookup::Outside(path))) => {
-                    self.builder.warn_outside(self.path, &path);
-                    Ok(None)
-                }
-                Ok(Uri::Data(bytes)) => Ok(Some(EmbeddedImage {
-                    range: 0..bytes.len(),
-                    bytes: Rc::new(bytes),
-                })),
-                Err(what) => Err(what),
-            },
+    /// Mean of a texture, RGBA as encoded; 1 without a texture.
+    fn mean(&mut self, info: Item<'_>) -> [f32; 4] {
+        let picture = self.picture(info);
+        let Source { builder, path, .. } = &mut self.source;
+        picture.map_or([1.0; 4], |picture| builder.mean(path, &picture))
+    }
+
+    fn texture(
+        &mut self,
+        info: Item<'_>,
+        kind: impl FnOnce(PathBuf) -> TextureKind,
+    ) -> Option<usize> {
+        let picture = self.picture(info)?;
+        let texture = self
+            .source
+            .root
+            .get("textures")
+            .at(info.get("index").index()?);
+        let sampler = texture.get("sampler").index();
+        let sampler = sampler.map(|i| self.source.root.get("samplers").at(i));
+        let wrap = |key: &str| match sampler.and_then(|sampler| sampler.get(key).index()) {
+            Some(33_071) => Wrap::Clamp,
+            Some(33_648) => Wrap::Mirror,
+            _ => Wrap::Repeat,
         };
-        match bytes {
-            Ok(bytes) => {
-                self.builder.textures.insert(name.clone(), bytes?);
-                Some(name)
-            }
-            Err(what) => {
-                let what = format!("image {}: {what}", image.index());
-                self.builder.warn(self.path, &what);
+        let key = TextureKey {
+            kind: kind(picture),
+            wrap: [wrap("wrapS"), wrap("wrapT")],
+        };
+        self.source.builder.texture(self.source.path, key)
+    }
+
+    /// The path of a texture's image; embedded images get a synthetic one.
+    fn picture(&mut self, info: Item<'_>) -> Option<PathBuf> {
+        if !info.exists() {
+            return None;
+        }
+        let number = info.get("index").index();
+        let image = number.and_then(|number| self.image(number));
+        let Some(image) = image else {
+            let place = || number.map_or("a texture".to_owned(), |i| format!("textures[{i}]"));
+            let what = "textures without a picture that is read, drawn without them";
+            self.source.losses.add(what, place);
+            return None;
+        };
+        match self.locate(image) {
+            Ok(path) => path,
+            Err(why) => {
+                let what = "pictures that cannot be read, drawn without them";
+                self.source
+                    .losses
+                    .add(what, || format!("images[{image}]: {why}"));
                 None
             }
         }
     }
+
+    /// Number of the image of a texture. WebP comes before the picture for programs that do not read it; other kinds are told of.
+    fn image(&mut self, number: usize) -> Option<usize> {
+        let texture = self.source.root.get("textures").at(number);
+        self.source.told.see(texture);
+        let webp = texture.extension("EXT_texture_webp").get("source").index();
+        if let Some(image) = webp.or(texture.get("source").index()) {
+            return Some(image);
+        }
+        for name in texture.extensions() {
+            if texture.extension(name).get("source").exists() {
+                let instead = "its pictures are not read; save them as PNG, JPEG or WebP";
+                self.source.told.tell(name, instead);
+            }
+        }
+        None
+    }
+
+    fn locate(&mut self, number: usize) -> Result<Option<PathBuf>, String> {
+        let Source {
+            builder,
+            path,
+            root,
+            buffers,
+            ..
+        } = &mut self.source;
+        let image = root.get("images").at(number);
+        let bytes = match (image.get("uri").text(), image.get("bufferView").index()) {
+            (Some(uri), _) => match resolve(builder, path, uri)? {
+                Uri::File(Lookup::Found(path) | Lookup::Missing(path)) => return Ok(Some(path)),
+                Uri::File(Lookup::Outside(outside)) => {
+                    builder.warn_outside(path, &outside);
+                    return Ok(None);
+                }
+                Uri::Data(bytes) => EmbeddedImage {
+                    range: 0..bytes.len(),
+                    bytes: Rc::new(bytes),
+                },
+            },
+            (None, Some(view)) => buffers.picture(view)?,
+            (None, None) => return Err("it has neither a URI nor a buffer view".to_owned()),
+        };
+        let mut name = path.as_os_str().to_owned();
+        name.push(format!(" image {number}"));
+        let name = PathBuf::from(name);
+        builder.textures.insert(name.clone(), bytes);
+        Ok(Some(name))
+    }
 }
 
 /// The texture coordinate set and the transform of KHR_texture_transform (scale, then rotation, then offset).
-fn transform(info: &gltf::texture::Info<'_>) -> (u32, Affine2) {
-    let Some(transform) = info.texture_transform() else {
-        return (info.tex_coord(), Affine2::IDENTITY);
-    };
-    let set = transform.tex_coord().unwrap_or(info.tex_coord());
+fn transform(info: Item<'_>) -> (usize, Affine2) {
+    let set = info.get("texCoord").index().unwrap_or(0);
+    let transform = info.extension("KHR_texture_transform");
+    if !transform.is_object() {
+        return (set, Affine2::IDENTITY);
+    }
     // Counter-clockwise in the image, which is clockwise in these coordinates because v points down.
     let texture_from_mesh = Affine2::from_scale_angle_translation(
-        Vec2::from(transform.scale()),
-        -transform.rotation(),
-        Vec2::from(transform.offset()),
+        Vec2::from(transform.get("scale").floats([1.0; 2])),
+        -transform.get("rotation").float(0.0),
+        Vec2::from(transform.get("offset").floats([0.0; 2])),
     );
-    (set, texture_from_mesh)
+    (
+        transform.get("texCoord").index().unwrap_or(set),
+        texture_from_mesh,
+    )
 }

@@ -1,32 +1,56 @@
 //! glTF 2.0 models (`.gltf`, `.glb`).
 //!
-//! Skins and morph targets are drawn in their rest pose, textures always repeat, and blended materials become cut-outs with an
-//! alpha threshold of 0.5.
+//! The JSON is read without a schema: only what is drawn is looked at and checked. A primitive, a picture or an attribute that is
+//! not valid costs that part, with a warning that counts such parts and names the first. Skins and morph targets are drawn in
+//! their rest pose, and blended materials become cut-outs with an alpha threshold of 0.5.
 
 mod buffers;
+mod camera;
+mod extensions;
+mod item;
+mod json;
 mod material;
 mod mesh;
+mod meshopt;
+mod nodes;
+mod skin;
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::path::Path;
 use std::rc::Rc;
 
-use glam::{Affine3A, Mat4, Vec3};
+use glam::{DAffine3, DQuat, DVec3};
 
 use crate::scene::builder::Builder;
-use crate::scene::error::{SceneError, one_line};
+use crate::scene::error::SceneError;
 use crate::scene::gltf::buffers::Buffers;
-use crate::scene::gltf::material::{Materials, Surface};
-use crate::scene::gltf::mesh::{Faces, read_faces};
+use crate::scene::gltf::extensions::Told;
+use crate::scene::gltf::item::Item;
+use crate::scene::gltf::material::{Materials, Source, Surface};
+use crate::scene::gltf::mesh::{Faces, Primitive};
+use crate::scene::gltf::nodes::Graph;
+use crate::scene::gltf::skin::Skin;
+use crate::scene::losses::shortened;
 use crate::scene::mesh::instance::{Mesh, append_instance};
 use crate::scene::mesh::soup::NONE;
-use crate::scene::obj::{ImportReport, Placement};
+use crate::scene::obj::ImportReport;
+use crate::scene::placement::Placement;
 use crate::scene::scene_file::NamedCamera;
+
+/// Why a file of the first version is refused.
+const OLD_VERSION: &str =
+    "glTF 1.0, which is not read; export it as glTF 2.0, or convert it with gltf-pipeline";
+/// Longest reason of a refusal, characters.
+const MAX_REASON: usize = 140;
+/// Vertices of a primitive that are looked at to find where a model lies.
+const LOOKED_AT: usize = 16;
+/// Nodes that are looked at for the same.
+const NODES_LOOKED_AT: usize = 256;
 
 /// Adds the model at `path` to the scene; returns its cameras.
 ///
 /// # Errors
-/// When a file cannot be read, is not valid glTF, requires an unsupported extension, or contains nothing to draw.
+/// When the file cannot be read, is not glTF 2.0, exceeds a limit, or contains nothing to draw.
 pub fn append_gltf(
     builder: &mut Builder,
     path: &Path,
@@ -34,105 +58,67 @@ pub fn append_gltf(
 ) -> Result<Vec<NamedCamera>, SceneError> {
     builder.progress.at(0.0, "reading");
     let bytes = builder.files.read(path)?;
-    let invalid = |what: String| SceneError::Unsupported {
+    let refused = |what: String| SceneError::Unsupported {
         path: path.to_owned(),
-        what: format!("is not a usable glTF file ({what}); export it again"),
+        what: shortened(&what, MAX_REASON),
     };
-    let gltf = parse(&bytes).map_err(|what| invalid(one_line(&what)))?;
+    let json::Container { json, binary } = json::read(&bytes).map_err(refused)?;
     drop(bytes);
-    let buffers = Buffers::read(builder, path, &gltf).map_err(invalid)?;
-    builder.progress.at(0.2, "reading materials");
+    let root = Item::of(&json);
+    if let Some(what) = unusable(root) {
+        return Err(refused(what.to_owned()));
+    }
+    let buffers = Buffers::read(builder, path, root, binary);
+    let mut report = ImportReport::default();
+    let graph = Graph::read(root, &mut report.losses);
     let mut model = Model {
         path,
+        root,
         placement,
-        materials: Materials::read(builder, path, &gltf, &buffers),
-        buffers,
+        buffers: &buffers,
+        graph: &graph,
+        materials: Materials::default(),
+        told: Told::of_file(root),
         known: HashMap::new(),
         triangles: 0,
-        report: ImportReport::default(),
+        report,
         cameras: Vec::new(),
     };
-    if gltf.skins().len() > 0 {
-        builder.warn(path, "skins are drawn in their rest pose");
-    }
     builder.progress.at(0.5, "building the mesh");
+    model.find_origin(builder);
     let drawn_before = builder.scene.triangles();
-    for (node, world_from_node) in nodes(&gltf) {
-        let world_from_node = placement.world_from_mesh * world_from_node;
-        model.append_node(builder, &node, world_from_node)?;
+    for node in &graph.drawn {
+        model.append_node(builder, *node)?;
     }
     let empty = builder.scene.triangles() == drawn_before;
+    for line in model.told.lines() {
+        builder.warn(path, &line);
+    }
     model.report.finish(builder, path, empty)?;
     Ok(model.cameras)
 }
 
-/// Parses the document and its binary chunk. All indices in the result are in range.
-fn parse(bytes: &[u8]) -> Result<gltf::Gltf, String> {
-    let unchecked = gltf::Gltf::from_slice_without_validation(bytes);
-    let gltf::Gltf { document, blob } = unchecked.map_err(|e| e.to_string())?;
-    let mut root = document.into_json();
-    // The crate's validation looks up the position accessor before it checks the index.
-    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    let mut named = primitives.flat_map(|primitive| primitive.attributes.values());
-    if named.any(|accessor| accessor.value() >= root.accessors.len()) {
-        return Err("a mesh refers to an accessor that does not exist".to_owned());
+/// Why nothing of a file can be drawn.
+fn unusable(root: Item<'_>) -> Option<&'static str> {
+    let version = root.get("asset").get("version");
+    let is_first = version.text().is_some_and(|v| v.starts_with("1."))
+        || version.number().is_some_and(|v| v < 2.0);
+    if is_first || root.get("meshes").is_object() {
+        return Some(OLD_VERSION);
     }
-    for (number, image) in root.images.iter_mut().enumerate() {
-        if image.buffer_view.is_none() && image.uri.is_none() {
-            return Err(format!(
-                "image {number} has neither a URI nor a buffer view"
-            ));
-        }
-        // The crate requires a MIME type, but the decoder detects it from the content.
-        let unknown = || gltf::json::image::MimeType("image/png".to_owned());
-        image.mime_type.get_or_insert_with(unknown);
-    }
-    let document = gltf::Document::from_json(root).map_err(|e| e.to_string())?;
-    Ok(gltf::Gltf { document, blob })
-}
-
-/// The nodes of the default scene (or else the first scene, or else all nodes), each once, with their transforms.
-fn nodes(gltf: &gltf::Document) -> Vec<(gltf::Node<'_>, Affine3A)> {
-    let scene = gltf.default_scene().or_else(|| gltf.scenes().next());
-    let roots: Vec<gltf::Node<'_>> = match scene {
-        Some(scene) => scene.nodes().collect(),
-        None => {
-            let children: HashSet<usize> = gltf
-                .nodes()
-                .flat_map(|n| n.children().map(|c| c.index()))
-                .collect();
-            gltf.nodes()
-                .filter(|n| !children.contains(&n.index()))
-                .collect()
-        }
-    };
-    // A malformed file may contain cycles.
-    let mut seen = HashSet::new();
-    let mut open: Vec<_> = roots
-        .into_iter()
-        .rev()
-        .map(|node| (node, Affine3A::IDENTITY))
-        .collect();
-    let mut found = Vec::new();
-    while let Some((node, world_from_parent)) = open.pop() {
-        if !seen.insert(node.index()) {
-            continue;
-        }
-        let matrix = Mat4::from_cols_array_2d(&node.transform().matrix());
-        let world_from_node = world_from_parent * Affine3A::from_mat4(matrix);
-        open.extend(node.children().map(|child| (child, world_from_node)));
-        found.push((node, world_from_node));
-    }
-    found
+    (!root.is_object()).then_some("no glTF: it has no JSON object; export it again")
 }
 
 struct Model<'m> {
     path: &'m Path,
+    root: Item<'m>,
     placement: &'m Placement,
-    buffers: Buffers,
+    buffers: &'m Buffers<'m>,
+    graph: &'m Graph,
     materials: Materials,
-    /// Meshes read so far, for reuse by further instances.
-    known: HashMap<usize, Rc<Vec<Mesh>>>,
+    told: Told,
+    /// Meshes read so far with the bits of their morph weights, for reuse by further instances.
+    known: HashMap<(usize, Vec<u64>), Rc<Vec<Mesh>>>,
     /// Triangles read, drawn or not, not counting instances.
     triangles: usize,
     report: ImportReport,
@@ -140,58 +126,240 @@ struct Model<'m> {
 }
 
 impl Model<'_> {
-    fn append_node(
-        &mut self,
-        builder: &mut Builder,
-        node: &gltf::Node<'_>,
-        world_from_node: Affine3A,
-    ) -> Result<(), SceneError> {
-        if let Some(camera) = node.camera() {
-            self.add_camera(node, &camera, world_from_node);
+    fn node(&self, number: usize) -> Item<'_> {
+        self.root.get("nodes").at(number)
+    }
+
+    /// Chooses the scene's origin from a sample of the vertices, if it has none.
+    fn find_origin(&self, builder: &mut Builder) {
+        let with_mesh = |node: &&usize| self.node(**node).get("mesh").exists();
+        let nodes: Vec<usize> = self.graph.drawn.iter().filter(with_mesh).copied().collect();
+        let step = nodes.len().div_ceil(NODES_LOOKED_AT).max(1);
+        let mut points = Vec::new();
+        for node in nodes.iter().step_by(step) {
+            let file_from_node = self.graph.file_from_node(*node);
+            let mesh = self.node(*node).get("mesh").index();
+            let Some((file_from_node, mesh)) = file_from_node.zip(mesh) else {
+                continue;
+            };
+            let world_from_node = self.placement.world_from_mesh * file_from_node;
+            let primitives = self.root.get("meshes").at(mesh).get("primitives");
+            let positions = primitives.at(0).get("attributes").get("POSITION").index();
+            let sample = positions.map(|number| self.buffers.sample(number, LOOKED_AT));
+            let sample = sample.and_then(Result::ok).unwrap_or_default();
+            let place =
+                |p: [f32; 3]| world_from_node.transform_point3(DVec3::from(p.map(f64::from)));
+            points.extend(sample.into_iter().map(place));
         }
-        let Some(mesh) = node.mesh() else {
+        builder.choose_origin(self.path, &mut points);
+    }
+
+    fn append_node(&mut self, builder: &mut Builder, number: usize) -> Result<(), SceneError> {
+        let root = self.root;
+        let node = root.get("nodes").at(number);
+        self.told.see(node);
+        if node.extension("KHR_lights_punctual").exists() {
+            self.told
+                .tell("KHR_lights_punctual", "the light is that of sun and sky");
+        }
+        let Some(file_from_node) = self.graph.file_from_node(number) else {
             return Ok(());
         };
-        let meshes = match self.known.get(&mesh.index()) {
-            Some(meshes) => meshes.clone(),
-            None => {
-                let meshes = Rc::new(self.read_mesh(builder, &mesh)?);
-                self.known.insert(mesh.index(), meshes.clone());
-                meshes
+        let world_from_node = self.placement.world_from_mesh * file_from_node;
+        if node.get("camera").exists() {
+            let camera = camera::read(root, node, world_from_node, &self.cameras);
+            if camera.is_none() {
+                let place = || format!("nodes[{number}].camera");
+                self.report
+                    .losses
+                    .add("cameras that are not perspective left out", place);
             }
+            self.cameras.extend(camera);
+        }
+        let Some(mesh) = node.get("mesh").index() else {
+            return Ok(());
         };
-        for mesh in meshes.iter() {
-            builder.check_triangles(self.path, mesh.indices.len() / 3)?;
-            let dropped = append_instance(&mut builder.scene, mesh, &world_from_node);
-            self.report.dropped.not_finite += dropped.not_finite;
-            self.report.dropped.degenerate += dropped.degenerate;
+        if let Some(skin) = node.get("skin").index() {
+            match Skin::read(root, skin, self.graph, self.buffers) {
+                Ok(skin) => return self.append_posed(builder, node, mesh, &skin),
+                Err(why) => {
+                    let what = "skins that are not valid left out";
+                    self.report
+                        .losses
+                        .add(what, || format!("skins[{skin}]: {why}"));
+                }
+            }
+        }
+        let meshes = self.meshes(builder, node, mesh)?;
+        for world_from_mesh in self.instances(builder, node, number, world_from_node) {
+            for mesh in meshes.iter() {
+                self.append_instance(builder, mesh, world_from_mesh)?;
+            }
         }
         Ok(())
     }
 
+    fn append_instance(
+        &mut self,
+        builder: &mut Builder,
+        mesh: &Mesh,
+        world_from_mesh: DAffine3,
+    ) -> Result<(), SceneError> {
+        builder.check_triangles(self.path, mesh.indices.len() / 3)?;
+        let scene_from_mesh = builder.scene_from_world(world_from_mesh, DVec3::ZERO);
+        let dropped = append_instance(&mut builder.scene, mesh, &scene_from_mesh);
+        self.report.dropped.add(dropped);
+        Ok(())
+    }
+
+    /// Draws a mesh with a skin: its vertices go with the joints, wherever the node itself is.
+    fn append_posed(
+        &mut self,
+        builder: &mut Builder,
+        node: Item<'_>,
+        mesh: usize,
+        skin: &Skin,
+    ) -> Result<(), SceneError> {
+        let weights = self.weights(node, mesh);
+        for (mesh, origin) in self.read_mesh(builder, mesh, &weights, Some(skin))? {
+            let world_from_mesh =
+                self.placement.world_from_mesh * DAffine3::from_translation(origin);
+            self.append_instance(builder, &mesh, world_from_mesh)?;
+        }
+        Ok(())
+    }
+
+    /// The meshes of a node without a skin, in the node's space.
+    fn meshes(
+        &mut self,
+        builder: &mut Builder,
+        node: Item<'_>,
+        mesh: usize,
+    ) -> Result<Rc<Vec<Mesh>>, SceneError> {
+        let weights = self.weights(node, mesh);
+        let key = (mesh, weights.iter().map(|w| w.to_bits()).collect());
+        if let Some(known) = self.known.get(&key) {
+            return Ok(known.clone());
+        }
+        let meshes = self.read_mesh(builder, mesh, &weights, None)?;
+        let meshes = Rc::new(meshes.into_iter().map(|(mesh, _)| mesh).collect::<Vec<_>>());
+        self.known.insert(key, meshes.clone());
+        Ok(meshes)
+    }
+
+    /// Weights of the morph targets: the node's, or else those of its mesh.
+    fn weights(&self, node: Item<'_>, mesh: usize) -> Vec<f64> {
+        let mesh = self.root.get("meshes").at(mesh);
+        let own = node.get("weights");
+        let weights = if own.exists() {
+            own
+        } else {
+            mesh.get("weights")
+        };
+        let finite = |item: Item<'_>| item.number().unwrap_or(0.0);
+        let mut weights: Vec<f64> = weights.items().map(finite).collect();
+        // Trailing zeros change nothing: equal poses share a mesh.
+        while weights.last() == Some(&0.0) {
+            weights.pop();
+        }
+        weights
+    }
+
+    /// The transforms of a node's mesh: its own, or those of EXT_mesh_gpu_instancing.
+    fn instances(
+        &mut self,
+        builder: &Builder,
+        node: Item<'_>,
+        number: usize,
+        world_from_node: DAffine3,
+    ) -> Vec<DAffine3> {
+        let attributes = node.extension("EXT_mesh_gpu_instancing").get("attributes");
+        if !attributes.is_object() {
+            return vec![world_from_node];
+        }
+        match instance_transforms(self.buffers, attributes, builder.corners_left()) {
+            Ok(list) => list.into_iter().map(|t| world_from_node * t).collect(),
+            Err(why) => {
+                let what = "nodes with instances that are not valid drawn once";
+                self.report
+                    .losses
+                    .add(what, || format!("nodes[{number}]: {why}"));
+                vec![world_from_node]
+            }
+        }
+    }
+
+    /// The meshes of all primitives, each with the point that its vertices are relative to.
     fn read_mesh(
         &mut self,
         builder: &mut Builder,
-        mesh: &gltf::Mesh<'_>,
-    ) -> Result<Vec<Mesh>, SceneError> {
+        number: usize,
+        weights: &[f64],
+        skin: Option<&Skin>,
+    ) -> Result<Vec<(Mesh, DVec3)>, SceneError> {
+        let root = self.root;
+        let mesh = root.get("meshes").at(number);
+        if !mesh.exists() {
+            let place = || format!("meshes[{number}]");
+            self.report
+                .losses
+                .add("meshes that do not exist not drawn", place);
+        }
+        self.told.see(mesh);
         let mut meshes = Vec::new();
-        for primitive in mesh.primitives() {
-            let surface = self.materials.of(&primitive.material());
-            let limit = builder.corners_left();
-            let faces = read_faces(&self.buffers, &primitive, surface, limit);
-            let faces = faces.map_err(|what| SceneError::Unsupported {
-                path: self.path.to_owned(),
-                what: format!("mesh {}: {what}; export it again", mesh.index()),
-            })?;
-            let Some(faces) = faces else {
-                self.report.not_faces += 1;
+        for (i, item) in mesh.get("primitives").items().enumerate() {
+            let place = format!("meshes[{number}].primitives[{i}]");
+            self.told.see(item);
+            let mut losses = std::mem::take(&mut self.report.losses);
+            let mut primitive = Primitive {
+                item,
+                place: &place,
+                buffers: self.buffers,
+                losses: &mut losses,
+                limit: builder.corners_left(),
+            };
+            let read = self.read_primitive(builder, &mut primitive, weights, skin);
+            if let Err(why) = &read {
+                losses.add_shape("primitives not drawn", || format!("{place}: {why}"));
+            }
+            self.report.losses = losses;
+            let Some((faces, surface, origin)) = read.ok().flatten() else {
                 continue;
             };
             self.triangles += faces.indices.len() / 3;
             builder.check_read(self.path, self.triangles)?;
-            meshes.extend(self.make_mesh(faces, surface));
+            meshes.extend(self.make_mesh(faces, surface).map(|mesh| (mesh, origin)));
         }
         Ok(meshes)
+    }
+
+    fn read_primitive(
+        &mut self,
+        builder: &mut Builder,
+        primitive: &mut Primitive<'_, '_>,
+        weights: &[f64],
+        skin: Option<&Skin>,
+    ) -> Result<Option<(Faces, Surface, DVec3)>, String> {
+        if !primitive.has_faces() {
+            self.report.not_faces += 1;
+            return Ok(None);
+        }
+        let source = Source {
+            builder,
+            path: self.path,
+            root: self.root,
+            buffers: self.buffers,
+            losses: primitive.losses,
+            told: &mut self.told,
+        };
+        let surface = self.materials.of(source, primitive.item);
+        let mut faces = primitive.faces(surface)?;
+        primitive.morph(&mut faces, weights);
+        let origin = match skin {
+            None => DVec3::ZERO,
+            Some(skin) => skin.pose(primitive, &mut faces).ok_or("it has no joints")?,
+        };
+        Ok(Some((faces, surface, origin)))
     }
 
     /// `None` for a material that is not drawn.
@@ -201,46 +369,58 @@ impl Model<'_> {
             return None;
         }
         let (mesh, dropped) = faces.into_mesh(surface, self.placement.smooth_deg);
-        self.report.dropped.not_finite += dropped.not_finite;
-        self.report.dropped.degenerate += dropped.degenerate;
+        self.report.dropped.add(dropped);
         Some(mesh)
     }
+}
 
-    fn add_camera(
-        &mut self,
-        node: &gltf::Node<'_>,
-        camera: &gltf::Camera<'_>,
-        world_from_node: Affine3A,
-    ) {
-        // Orthographic cameras are not supported.
-        let gltf::camera::Projection::Perspective(lens) = camera.projection() else {
-            return;
-        };
-        let eye = Vec3::from(world_from_node.translation);
-        let forward = world_from_node.transform_vector3(Vec3::NEG_Z);
-        let fov = lens.yfov().to_degrees();
-        let Some(forward) = forward.try_normalize().filter(|_| eye.is_finite()) else {
-            return;
-        };
-        if !(1.0..=170.0).contains(&fov) {
-            return;
+/// The transforms of EXT_mesh_gpu_instancing, at most `limit`.
+fn instance_transforms(
+    buffers: &Buffers<'_>,
+    attributes: Item<'_>,
+    limit: usize,
+) -> Result<Vec<DAffine3>, String> {
+    fn column<const N: usize>(
+        buffers: &Buffers<'_>,
+        item: Item<'_>,
+        limit: usize,
+    ) -> Result<Option<Vec<[f64; N]>>, String> {
+        if !item.exists() {
+            return Ok(None);
         }
-        let given = node.name().or(camera.name());
-        let name = given.map_or_else(|| format!("camera {}", camera.index()), str::to_owned);
-        let taken = self.cameras.iter().any(|c| c.name == name);
-        let name = if taken {
-            format!("{name} {}", self.cameras.len())
-        } else {
-            name
-        };
-        let point = |p: Vec3| format!("{},{},{}", p.x, p.y, p.z);
-        self.cameras.push(NamedCamera {
-            name,
-            options: vec![
-                ("eye".to_owned(), point(eye)),
-                ("target".to_owned(), point(eye + forward)),
-                ("fov".to_owned(), fov.to_string()),
-            ],
-        });
+        let accessor = buffers.accessor(item.index().ok_or("no accessor")?, limit)?;
+        let values = buffers.floats::<N>(&accessor)?;
+        Ok(Some(values.into_iter().map(|v| v.map(f64::from)).collect()))
     }
+    let translations = column::<3>(buffers, attributes.get("TRANSLATION"), limit)?;
+    let rotations = column::<4>(buffers, attributes.get("ROTATION"), limit)?;
+    let scales = column::<3>(buffers, attributes.get("SCALE"), limit)?;
+    let counts = [
+        translations.as_ref().map(Vec::len),
+        rotations.as_ref().map(Vec::len),
+        scales.as_ref().map(Vec::len),
+    ];
+    let mut given = counts.into_iter().flatten();
+    let count = given.next().ok_or("no attribute is known")?;
+    if given.any(|other| other != count) {
+        return Err("its attributes differ in length".to_owned());
+    }
+    let of = |i: usize| {
+        let rotation = rotations
+            .as_ref()
+            .map_or(DQuat::IDENTITY, |r| DQuat::from_array(r[i]));
+        let is_unit = rotation.length() > 1e-6;
+        DAffine3::from_scale_rotation_translation(
+            scales.as_ref().map_or(DVec3::ONE, |s| DVec3::from(s[i])),
+            if is_unit {
+                rotation.normalize()
+            } else {
+                DQuat::IDENTITY
+            },
+            translations
+                .as_ref()
+                .map_or(DVec3::ZERO, |t| DVec3::from(t[i])),
+        )
+    };
+    Ok((0..count).map(of).collect())
 }

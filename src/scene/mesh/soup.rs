@@ -85,6 +85,13 @@ pub struct Dropped {
     pub degenerate: usize,
 }
 
+impl Dropped {
+    pub fn add(&mut self, more: Self) {
+        self.not_finite += more.not_finite;
+        self.degenerate += more.degenerate;
+    }
+}
+
 impl Soup {
     pub fn position(&self, corner: Corner) -> Vec3 {
         self.positions[corner.position as usize]

@@ -2,18 +2,11 @@
 
 use std::collections::HashMap;
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2};
 
 use crate::scene::mesh::soup::{Corner, NONE, Triangle};
+use crate::scene::number;
 use crate::scene::obj::text::{Counts, ObjText};
-
-/// A malformed line.
-#[derive(Debug, PartialEq, Eq)]
-pub struct LineError {
-    /// Line number, from 1.
-    pub line: usize,
-    pub what: String,
-}
 
 /// Parser state left by the preceding lines.
 #[derive(Debug, Default, Clone)]
@@ -54,7 +47,7 @@ impl<'t> Statement<'t> {
             "vt" => Self::Texcoord(rest),
             "vn" => Self::Normal(rest),
             "f" | "fo" => Self::Face(rest),
-            "l" | "p" => Self::Undrawn,
+            "l" | "p" | "curv" | "curv2" | "surf" => Self::Undrawn,
             "s" => Self::Smoothing(rest.split_whitespace().next().map_or(0, smoothing_group)),
             "usemtl" if !rest.is_empty() => Self::Material(rest),
             "mtllib" if !rest.is_empty() => Self::Library(rest),
@@ -78,6 +71,8 @@ pub struct LineReader {
     state: State,
     /// Totals of the whole file: positive indices may refer to later lines.
     total: Counts,
+    /// Positions are relative to it.
+    origin: DVec3,
     /// Index in `out` of the state's material; `None` until a face uses it.
     material: Option<u32>,
     indices: HashMap<String, u32>,
@@ -85,11 +80,12 @@ pub struct LineReader {
 }
 
 impl LineReader {
-    pub fn new(state: State, total: Counts) -> Self {
+    pub fn new(state: State, total: Counts, origin: DVec3) -> Self {
         Self {
             out: ObjText::default(),
             state,
             total,
+            origin,
             material: None,
             indices: HashMap::new(),
             corners: Vec::new(),
@@ -100,71 +96,117 @@ impl LineReader {
         self.out
     }
 
-    pub fn line(&mut self, line: &str) -> Result<(), String> {
-        match Statement::of(line) {
-            Statement::Vertex(rest) => self.vertex(rest)?,
-            Statement::Texcoord(rest) => {
-                let uv = numbers::<2>(rest, 1, "a texture coordinate")?;
-                self.out.soup.texcoords.push(Vec2::from(uv));
-                self.state.seen[1] += 1;
+    /// Reads line number `at`. One that cannot be read costs itself alone: a vertex keeps its number, so that other faces stay.
+    pub fn line(&mut self, line: &str, at: usize) {
+        let (what, result) = match Statement::of(line) {
+            Statement::Vertex(rest) => ("vertices that are no numbers", self.vertex(rest)),
+            Statement::Texcoord(rest) => (
+                "texture coordinates that are no numbers",
+                self.texcoord(rest),
+            ),
+            Statement::Normal(rest) => ("normals that are no numbers", self.normal(rest)),
+            Statement::Face(rest) => ("faces left out", self.face(rest)),
+            Statement::Undrawn => {
+                self.out.not_faces += 1;
+                return;
             }
-            Statement::Normal(rest) => {
-                let normal = numbers::<3>(rest, 3, "a normal")?;
-                self.out.soup.normals.push(Vec3::from(normal));
-                self.state.seen[2] += 1;
+            Statement::Smoothing(group) => {
+                self.state.smoothing = group;
+                return;
             }
-            Statement::Face(rest) => self.face(rest)?,
-            Statement::Undrawn => self.out.not_faces += 1,
-            Statement::Smoothing(group) => self.state.smoothing = group,
             Statement::Material(name) => {
                 name.clone_into(&mut self.state.material);
                 self.material = None;
+                return;
             }
-            Statement::Library(rest) => self.out.libraries.push(rest.to_owned()),
-            Statement::Other => {}
+            Statement::Library(rest) => {
+                self.out.libraries.push(rest.to_owned());
+                return;
+            }
+            Statement::Other => return,
+        };
+        if let Err(why) = result {
+            self.out
+                .losses
+                .add_shape(what, || format!("line {at}: {why}"));
         }
-        Ok(())
     }
 
-    /// Three coordinates, an ignored weight (for rational curves), and a colour.
+    fn texcoord(&mut self, rest: &str) -> Result<(), String> {
+        let uv = numbers::<2>(rest, 1, "a texture coordinate");
+        let plain = uv
+            .as_ref()
+            .map_or(Vec2::ZERO, |[u, v]| Vec2::new(*u as f32, *v as f32));
+        self.out.soup.texcoords.push(plain);
+        self.state.seen[1] += 1;
+        uv.map(|_| ())
+    }
+
+    fn normal(&mut self, rest: &str) -> Result<(), String> {
+        let normal = numbers::<3>(rest, 3, "a normal");
+        let plain = normal.as_ref().map_or(DVec3::ZERO, |n| DVec3::from(*n));
+        self.out.soup.normals.push(plain.as_vec3());
+        self.state.seen[2] += 1;
+        normal.map(|_| ())
+    }
+
+    /// Three coordinates, then nothing, a weight (for rational curves, ignored), a colour, or four numbers whose meaning the other
+    /// vertices tell.
     fn vertex(&mut self, rest: &str) -> Result<(), String> {
         let soup = &mut self.out.soup;
         let mut words = rest.split_ascii_whitespace();
-        let position = numbers_of::<3>(&mut words, 3, "a vertex position")?;
-        let tail: [Option<f32>; 4] = std::array::from_fn(|_| words.next()?.parse().ok());
+        let position = numbers_of::<3>(&mut words, 3, "a vertex position");
+        let position = position.or_else(|error| {
+            // Commas may separate the numbers.
+            let plain = rest.replace(',', " ");
+            numbers_of::<3>(&mut plain.split_ascii_whitespace(), 3, "").map_err(|_| error)
+        });
+        let mut more = || number::parse(words.next()?).map(|v| v as f32);
+        let tail: [Option<f32>; 4] = std::array::from_fn(|_| more());
         let colour = match tail {
-            [Some(r), Some(g), Some(b), None] => Some([r, g, b]),
-            [_, Some(r), Some(g), Some(b)] => Some([r, g, b]),
+            [Some(r), Some(g), Some(b), last] => Some([r, g, b, last.unwrap_or(1.0)]),
             _ => None,
         };
-        if let Some(colour) = colour.filter(|rgb| rgb.iter().all(|v| v.is_finite())) {
+        if let Some(colour) = colour.filter(|c| c.iter().all(|v| v.is_finite())) {
             // Earlier positions had no colour: fill with white.
             soup.colours.resize(soup.positions.len(), [1.0; 4]);
-            let [r, g, b] = colour;
-            soup.colours.push([r, g, b, 1.0]);
+            soup.colours.push(colour);
+            self.out.sevens += usize::from(tail[3].is_some());
         }
-        soup.positions.push(Vec3::from(position));
+        let relative = position
+            .as_ref()
+            .map_or(DVec3::NAN, |p| DVec3::from(*p) - self.origin);
+        soup.positions.push(relative.as_vec3());
         self.state.seen[0] += 1;
-        Ok(())
+        position.map(|_| ())
     }
 
     fn face(&mut self, rest: &str) -> Result<(), String> {
         let mut corners = std::mem::take(&mut self.corners);
         corners.clear();
-        for word in rest.split_ascii_whitespace() {
-            // A trailing comment.
-            if word.starts_with('#') {
-                continue;
+        let mut result = Ok(());
+        // A comment may follow.
+        let words = rest
+            .split_ascii_whitespace()
+            .take_while(|word| !word.starts_with('#'));
+        for word in words {
+            match self.corner(word) {
+                Ok(corner) => corners.push(corner),
+                Err(why) => {
+                    result = Err(why);
+                    break;
+                }
             }
-            corners.push(self.corner(word)?);
         }
-        if corners.len() < 3 {
-            self.out.not_faces += 1;
-        } else {
-            self.push_face(&corners);
+        if result.is_ok() {
+            if corners.len() < 3 {
+                self.out.not_faces += 1;
+            } else {
+                self.push_face(&corners);
+            }
         }
         self.corners = corners;
-        Ok(())
+        result
     }
 
     fn push_face(&mut self, corners: &[[Index; 3]]) {
@@ -223,9 +265,10 @@ impl LineReader {
         match corner[0] {
             Index::At(_) => Ok(corner),
             Index::None => Err(format!("\"{}\" has no vertex index", short(word))),
-            Index::OutOfRange if word.split('/').next() == Some("0") => {
-                Err(format!("\"{word}\" has index 0; OBJ indices start at 1"))
-            }
+            Index::OutOfRange if word.split('/').next() == Some("0") => Err(format!(
+                "\"{}\" has index 0; OBJ indices start at 1",
+                short(word)
+            )),
             Index::OutOfRange => Err(format!(
                 "\"{}\" refers to a vertex that does not exist (there are {})",
                 short(word),
@@ -241,29 +284,24 @@ fn short(word: &str) -> &str {
     &word[..end]
 }
 
-fn numbers<const N: usize>(rest: &str, least: usize, what: &str) -> Result<[f32; N], String> {
+/// Parses `N` numbers, of which the first `least` are required; the others default to 0.
+pub fn numbers<const N: usize>(rest: &str, least: usize, what: &str) -> Result<[f64; N], String> {
     numbers_of(&mut rest.split_ascii_whitespace(), least, what)
 }
 
-/// Parses `N` numbers, of which the first `least` are required; the others default to 0.
 fn numbers_of<'t, const N: usize>(
     words: &mut impl Iterator<Item = &'t str>,
     least: usize,
     what: &str,
-) -> Result<[f32; N], String> {
+) -> Result<[f64; N], String> {
     let mut values = [0.0; N];
     for (i, value) in values.iter_mut().enumerate() {
         match words.next() {
-            // The C runtime of old Windows programs prints 1.#INF, 1.#IND and 1.#QNAN.
-            Some(word) if word.contains('#') && i < least => *value = f32::NAN,
-            Some(word) => {
-                let parsed = word.parse().map_err(|_| format!("{what} is not a number"));
-                *value = if i < least {
-                    parsed?
-                } else {
-                    parsed.unwrap_or(0.0)
-                };
-            }
+            Some(word) => match number::parse(word) {
+                Some(parsed) => *value = parsed,
+                None if i < least => return Err(format!("{what} is not a number")),
+                None => break,
+            },
             None if i < least => {
                 let need = if least == 3 {
                     "three numbers"

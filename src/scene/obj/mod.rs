@@ -1,34 +1,36 @@
 //! Loading of OBJ models.
 
 mod lines;
+mod map_options;
 mod mtl;
+mod mtl_material;
 mod text;
 
 use std::path::Path;
 
-use glam::{Affine2, Affine3A};
+use glam::Affine2;
 
 use crate::scene::builder::Builder;
 use crate::scene::error::SceneError;
+use crate::scene::losses::{Losses, shortened};
 use crate::scene::material::{MTL_DEFAULT, Material};
 use crate::scene::mesh::arena::append_soup;
 use crate::scene::mesh::soup::{Dropped, MaterialUse, NONE, Soup};
 use crate::scene::obj::mtl::Libraries;
 use crate::scene::obj::text::ObjText;
+use crate::scene::origin;
+use crate::scene::placement::Placement;
 use crate::scene::texture::linear_from_srgb;
 
-/// Placement of a mesh in the world.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Placement {
-    pub world_from_mesh: Affine3A,
-    /// Crease angle below which corners without a normal are smoothed, degrees.
-    pub smooth_deg: Option<f32>,
-}
+/// Longest path and list of reasons why there is nothing to draw, characters: what is around them makes a line of 200.
+const MAX_REASONS: usize = 150;
+/// What is left for the reasons, however long the path is.
+const MIN_REASONS: usize = 60;
 
 /// Adds the model at `path` to the scene.
 ///
 /// # Errors
-/// When a file cannot be read, a line is malformed, or there is nothing to draw.
+/// When a file cannot be read, a limit is exceeded, or there is nothing to draw.
 pub fn append_obj(
     builder: &mut Builder,
     path: &Path,
@@ -37,27 +39,34 @@ pub fn append_obj(
     builder.progress.at(0.0, "reading");
     let text = builder.files.read_text(path)?;
     builder.progress.at(0.1, "parsing");
-    let parsed = text::read(&text, builder.threads).map_err(|e| SceneError::Malformed {
-        path: path.to_owned(),
-        line: e.line,
-        what: e.what,
-    })?;
+    let mut points = text::sample(&text);
+    points.retain(|point| point.is_finite());
+    let origin = origin::middle(&mut points).origin();
+    let world_from_mesh = placement.world_from_mesh;
+    let mut points: Vec<_> = points
+        .iter()
+        .map(|p| world_from_mesh.transform_point3(*p))
+        .collect();
+    builder.choose_origin(path, &mut points);
+    let parsed = text::read(&text, builder.threads, origin);
     drop(text);
     builder.progress.at(0.5, "reading materials");
     let folder = path.parent().unwrap_or(Path::new(""));
-    let libraries = Libraries::read(builder, path, folder, &parsed.libraries);
+    let libraries = Libraries::read(builder, path, folder, &parsed);
     warn_of_undefined(builder, path, &parsed.materials, &libraries);
     let ObjText {
         mut soup,
         materials,
         not_faces,
         dangling,
+        sevens,
+        losses,
         ..
     } = parsed;
     // Checked before the polygons are split, because a polygon's triangles take few bytes in the file.
     builder.check_triangles(path, soup.count())?;
     soup.triangulate();
-    finish_colours(&mut soup);
+    finish_colours(&mut soup, sevens);
     let uses: Vec<MaterialUse> = materials
         .iter()
         .map(|name| material_use(builder, path, &libraries, name, &soup))
@@ -66,10 +75,11 @@ pub fn append_obj(
     let mut report = ImportReport {
         not_faces,
         dangling,
+        losses,
         ..ImportReport::default()
     };
     report.undrawn = drop_undrawn(&mut soup, &uses);
-    soup.transform(&placement.world_from_mesh);
+    soup.transform(&builder.scene_from_world(world_from_mesh, origin));
     let (dropped, faces) = soup.drop_unusable();
     report.dropped = dropped;
     report.finish(builder, path, soup.triangles.is_empty())?;
@@ -84,15 +94,17 @@ pub fn append_obj(
 }
 
 /// Counts of elements that are not drawn, or not drawn as specified in the file.
-#[derive(Debug, Default, Clone, Copy)]
+#[derive(Debug, Default)]
 pub struct ImportReport {
     pub dropped: Dropped,
     /// Triangles of transparent materials.
     pub undrawn: usize,
-    /// Points, lines, and faces with fewer than three corners.
+    /// Points, lines, curves, and faces with fewer than three corners.
     pub not_faces: usize,
     /// Faces with out-of-range indices.
     pub dangling: usize,
+    /// Parts that cannot be read.
+    pub losses: Losses,
 }
 
 impl ImportReport {
@@ -108,7 +120,9 @@ impl ImportReport {
             let why = if left_out.is_empty() {
                 String::new()
             } else {
-                format!(" ({})", left_out.join("; "))
+                let most = MAX_REASONS.saturating_sub(path.as_os_str().len());
+                let reasons = left_out.join("; ");
+                format!(" ({})", shortened(&reasons, most.max(MIN_REASONS)))
             };
             return Err(SceneError::NoTriangles {
                 path: path.to_owned(),
@@ -134,17 +148,16 @@ impl ImportReport {
             ),
             (
                 self.not_faces,
-                "points, lines and faces of fewer than three corners skipped",
+                "points, lines, curves and faces of fewer than three corners skipped",
             ),
             (
                 self.dangling,
                 "faces refer to normals or texture coordinates that do not exist; computed instead",
             ),
         ];
-        rows.into_iter()
-            .filter(|(n, _)| *n > 0)
-            .map(|(n, what)| format!("{n} {what}"))
-            .collect()
+        let counted = rows.into_iter().filter(|(n, _)| *n > 0);
+        let counted = counted.map(|(n, what)| format!("{n} {what}"));
+        self.losses.lines().chain(counted).collect()
     }
 }
 
@@ -188,7 +201,15 @@ fn drop_undrawn(soup: &mut Soup, uses: &[MaterialUse]) -> usize {
 
 /// Converts vertex colours to linear light. OBJ does not define their encoding; in practice files contain sRGB, 0..1 (or 0..255
 /// if any value exceeds 1). Colours that are all white are dropped.
-fn finish_colours(soup: &mut Soup) {
+///
+/// Of four numbers behind a position (`sevens` vertices have them), the first three are the colour and the last its opacity, which
+/// is not used. If the first is 1 everywhere and the last is not, the first is a weight and the others are the colour.
+fn finish_colours(soup: &mut Soup, sevens: usize) {
+    let is_weight = |c: &[f32; 4]| c[0] == 1.0;
+    if sevens > 0 && soup.colours.iter().all(is_weight) && soup.colours.iter().any(|c| c[3] != 1.0)
+    {
+        soup.colours.iter_mut().for_each(|c| c.rotate_left(1));
+    }
     let rgb = |c: &[f32; 4]| [c[0], c[1], c[2]];
     if soup.colours.iter().all(|c| rgb(c) == [1.0; 3]) {
         soup.colours = Vec::new();
@@ -202,16 +223,16 @@ fn finish_colours(soup: &mut Soup) {
     }
 }
 
+/// Names are told in one line, whatever is in them.
 fn warn_of_undefined(
     builder: &mut Builder,
     path: &Path,
     materials: &[String],
     libraries: &Libraries,
 ) {
-    let mut undefined: Vec<&str> = materials
-        .iter()
-        .map(String::as_str)
-        .filter(|name| !name.is_empty() && !libraries.has(name))
+    let names = materials.iter().map(String::as_str);
+    let mut undefined: Vec<&str> = names
+        .filter(|n| !n.is_empty() && !libraries.has(n))
         .collect();
     undefined.sort_unstable();
     if let [first, rest @ ..] = undefined.as_slice() {
@@ -220,9 +241,8 @@ fn warn_of_undefined(
         } else {
             format!(" and {} more", rest.len())
         };
-        builder.warn(
-            path,
-            &format!("material \"{first}\"{more} not defined; drawn grey"),
-        );
+        let first = shortened(first, 60);
+        let what = format!("material \"{first}\"{more} not defined; drawn grey");
+        builder.warn(path, &what);
     }
 }

@@ -161,34 +161,3 @@ fn pbr_keys_override_phong() {
     assert!((material.diffuse[0] - 0.6).abs() < 1e-6, "{material:?}");
     assert!((material.shininess - 30.0).abs() < 1e-3, "{material:?}");
 }
-
-#[test]
-fn file_names_are_found_among_options() {
-    for (line, name) in [
-        ("wood.png", "wood.png"),
-        ("texture 01.png", "texture 01.png"),
-        ("-s 0.1 0.2 specular.jpg", "specular.jpg"),
-        ("-o 0.1 diffuse.jpg", "diffuse.jpg"),
-        ("-t 0.1 0.2 0.3 a b.jpg", "a b.jpg"),
-        ("-colorspace sRGB -o 0.1 d.jpg", "d.jpg"),
-        ("-imfchan r bump.jpg -bm 1.5", "bump.jpg"),
-        ("-mm 0.1 0.3 s.jpg", "s.jpg"),
-        ("-type cube_top s.jpg", "s.jpg"),
-        ("-s 1 1 1 2", "2"),
-        ("\"quoted name.png\"", "quoted name.png"),
-        ("-bm", "-bm"),
-    ] {
-        assert_eq!(map_options(line).0, name, "{line}");
-    }
-}
-
-#[test]
-fn options_count_before_and_after_the_name() {
-    let options = |line| map_options(line).1;
-    assert_eq!(options("-s 2 3 1 -o 0.5 0.25 a.png").scale, [2.0, 3.0]);
-    assert_eq!(options("-s 2 3 1 -o 0.5 0.25 a.png").offset, [0.5, 0.25]);
-    assert_eq!(options("-imfchan g a b.png -bm 1.5").bump, 1.5);
-    assert_eq!(options("-imfchan g a.png").channel, Channel::Number(1));
-    assert_eq!(options("-s nan 1e30 a.png").scale, [1.0, 1.0]);
-    assert_eq!(options("a.png"), MapOptions::default());
-}

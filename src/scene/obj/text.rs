@@ -7,10 +7,12 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::thread;
 
+use glam::DVec3;
 use memchr::{memchr_iter, memrchr};
 
+use crate::scene::losses::Losses;
 use crate::scene::mesh::soup::Soup;
-use crate::scene::obj::lines::{LineError, LineReader, State, Statement};
+use crate::scene::obj::lines::{LineReader, State, Statement, numbers};
 
 /// Minimum chunk size, bytes: a smaller chunk is not worth a thread.
 const MIN_CHUNK: usize = 1 << 20;
@@ -27,16 +29,38 @@ pub struct ObjText {
     pub not_faces: usize,
     /// Number of faces with an out-of-range normal or texture coordinate index.
     pub dangling: usize,
+    /// Number of vertices with four numbers behind the position.
+    pub sevens: usize,
+    /// Lines that cannot be read.
+    pub losses: Losses,
 }
 
 /// Numbers of `v`, `vt` and `vn` lines.
 pub type Counts = [usize; 3];
 
-/// Parses a whole file with up to `threads` threads.
-///
-/// # Errors
-/// The first malformed line, or the first face with an out-of-range vertex index.
-pub fn read(text: &str, threads: usize) -> Result<ObjText, LineError> {
+/// Vertices that are looked at to find where a model lies.
+const LOOKED_AT: usize = 256;
+
+/// Positions of vertices from all over a file.
+pub fn sample(text: &str) -> Vec<DVec3> {
+    let step = (text.len() / LOOKED_AT).max(1);
+    let mut points = Vec::new();
+    let mut from = 0;
+    while let Some(rest) = text.as_bytes().get(from..) {
+        let Some(at) = memchr::memmem::find(rest, b"\nv ").map(|i| from + i + 1) else {
+            break;
+        };
+        let end = text[at..].find('\n').map_or(text.len(), |i| at + i);
+        let position = numbers::<3>(&text[at + 1..end], 3, "a vertex");
+        points.extend(position.ok().map(DVec3::from));
+        from = (at + step).max(end);
+    }
+    points
+}
+
+/// Parses a whole file with up to `threads` threads. Positions become relative to `origin`. A line that cannot be read is left
+/// out and counted.
+pub fn read(text: &str, threads: usize, origin: DVec3) -> ObjText {
     let chunks = cut(text, threads.clamp(1, 1 + text.len() / MIN_CHUNK));
     let prescans: Vec<Prescan> = in_parallel(&chunks, |text| prescan(text));
     let mut starts = Vec::with_capacity(chunks.len());
@@ -48,13 +72,13 @@ pub fn read(text: &str, threads: usize) -> Result<ObjText, LineError> {
     let total = state.seen;
     let jobs: Vec<(&str, State)> = chunks.into_iter().zip(starts).collect();
     let parts = in_parallel(&jobs, |(text, state)| {
-        read_chunk(text, state.clone(), total)
+        read_chunk(text, state.clone(), total, origin)
     });
     let (mut whole, mut known) = (ObjText::default(), HashMap::new());
     for part in parts {
-        whole.append(part?, &mut known);
+        whole.append(part, &mut known);
     }
-    Ok(whole)
+    whole
 }
 
 /// Runs `work` on all items: the first on this thread, each of the others on its own thread.
@@ -161,16 +185,13 @@ fn prescan(text: &str) -> Prescan<'_> {
     found
 }
 
-fn read_chunk(text: &str, state: State, total: Counts) -> Result<ObjText, LineError> {
+fn read_chunk(text: &str, state: State, total: Counts, origin: DVec3) -> ObjText {
     let first_line = state.lines;
-    let mut reader = LineReader::new(state, total);
+    let mut reader = LineReader::new(state, total, origin);
     for (number, line) in logical_lines(text) {
-        reader.line(&line).map_err(|what| LineError {
-            line: first_line + number,
-            what,
-        })?;
+        reader.line(&line, first_line + number);
     }
-    Ok(reader.finish())
+    reader.finish()
 }
 
 impl ObjText {
@@ -186,6 +207,8 @@ impl ObjText {
         self.libraries.extend(next.libraries);
         self.not_faces += next.not_faces;
         self.dangling += next.dangling;
+        self.sevens += next.sevens;
+        self.losses.append(next.losses);
         self.soup
             .append(next.soup, |material| numbers[material as usize]);
     }

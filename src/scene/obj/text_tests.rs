@@ -7,8 +7,14 @@ use crate::scene::mesh::soup::{Corner, NONE};
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
+fn told(out: &ObjText) -> Vec<String> {
+    out.losses.lines().collect()
+}
+
 fn good(text: &str) -> ObjText {
-    read(text, 1).expect("good text")
+    let out = read(text, 1, DVec3::ZERO);
+    assert_eq!(told(&out), [""; 0]);
+    out
 }
 
 fn positions(corners: &[Corner; 3]) -> [u32; 3] {
@@ -22,8 +28,12 @@ fn a_backslash_continues_a_line() {
     ));
     assert_eq!(positions(&out.soup.triangles[0].corners), [0, 1, 2]);
     assert_eq!(out.materials, ["", "red stone"]);
-    let error = read(&format!("{TRIANGLE}f 1 \\\n 2 \\\n3\nf 1 2 9"), 1).expect_err("no vertex 9");
-    assert_eq!(error.line, 7);
+    let out = read(
+        &format!("{TRIANGLE}f 1 \\\n 2 \\\n3\nf 1 2 9"),
+        1,
+        DVec3::ZERO,
+    );
+    assert!(told(&out)[0].contains("line 7"), "{:?}", told(&out));
 }
 
 #[test]
@@ -62,9 +72,15 @@ fn bad_faces_name_their_line() {
         ("f 1/1/1/1 2 3", "more than three"),
         ("v 1 2", "three numbers"),
     ] {
-        let error = read(&format!("{TRIANGLE}{face}\n"), 1).expect_err(face);
-        assert_eq!(error.line, 4, "{face}");
-        assert!(error.what.contains(part), "{face}: {}", error.what);
+        let out = read(&format!("{TRIANGLE}{face}\nf 1 2 3\n"), 1, DVec3::ZERO);
+        let [line] = &told(&out)[..] else {
+            panic!("{face}: {:?}", told(&out))
+        };
+        assert!(
+            line.contains("line 4") && line.contains(part),
+            "{face}: {line}"
+        );
+        assert_eq!(out.soup.triangles.len(), 1, "the other stays: {face}");
     }
 }
 
@@ -82,9 +98,10 @@ fn colours_follow_the_position() {
     let out = good("v 0 0 0\nv 1 0 0 0.5 0.25 1\nv 0 1 0 1 0.1 0.2 0.3\nv 0 0 1 nan 0 0\n");
     assert_eq!(
         out.soup.colours,
-        [[1.0; 4], [0.5, 0.25, 1.0, 1.0], [0.1, 0.2, 0.3, 1.0]],
+        [[1.0; 4], [0.5, 0.25, 1.0, 1.0], [1.0, 0.1, 0.2, 0.3]],
         "the fourth colour is not finite; the list is padded later"
     );
+    assert_eq!(out.sevens, 1);
 }
 
 /// The same file, parsed as one chunk and as four.
@@ -103,7 +120,8 @@ fn chunks_give_what_the_whole_gives() {
         }
     }
     assert!(text.len() > 3 * MIN_CHUNK, "{}", text.len());
-    let (whole, parts) = (read(&text, 1).expect("good"), read(&text, 4).expect("good"));
+    let parsed = |text: &str, threads| read(text, threads, DVec3::ZERO);
+    let (whole, parts) = (parsed(&text, 1), parsed(&text, 4));
     assert_eq!(cut(&text, 4).len(), 4);
     assert_eq!(whole.soup.triangles, parts.soup.triangles);
     assert_eq!(whole.soup.positions, parts.soup.positions);
@@ -118,6 +136,50 @@ fn chunks_give_what_the_whole_gives() {
         (whole.not_faces, whole.dangling),
         (parts.not_faces, parts.dangling)
     );
-    let broken = format!("{text}f 1 2 x\n");
-    assert_eq!(read(&broken, 1).map(|_| ()), read(&broken, 4).map(|_| ()));
+    let broken = format!("f 1 2 x\n{text}f 1 2 x\n");
+    let told_of = told(&parsed(&broken, 4));
+    assert_eq!(told(&parsed(&broken, 1)), told_of);
+    assert!(
+        told_of[0].starts_with("2 faces left out; first: line 1:"),
+        "{told_of:?}"
+    );
+}
+
+#[test]
+fn every_spelling_of_a_line_is_read() {
+    for (line, x) in [
+        ("v 1,5 0 0", 1.5),
+        ("v 1.5,0,0", 1.5),
+        ("v\t1.5  0 0 # far", 1.5),
+        ("v +1.5e0 0 0 1.0", 1.5),
+        ("v 1.5 0", f32::NAN),
+        ("v -nan(ind) 0 0", f32::NAN),
+        ("v 1.#INF 0 0", f32::INFINITY),
+        ("v x 0 0", f32::NAN),
+    ] {
+        let out = read(&format!("{line}\nf 1 1 1 # of\tthis\n"), 1, DVec3::ZERO);
+        let found = out.soup.positions[0].x;
+        assert!(
+            found == x || found.is_nan() && x.is_nan(),
+            "{line}: {found}"
+        );
+        assert_eq!(out.soup.triangles.len(), 1, "{line}");
+    }
+}
+
+#[test]
+fn positions_are_relative_to_an_origin_in_f64() {
+    let text =
+        "#\nv 500000.125 1 -6100000.0625\nv 500001.126 1 -6100000\nv 500000 2 -6100000\nf 1 2 3\n";
+    let points = sample(text);
+    assert_eq!(points.len(), 3);
+    let out = read(text, 1, DVec3::new(5e5, 0.0, -6.1e6));
+    assert_eq!(out.soup.positions[0].to_array(), [0.125, 1.0, -0.0625]);
+    assert_eq!(out.soup.positions[1].x, 1.126);
+    let many = "#\n".to_owned() + &"v 1 2 3\nv 4 5 6\n".repeat(5000);
+    assert!(
+        (200..600).contains(&sample(&many).len()),
+        "{}",
+        sample(&many).len()
+    );
 }

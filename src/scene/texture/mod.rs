@@ -16,6 +16,34 @@ pub enum Encoding {
     Linear,
 }
 
+/// What a texture shows outside of its picture, along one side.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+pub enum Wrap {
+    /// The picture again.
+    #[default]
+    Repeat,
+    /// The picture mirrored, then again.
+    Mirror,
+    /// The edge.
+    Clamp,
+}
+
+impl Wrap {
+    /// The texel, 0..`count`, that stands for texel `i` of the plane.
+    pub fn texel(self, i: i64, count: u32) -> u32 {
+        let n = i64::from(count);
+        let inside = match self {
+            Self::Repeat => i.rem_euclid(n),
+            Self::Clamp => i.clamp(0, n - 1),
+            Self::Mirror => {
+                let pair = i.rem_euclid(2 * n);
+                pair.min(2 * n - 1 - pair)
+            }
+        };
+        inside as u32
+    }
+}
+
 /// An image or one of its mip levels: RGBA, top row first, no padding.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Texture {
@@ -29,6 +57,8 @@ pub struct Texture {
     pub rgba8: Vec<u8>,
     /// Encoding of red, green and blue.
     pub encoding: Encoding,
+    /// What is outside of the picture along u and v.
+    pub wrap: [Wrap; 2],
 }
 
 impl Texture {
@@ -93,6 +123,7 @@ fn halve(above: &Texture) -> Texture {
         height,
         rgba8,
         encoding: above.encoding,
+        wrap: above.wrap,
     }
 }
 
@@ -161,7 +192,16 @@ mod tests {
             height,
             rgba8,
             encoding: Encoding::Srgb,
+            wrap: [Wrap::Repeat; 2],
         }
+    }
+
+    #[test]
+    fn texels_outside_of_the_picture() {
+        let row = |wrap: Wrap| (-3..6).map(|i| wrap.texel(i, 3)).collect::<Vec<_>>();
+        assert_eq!(row(Wrap::Repeat), [0, 1, 2, 0, 1, 2, 0, 1, 2]);
+        assert_eq!(row(Wrap::Mirror), [2, 1, 0, 0, 1, 2, 2, 1, 0]);
+        assert_eq!(row(Wrap::Clamp), [0, 0, 0, 0, 1, 2, 2, 2, 2]);
     }
 
     #[test]

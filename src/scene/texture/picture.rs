@@ -1,6 +1,6 @@
 //! Decoding of common image formats into the textures of a scene, with limits checked before decoding.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::io::Cursor;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use crate::scene::LoadOptions;
 use crate::scene::error::one_line;
 use crate::scene::files::Files;
 use crate::scene::texture::normal_map::{is_height_field, normals_from_heights};
-use crate::scene::texture::{Encoding, Texture, srgb8_from_linear};
+use crate::scene::texture::{Encoding, Texture, Wrap, srgb8_from_linear};
 
 /// The image channel used as a cut-out mask (MTL `-imfchan`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -26,11 +26,21 @@ pub enum Channel {
 
 /// Identifies a texture: equal keys give the same texture.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub enum TextureKey {
+pub struct TextureKey {
+    pub kind: TextureKind,
+    /// What is outside of the picture along u and v.
+    pub wrap: [Wrap; 2],
+}
+
+/// What a texture is made of.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum TextureKind {
     /// Colours; alpha is set to 1.
     Colour(PathBuf),
     /// Colours with the alpha of the image.
     ColourAndAlpha(PathBuf),
+    /// Colours with the alpha of the image if that is a cut-out, otherwise 1.
+    ColourAndCutOut(PathBuf),
     /// Colours of the first image (white if none), alpha from a channel of the second.
     Masked(Option<PathBuf>, PathBuf, Channel),
     /// A normal map, or a height map to convert into one. The `u32` holds the bits of an `f32`, a factor on its slopes.
@@ -47,7 +57,9 @@ pub struct TextureStore {
     known: HashMap<TextureKey, Option<usize>>,
     /// Images embedded in models, by the names given by the importer.
     embedded: HashMap<PathBuf, EmbeddedImage>,
-    means: HashMap<PathBuf, Result<[f32; 3], String>>,
+    means: HashMap<PathBuf, Option<[f32; 4]>>,
+    /// Textures whose alpha was found to be a cut-out.
+    cut_outs: HashSet<usize>,
 }
 
 /// An image embedded in a model.
@@ -72,6 +84,7 @@ impl TextureStore {
             bytes_left: options.max_texture_bytes,
             effort_left: options.max_texture_bytes.saturating_mul(EFFORT),
             means: HashMap::new(),
+            cut_outs: HashSet::new(),
             known: HashMap::new(),
             embedded: HashMap::new(),
         }
@@ -92,50 +105,69 @@ impl TextureStore {
         if let Some(known) = self.known.get(&key) {
             return Ok(*known);
         }
-        let made = self.make(files, &key);
+        let made = self.make(files, &key.kind);
         let index = made.as_ref().ok().map(|_| textures.len());
+        let wrap = key.wrap;
+        let may_cut = matches!(key.kind, TextureKind::ColourAndCutOut(_));
         self.known.insert(key, index);
-        textures.push(made?);
+        let texture = Texture { wrap, ..made? };
+        if may_cut && texture.rgba8.chunks_exact(4).any(|t| t[3] != 255) {
+            self.cut_outs.insert(textures.len());
+        }
+        textures.push(texture);
         Ok(index)
     }
 
-    fn make(&mut self, files: &Files, key: &TextureKey) -> Result<Texture, String> {
-        match key {
-            TextureKey::Colour(path) => {
+    /// Whether a texture made as [`TextureKind::ColourAndCutOut`] is a cut-out.
+    pub fn is_cut_out(&self, texture: usize) -> bool {
+        self.cut_outs.contains(&texture)
+    }
+
+    fn make(&mut self, files: &Files, kind: &TextureKind) -> Result<Texture, String> {
+        match kind {
+            TextureKind::Colour(path) => {
                 let mut texture = self.colours(files, path)?;
                 texture.rgba8.chunks_exact_mut(4).for_each(|t| t[3] = 255);
                 Ok(texture)
             }
-            TextureKey::ColourAndAlpha(path) => self.colours(files, path),
-            TextureKey::Masked(colour, mask, channel) => {
+            TextureKind::ColourAndAlpha(path) => self.colours(files, path),
+            TextureKind::ColourAndCutOut(path) => {
+                let mut texture = self.colours(files, path)?;
+                if !is_cut_out(&texture.rgba8) {
+                    texture.rgba8.chunks_exact_mut(4).for_each(|t| t[3] = 255);
+                }
+                Ok(texture)
+            }
+            TextureKind::Masked(colour, mask, channel) => {
                 let mask = self.colours(files, mask)?;
                 // Without the colours, the mask still cuts out the right holes.
                 let colour = colour.as_ref().and_then(|p| self.colours(files, p).ok());
                 Ok(masked(colour, mask, *channel))
             }
-            TextureKey::Normals(path, strength) => {
+            TextureKind::Normals(path, strength) => {
                 let image = self.decode(files, path)?;
                 Ok(normals(name_of(path), image, f32::from_bits(*strength)))
             }
         }
     }
 
-    /// Mean red, green and blue of an image, 0..1 as encoded.
-    pub fn mean(&mut self, files: &Files, path: &Path) -> Result<[f32; 3], String> {
+    /// Mean red, green, blue and alpha of an image, 0..1 as encoded; `None` if it failed before.
+    pub fn mean(&mut self, files: &Files, path: &Path) -> Result<Option<[f32; 4]>, String> {
         if let Some(mean) = self.means.get(path) {
-            return mean.clone();
+            return Ok(*mean);
         }
         let mean = self.compute_mean(files, path);
-        self.means.insert(path.to_owned(), mean.clone());
-        mean
+        self.means
+            .insert(path.to_owned(), mean.as_ref().ok().copied());
+        mean.map(Some)
     }
 
-    fn compute_mean(&mut self, files: &Files, path: &Path) -> Result<[f32; 3], String> {
+    fn compute_mean(&mut self, files: &Files, path: &Path) -> Result<[f32; 4], String> {
         let before = self.bytes_left;
         let texels = self.decode(files, path)?.into_rgba8();
         self.bytes_left = before;
         let count = 255.0 * (texels.width() as f64 * texels.height() as f64);
-        let mut sums = [0u64; 3];
+        let mut sums = [0u64; 4];
         for texel in texels.pixels() {
             sums.iter_mut()
                 .zip(texel.0)
@@ -153,6 +185,7 @@ impl TextureStore {
             height,
             rgba8: to_srgb8(image),
             encoding: Encoding::Srgb,
+            wrap: [Wrap::Repeat; 2],
         })
     }
 
@@ -268,7 +301,23 @@ fn normals(name: String, image: DynamicImage, strength: f32) -> Texture {
         height,
         rgba8,
         encoding: Encoding::Linear,
+        wrap: [Wrap::Repeat; 2],
     }
+}
+
+/// Share of the texels of a cut-out that are clear or solid, not in between.
+const DECIDED: f64 = 0.9;
+
+/// Whether the alpha of a picture (RGBA) cuts out shapes: part of it is clear, part solid, and little in between. Other alphas
+/// are glosses, heights, or nothing.
+fn is_cut_out(rgba8: &[u8]) -> bool {
+    let (mut clear, mut solid) = (0usize, 0usize);
+    for texel in rgba8.chunks_exact(4) {
+        clear += usize::from(texel[3] < 32);
+        solid += usize::from(texel[3] > 223);
+    }
+    let all = (rgba8.len() / 4) as f64;
+    clear > 0 && solid > 0 && (clear + solid) as f64 >= DECIDED * all
 }
 
 /// The colours with the mask as alpha, at the size of the colours, or of the mask if there are none.
@@ -308,6 +357,7 @@ mod tests {
             height: texels.len() as u32 / width,
             rgba8: texels.concat(),
             encoding: Encoding::Srgb,
+            wrap: [Wrap::Repeat; 2],
         }
     }
 
@@ -321,6 +371,15 @@ mod tests {
         assert_eq!(both.rgba8[0], 200);
         let white = masked(None, mask, Channel::Number(0));
         assert_eq!(white.rgba8, [255, 255, 255, 0, 255, 255, 255, 255]);
+    }
+
+    #[test]
+    fn an_alpha_is_a_cut_out_if_it_is_clear_and_solid() {
+        let alphas =
+            |list: &[u8]| is_cut_out(&list.iter().flat_map(|a| [9, 9, 9, *a]).collect::<Vec<_>>());
+        assert!(alphas(&[0, 255]) && alphas(&[0, 0, 0, 0, 0, 0, 0, 0, 250, 128]));
+        assert!(!alphas(&[255; 9]) && !alphas(&[0; 9]), "one of both");
+        assert!(!alphas(&[0, 60, 128, 190, 255]), "a gloss");
     }
 
     #[test]

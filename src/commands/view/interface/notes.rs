@@ -43,6 +43,11 @@ impl Notes {
         }
     }
 
+    /// Shows a warning for a few seconds.
+    pub(in crate::commands::view) fn warn(&mut self, text: &str) {
+        self.add(text, Some(Instant::now() + SHOWN));
+    }
+
     /// Shows an error, in the window and on stderr.
     pub(in crate::commands::view) fn complain(&mut self, text: &str) {
         eprintln!("error: {text}");

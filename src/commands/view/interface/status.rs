@@ -54,7 +54,8 @@ pub(super) fn view(ui: &mut Ui, document: &mut Document) {
     if let Some(viewpoint) = chosen.and_then(|i| document.viewpoints.choose(i)) {
         document.controls.go_to(&viewpoint.camera);
     }
-    let (eye, forward) = (camera.eye, camera.forward());
+    let eye = document.job.scene.origin + camera.eye.as_dvec3();
+    let forward = camera.forward();
     let (azimuth, elevation) = crate::daylight::sun_position::azimuth_elevation(forward.as_dvec3());
     ui.weak(format!(
         "eye {:.1}, {:.1}, {:.1} m; azimuth {azimuth:.0}°, elevation {elevation:+.0}°",

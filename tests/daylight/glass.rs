@@ -21,9 +21,10 @@ fn glass(transmittance: [f32; 3]) -> Material {
 fn sheets(material: &Material, count: u32) -> Scene {
     let heights = (0..count).map(|i| 1.0 + 0.1 * i as f32);
     heights
-        .fold(Model::default().ground(4000.0, &matt(0.0)), |model, height| {
-            model.square([0.0, height, 0.0], 2000.0, material)
-        })
+        .fold(
+            Model::default().ground(4000.0, &matt(0.0)),
+            |model, height| model.square([0.0, height, 0.0], 2000.0, material),
+        )
         .build()
 }
 

@@ -185,11 +185,7 @@ mod tests {
             .collect();
         assert_eq!(
             names,
-            [
-                "ACME_fur",
-                "KHR_materials_sheen",
-                "KHR_materials_volume"
-            ]
+            ["ACME_fur", "KHR_materials_sheen", "KHR_materials_volume"]
         );
     }
 }

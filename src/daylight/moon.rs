@@ -85,6 +85,11 @@ impl Moon {
         direction(self.azimuth_deg, self.apparent_elevation_deg)
     }
 
+    /// Unit vector toward the true (not refracted) moon, in world space.
+    pub fn true_direction(&self) -> DVec3 {
+        direction(self.azimuth_deg, self.elevation_deg)
+    }
+
     /// Share of the disc that is lit, 0..=1.
     pub fn illuminated_fraction(&self) -> f64 {
         (1.0 + self.phase_angle_deg.to_radians().cos()) / 2.0

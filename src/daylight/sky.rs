@@ -66,9 +66,7 @@ impl Sky {
     fn irradiance_up(&self) -> DVec3 {
         match self {
             Self::Grey(sky) => DVec3::splat(sky.horizontal_illuminance),
-            Self::Atmosphere(sky) => {
-                colour::clip_negative(sky.atmosphere.diffuse_illuminance(sky.sun.y))
-            }
+            Self::Atmosphere(sky) => colour::clip_negative(sky.irradiance_up()),
             _ => horizontal_irradiance(|dir| colour::clip_negative(self.radiance(dir))),
         }
     }
@@ -96,6 +94,13 @@ pub struct DirectLight {
     pub direction: DVec3,
     /// Illuminance at normal incidence, linear BT.709 RGB, lux.
     pub illuminance: DVec3,
+}
+
+impl DirectLight {
+    /// Illuminance of a horizontal plane that faces up, lux.
+    fn horizontal_lux(&self) -> f64 {
+        colour::luminance(self.illuminance) * self.direction.y.max(0.0)
+    }
 }
 
 /// Sun, moon, sky and ground at one moment. Every number is finite and none is negative.
@@ -133,17 +138,19 @@ impl Daylight {
         let (sun_illuminance, sun_luminance) = sun(&valid, sun_factor);
         let own = sky.irradiance_up();
         let guard = guard_of(&valid, colour::luminance(own), above);
-        let sun_lux = colour::luminance(sun_illuminance) * elevation.to_radians().sin().max(0.0);
-        let (guard, sun_share) = under_clouds(&valid, guard, colour::luminance(own), sun_lux);
-        let (sun_illuminance, sun_luminance) =
-            (sun_illuminance * sun_share, sun_luminance * sun_share);
+        let moon = moonlight(&valid);
+        let sun_direction = direction(valid.sun_azimuth_deg, elevation);
+        let direct_lux = direct(sun_direction, sun_illuminance, moon).horizontal_lux();
+        let (guard, share) = under_clouds(&valid, guard, colour::luminance(own), direct_lux);
         let clouds = DVec3::splat(guard.clouds / OVERCAST_ZENITH_PER_LUX);
         let sky_irradiance_up = own * guard.scale + clouds + guard.night * PI;
         let mut daylight = Self {
-            sun_direction: direction(valid.sun_azimuth_deg, elevation),
-            sun_illuminance,
-            sun_luminance,
-            moon: moonlight(&valid, sun_share),
+            sun_direction,
+            sun_illuminance: sun_illuminance * share,
+            sun_luminance: sun_luminance * share,
+            moon: moon
+                .map(|moon| moon.scaled(share))
+                .filter(|moon| moon.illuminance != DVec3::ZERO),
             sky,
             guard,
             sky_irradiance_up,
@@ -156,17 +163,7 @@ impl Daylight {
 
     /// The directional light, the one that throws shadows: the sun, or the moon while the sun gives none.
     pub fn direct_light(&self) -> DirectLight {
-        let sun = DirectLight {
-            direction: self.sun_direction,
-            illuminance: self.sun_illuminance,
-        };
-        match self.moon {
-            Some(moon) if self.sun_illuminance == DVec3::ZERO => DirectLight {
-                direction: moon.direction,
-                illuminance: moon.illuminance,
-            },
-            _ => sun,
-        }
+        direct(self.sun_direction, self.sun_illuminance, self.moon)
     }
 
     /// Illuminance of open ground by the directional light and the sky, linear BT.709 RGB, lux.
@@ -178,7 +175,7 @@ impl Daylight {
     /// Radiance in the unit direction `dir`, linear BT.709 RGB, cd/m²: sky without the discs of sun and moon, ground below the horizon.
     pub fn radiance(&self, dir: DVec3) -> DVec3 {
         match &self.sky {
-            Sky::Atmosphere(sky) if sky.view().is_ground(dir) => {
+            Sky::Atmosphere(sky) if sky.is_ground(dir) => {
                 let (scale, added) = self.ground_of(sky);
                 colour::clip_negative(sky.radiance(dir)) * scale + added
             }
@@ -188,15 +185,11 @@ impl Daylight {
         }
     }
 
-    /// How the ground that an atmosphere shows becomes [`Self::ground_luminance`] at the observer: a factor, and what night and
-    /// moon add, linear BT.709 RGB, cd/m².
+    /// How the ground that an atmosphere shows becomes [`Self::ground_luminance`] at the observer: a factor, and what the night adds,
+    /// linear BT.709 RGB, cd/m².
     pub fn ground_of(&self, sky: &ScatteredSky) -> (f64, DVec3) {
-        let direct = self.direct_light();
-        let is_moon = self.sun_illuminance == DVec3::ZERO;
-        let moon = direct.illuminance * direct.direction.y.max(0.0) * f64::from(u8::from(is_moon));
-        let albedo = sky.atmosphere.medium.ground_albedo;
-        let added = (self.guard.night + moon / PI) * albedo;
-        let own = colour::luminance(colour::clip_negative(sky.atmosphere.ground_rgb(sky.sun.y)));
+        let added = self.guard.night * sky.atmosphere.medium.ground_albedo;
+        let own = colour::luminance(colour::clip_negative(sky.ground_rgb()));
         let here = colour::luminance(self.ground_luminance - added).max(0.0);
         (if own > 1e-9 { here / own } else { 1.0 }, added)
     }
@@ -208,6 +201,20 @@ impl Daylight {
         } else {
             guarded(&self.sky, &self.guard, dir)
         }
+    }
+}
+
+/// The directional light under a sun and a moon.
+fn direct(sun: DVec3, sun_illuminance: DVec3, moon: Option<Moonlight>) -> DirectLight {
+    match moon {
+        Some(moon) if sun_illuminance == DVec3::ZERO => DirectLight {
+            direction: moon.direction,
+            illuminance: moon.illuminance,
+        },
+        _ => DirectLight {
+            direction: sun,
+            illuminance: sun_illuminance,
+        },
     }
 }
 
@@ -251,8 +258,8 @@ fn atmosphere_of(valid: &Conditions) -> Atmosphere {
     })
 }
 
-/// The moon through a sky without clouds of its own; `share` is what clouds leave.
-fn moonlight(valid: &Conditions, share: f64) -> Option<Moonlight> {
+/// The moon through a sky without clouds of its own.
+fn moonlight(valid: &Conditions) -> Option<Moonlight> {
     let moon = valid.moon.filter(|_| valid.model.is_clear())?;
     let light = if valid.model == SkyModel::Atmosphere {
         let sine = moon.apparent_elevation_deg.to_radians().sin();
@@ -261,7 +268,6 @@ fn moonlight(valid: &Conditions, share: f64) -> Option<Moonlight> {
     } else {
         moon.light(valid.turbidity)
     };
-    let light = light.scaled(share);
     (light.illuminance != DVec3::ZERO).then_some(light)
 }
 
@@ -288,6 +294,10 @@ fn sky_and_sun_factor(valid: &Conditions, sun_direction: DVec3) -> (Sky, f64) {
             let true_deg = elevation - valid.refraction_deg;
             let sun = direction(valid.sun_azimuth_deg, true_deg.max(-90.0));
             let sky = ScatteredSky::new(atmosphere_of(valid), sun);
+            let sky = match valid.moon {
+                Some(moon) => sky.with_moon(moon.true_direction(), moon.outside_lux()),
+                None => sky,
+            };
             (Sky::Atmosphere(sky), 1.0)
         }
         _ => {
@@ -344,13 +354,14 @@ fn guard_of(valid: &Conditions, own_lux: f64, sun_direction: DVec3) -> Guard {
     }
 }
 
-/// The guard with clouds before the sky, and the share of the sun's light that they leave.
-fn under_clouds(valid: &Conditions, guard: Guard, own_lux: f64, sun_lux: f64) -> (Guard, f64) {
+/// The guard with clouds before the sky, and the share of the directional light that they leave. `direct_lux` is the horizontal illuminance by that
+/// light, the sun's or the moon's.
+fn under_clouds(valid: &Conditions, guard: Guard, own_lux: f64, direct_lux: f64) -> (Guard, f64) {
     if valid.cloud_cover == 0.0 || !valid.model.is_clear() {
         return (guard, 1.0);
     }
     let sky_lux = own_lux * guard.scale;
-    let light = clouded(valid.cloud_cover, sky_lux, sun_lux);
+    let light = clouded(valid.cloud_cover, sky_lux, direct_lux);
     let total = light.clear_sky * sky_lux + light.clouds_lux;
     // A given illuminance is that of the whole sky, clouds included.
     let level = match valid.horizontal_illuminance {

@@ -4,7 +4,8 @@
 //! 2. [`columns`]: table A, columns of each species to the top of the air.
 //! 3. [`mod@solve`]: the scattered light order by order; [`field`]: the tables B and C that it fills.
 //! 4. [`Atmosphere`]: radiance by one more march along [`path`], where the first order is exact.
-//! 5. [`sky_view`]: table D, the whole view under one sun; [`scattered_sky`]: the sky that is read from it.
+//! 5. [`sky_view`]: table D, the whole view under one sun; [`scattered_sky`]: the sky that is read from it. The moon has such
+//!    a view of its own.
 
 pub mod air;
 pub mod colour;
@@ -240,8 +241,12 @@ impl Atmosphere {
     /// Transmittance of sunlight from the direction of sine `sine` (or from the horizon above it): linear BT.709 RGB over the luminance
     /// outside the air, not clipped.
     pub fn transmittance_to_space(&self, sine: f64) -> DVec3 {
-        let outside = colour::xyz_of_all(std::iter::repeat_n(DVec4::ONE, 10)).y;
-        self.sunlight_along(sine) / outside
+        self.sunlight_along(sine) / Self::sun_outside_lux()
+    }
+
+    /// Illuminance of the sun at normal incidence outside the air, lux.
+    pub fn sun_outside_lux() -> f64 {
+        colour::xyz_of_all(std::iter::repeat_n(DVec4::ONE, 10)).y
     }
 
     /// Illuminance at normal incidence of sunlight from the direction of sine `sine`, or from the horizon above it.

@@ -4,6 +4,7 @@
 #include "colour.glsl"
 #include "tone_curve.glsl"
 #include "false_colour.glsl"
+#include "dither.glsl"
 
 layout(location = 0) out vec4 display;
 
@@ -21,6 +22,8 @@ layout(constant_id = 6) const bool AUTO = false;
 layout(constant_id = 8) const bool EXPONENTIAL_LUMINANCE = false;
 // Show the luminance in grey.
 layout(constant_id = 7) const bool GREY = false;
+// Dither for 8 bits.
+layout(constant_id = 10) const bool DITHER = false;
 // Show false colours of the luminance instead of exposure and curve.
 layout(constant_id = 9) const bool FALSE_COLOUR = false;
 
@@ -33,6 +36,8 @@ layout(push_constant, scalar) uniform Push {
     float offset;        // added after the scale: shows signed quantities; with FALSE_COLOUR the position of 1 kcd/m^2 (1 klx)
     float white;         // Reinhard's white, display units
     float inverse_gamma; // of the power
+    float least;         // with AUTO: the lowest average luminance that is exposed for, kcd/m^2
+    uvec2 origin;        // of this tile in the picture, pixels
 } push;
 
 void main() {
@@ -44,7 +49,7 @@ void main() {
         return;
     }
     float exposure = push.exposure;
-    if (AUTO) exposure /= textureLod(average_luminance, vec2(0.5), 0.0).r;
+    if (AUTO) exposure /= max(textureLod(average_luminance, vec2(0.5), 0.0).r, push.least);
     if (GREY) c = vec3(luminance(c));
     c = max(c * exposure + push.offset, 0.0);
     if (EXPONENTIAL) c = tone_exponential(c);
@@ -54,6 +59,9 @@ void main() {
     if (NEUTRAL) c = tone_neutral(c);
     if (ACES) c = tone_aces(c);
     c = clamp(c, 0.0, 1.0);
+    uvec2 pixel = uvec2(gl_FragCoord.xy) + push.origin;
+    if (DITHER && !GAMMA) c = dither_linear(c, pixel);
     if (GAMMA) c = pow(c, vec3(push.inverse_gamma));
+    if (DITHER && GAMMA) c = dither_encoded(c, pixel);
     display = vec4(c, 1.0);
 }

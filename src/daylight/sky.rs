@@ -23,6 +23,7 @@ use super::moon::Moonlight;
 use super::perez::AllWeather;
 use super::preetham::Preetham;
 use super::quadrature::horizontal_irradiance;
+use super::stars::{MOST_SKY_LUX, PointLight, StarrySky};
 use super::sun_position::direction;
 use super::sunlight::{SUN_SOLID_ANGLE, Sunlight, air_mass, visible_fraction};
 
@@ -114,6 +115,8 @@ pub struct Daylight {
     pub sun_luminance: DVec3,
     /// The moon, if it is above the horizon and no clouds hide it.
     pub moon: Option<Moonlight>,
+    /// The stars, if the sky is an atmosphere and dark enough ([`MOST_SKY_LUX`]).
+    pub stars: Option<StarrySky>,
     /// Model of the sky.
     pub sky: Sky,
     /// Parameters that extend the model beyond its valid range.
@@ -144,6 +147,8 @@ impl Daylight {
         let (guard, share) = under_clouds(&valid, guard, colour::luminance(own), direct_lux);
         let clouds = DVec3::splat(guard.clouds / OVERCAST_ZENITH_PER_LUX);
         let sky_irradiance_up = own * guard.scale + clouds + guard.night * PI;
+        let is_dark = colour::luminance(sky_irradiance_up) < MOST_SKY_LUX;
+        let shows_stars = is_dark && valid.model == SkyModel::Atmosphere;
         let mut daylight = Self {
             sun_direction,
             sun_illuminance: sun_illuminance * share,
@@ -151,6 +156,10 @@ impl Daylight {
             moon: moon
                 .map(|moon| moon.scaled(share))
                 .filter(|moon| moon.illuminance != DVec3::ZERO),
+            stars: valid.stars.filter(|_| shows_stars).map(|stars| StarrySky {
+                clear: stars.clear * share,
+                ..stars
+            }),
             sky,
             guard,
             sky_irradiance_up,
@@ -172,7 +181,20 @@ impl Daylight {
         self.sky_irradiance_up + direct.illuminance * direct.direction.y.max(0.0)
     }
 
-    /// Radiance in the unit direction `dir`, linear BT.709 RGB, cd/m²: sky without the discs of sun and moon, ground below the horizon.
+    /// The stars in the sky; those behind the moon are left out.
+    pub fn stars(&self) -> Vec<PointLight> {
+        let (Some(stars), Sky::Atmosphere(sky)) = (&self.stars, &self.sky) else {
+            return Vec::new();
+        };
+        let mut seen = stars.seen(&sky.atmosphere);
+        if let Some(moon) = self.moon {
+            seen.retain(|s| s.direction.dot(moon.direction) < moon.angular_radius.cos());
+        }
+        seen
+    }
+
+    /// Radiance in the unit direction `dir`, linear BT.709 RGB, cd/m²: sky without the discs of sun and moon and without stars, ground below the
+    /// horizon.
     pub fn radiance(&self, dir: DVec3) -> DVec3 {
         match &self.sky {
             Sky::Atmosphere(sky) if sky.is_ground(dir) => {

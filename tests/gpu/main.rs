@@ -30,6 +30,7 @@ mod reflections;
 mod shadow;
 mod sky;
 mod ssao;
+mod stars;
 mod steady_frame;
 mod timings;
 mod tone;

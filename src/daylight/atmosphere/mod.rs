@@ -212,6 +212,13 @@ impl Atmosphere {
         each(depth, |d| (-d).exp()) * share
     }
 
+    /// Transmittance from the direction of sine `sine`, or from the horizon above it, to the observer.
+    pub fn to_space(&self, sine: f64) -> DVec4 {
+        let r = self.observer();
+        let columns = self.columns.to_top(r, sine.max(horizon_cosine(r)));
+        each(self.medium.optical_depth(columns), |d| (-d).exp())
+    }
+
     /// The air between the observer and a point `distance_km` away in the unit direction `dir`, under the (true) sun in the unit direction `sun`. The path ends
     /// at the ground or at the top of the air if these are nearer.
     pub fn aerial(&self, sun: DVec3, dir: DVec3, distance_km: f64) -> Aerial {

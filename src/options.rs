@@ -162,7 +162,8 @@ options! {
             /// sun, and the disc stands and shines at its apparent elevation. --sun is taken as given for both.
             #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
             refraction: Switch,
-            /// Whether the moon shines: its disc in the sky, and its light when the sun gives none (of --place and --when).
+            /// Whether the moon shines: its disc in the sky, its light when the sun gives none, and the air that it lights with --sky atmosphere (of
+            /// --place and --when).
             #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
             moon: Switch,
             /// Whether the brightest stars are drawn, as points of light, where --sky atmosphere is dark enough (of --place and --when).

@@ -14,8 +14,9 @@ layout(constant_id = 1) const bool REINHARD = false;
 layout(constant_id = 2) const bool AGX = false;
 layout(constant_id = 3) const bool NEUTRAL = false;
 layout(constant_id = 4) const bool ACES = false;
-// Encode with a power law; otherwise the target's sRGB format encodes.
+// At most one encoding is set.
 layout(constant_id = 5) const bool GAMMA = false;
+layout(constant_id = 11) const bool SRGB = false;
 // Exposure from the average luminance instead of the push constant.
 layout(constant_id = 6) const bool AUTO = false;
 // Ferschin's curve on luminance.
@@ -45,7 +46,8 @@ void main() {
     if (FALSE_COLOUR) {
         float l = luminance(c);
         float share = clamp(log2(max(l, 1e-30)) * push.exposure + push.offset, 0.0, 1.0);
-        display = vec4(l > 0.0 ? turbo(share) : vec3(0.0), 1.0);
+        vec3 colour = l > 0.0 ? turbo(share) : vec3(0.0);
+        display = vec4(SRGB ? srgb_from_linear(colour) : colour, 1.0);
         return;
     }
     float exposure = push.exposure;
@@ -59,9 +61,8 @@ void main() {
     if (NEUTRAL) c = tone_neutral(c);
     if (ACES) c = tone_aces(c);
     c = clamp(c, 0.0, 1.0);
-    uvec2 pixel = uvec2(gl_FragCoord.xy) + push.origin;
-    if (DITHER && !GAMMA) c = dither_linear(c, pixel);
     if (GAMMA) c = pow(c, vec3(push.inverse_gamma));
-    if (DITHER && GAMMA) c = dither_encoded(c, pixel);
+    if (SRGB) c = srgb_from_linear(c);
+    if (DITHER) c = dithered(c, uvec2(gl_FragCoord.xy) + push.origin);
     display = vec4(c, 1.0);
 }

@@ -1,7 +1,7 @@
 //! Tone mapping from radiance to display values: exposure, tone curve, encoding.
 //!
-//! Without a gamma the render target has an sRGB format and the device encodes. With one (the lecture's (s R)^(1/γ)) the shader
-//! applies the power law and the target is UNORM. Light is dithered by a step of 8 bits after the tone curve; false colours and other quantities are not.
+//! The shader encodes, by the sRGB curve or by a power law (the lecture's (s R)^(1/γ)): a device that encodes for a format may be off by 0.6 steps of 8 bits,
+//! more than the dither leaves. Light is dithered by a step of 8 bits after the tone curve; false colours and other quantities are not.
 
 use std::sync::Arc;
 
@@ -91,11 +91,7 @@ impl ToneMap {
         let curve = |c: ToneCurve| u32::from(light && settings.curve == c);
         let average = light && matches!(settings.scale, Scale::Average { .. });
         let gamma = settings.gamma.is_some() && !false_colour;
-        let format = if gamma {
-            Format::R8G8B8A8_UNORM
-        } else {
-            Format::R8G8B8A8_SRGB
-        };
+        let format = Format::R8G8B8A8_UNORM;
         let pipeline = fullscreen(
             context,
             "tone map",
@@ -112,6 +108,7 @@ impl ToneMap {
                 ("NEUTRAL", curve(ToneCurve::Neutral)),
                 ("ACES", curve(ToneCurve::Aces)),
                 ("GAMMA", gamma.into()),
+                ("SRGB", (!gamma).into()),
                 ("AUTO", average.into()),
                 ("GREY", (settings.show == Show::Luminance).into()),
                 ("FALSE_COLOUR", false_colour.into()),

@@ -2,10 +2,13 @@
 #include "constants.glsl"
 #include "sky.glsl"
 
+// Whether there is a moon that counts. A software device would compute both sides of a branch.
+layout(constant_id = 0) const bool MOON = false;
+
 layout(set = 0, binding = 0, scalar) uniform Model {
     vec2 toward_sun;    // horizontal (x, z)
     vec2 toward_moon;
-    float moon_share;   // illuminance of the moon outside the air over the sun's; 0: none that counts
+    float moon_share;   // illuminance of the moon outside the air over the sun's
     float horizon;      // elevation of the horizon of the ground, radians
     float ground_scale; // what clouds leave of the light of the ground
 } model;
@@ -40,7 +43,7 @@ vec3 view(sampler2D table, vec3 direction, vec2 toward, out bool is_ground) {
 vec4 sky(vec3 direction) {
     bool is_ground;
     vec3 radiance = view(sky_view, direction, model.toward_sun, is_ground);
-    if (model.moon_share > 0.0) radiance += view(moon_view, direction, model.toward_moon, is_ground) * model.moon_share;
+    if (MOON) radiance += view(moon_view, direction, model.toward_moon, is_ground) * model.moon_share;
     radiance = clip_negative(radiance);
     if (is_ground) return vec4(radiance * model.ground_scale + push.ground, 1.0);
     float clouds = push.clouds * (1.0 + 2.0 * max(direction.y, 0.0)) / 3.0;

@@ -410,3 +410,7 @@ pub fn twilight_illuminance(elevation_deg: f64, sunset_lux: f64) -> f64 {
 #[cfg(test)]
 #[path = "sky_tests.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "moonlit_sky_tests.rs"]
+mod moonlit_tests;

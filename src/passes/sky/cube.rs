@@ -96,6 +96,7 @@ struct Painter {
     hosek: CubePipeline,
     grey: CubePipeline,
     atmosphere: CubePipeline,
+    moonlit: CubePipeline,
 }
 
 const PREETHAM: CubeShaders = CubeShaders {
@@ -119,13 +120,15 @@ const ATMOSPHERE: CubeShaders = CubeShaders {
 impl Painter {
     fn new(context: &Arc<Context>, format: Format) -> Result<Self> {
         let route = CubeRoute::of(context);
-        let pipeline =
-            |name, shaders| CubePipeline::new(context, route, name, shaders, &[format], &[]);
+        let pipeline = |name, shaders, constants: &[(&str, u32)]| {
+            CubePipeline::new(context, route, name, shaders, &[format], constants)
+        };
         Ok(Self {
-            preetham: pipeline("sky: Preetham", PREETHAM)?,
-            hosek: pipeline("sky: Hosek", HOSEK)?,
-            grey: pipeline("sky: grey", GREY)?,
-            atmosphere: pipeline("sky: atmosphere", ATMOSPHERE)?,
+            preetham: pipeline("sky: Preetham", PREETHAM, &[])?,
+            hosek: pipeline("sky: Hosek", HOSEK, &[])?,
+            grey: pipeline("sky: grey", GREY, &[])?,
+            atmosphere: pipeline("sky: atmosphere", ATMOSPHERE, &[("MOON", 0)])?,
+            moonlit: pipeline("sky: atmosphere, moon", ATMOSPHERE, &[("MOON", 1)])?,
         })
     }
 
@@ -148,6 +151,7 @@ impl Painter {
             Sky::Preetham(_) => &self.preetham,
             Sky::Hosek(_) => &self.hosek,
             Sky::Grey(_) => &self.grey,
+            Sky::Atmosphere(sky) if sky.moon.is_some() => &self.moonlit,
             Sky::Atmosphere(_) => &self.atmosphere,
         };
         let pass = pipeline.pass(recorder, "sky cube");

@@ -165,6 +165,10 @@ options! {
             /// Whether the moon shines: its disc in the sky, and its light when the sun gives none (of --place and --when).
             #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
             moon: Switch,
+            /// Whether the air between surfaces and the eye dims them and adds its light: on by default with --sky atmosphere, which alone
+            /// has air to draw. Scenes less than 200 m across have too little of it to see, and are drawn without.
+            #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>())]
+            aerial: Option<Switch>,
             /// Reflectance of the ground below the horizon, 0 to 1; 0 is black.
             #[arg(value_name = "ALBEDO", value_parser = values::ground_albedo, allow_hyphen_values = true,
                   default_value_t = Conditions::default().ground_albedo)]
@@ -390,9 +394,20 @@ impl Options {
         list.retain(|(name, _)| match name.as_str() {
             "exposure" => self.ev100.is_none(),
             "false-colour" => colours,
+            "aerial" => self.has_air(),
             _ => true,
         });
         OptionValues::from(list)
+    }
+
+    /// Whether the sky is one whose air can be drawn.
+    fn has_air(&self) -> bool {
+        self.sky == SkyModel::Atmosphere
+    }
+
+    /// Whether the air between surfaces and the eye is drawn, if the scene is large enough.
+    pub fn draws_air(&self) -> bool {
+        self.has_air() && self.aerial != Some(Switch::Off)
     }
 
     /// The subset of [`Options::values`] that determines a daylight and how its irradiance is integrated.

@@ -11,6 +11,15 @@ float luminance(vec3 rgb) {
     return dot(rgb, vec3(0.2126, 0.7152, 0.0722));
 }
 
+/// Clips negative components, which saturated sky colours outside of BT.709 have, preserving luminance.
+vec3 clip_negative(vec3 rgb) {
+    if (min(rgb.r, min(rgb.g, rgb.b)) >= 0.0) return rgb;
+    vec3 clamped = max(rgb, 0.0);
+    float target = luminance(rgb);
+    float l = luminance(clamped);
+    return target > 0.0 && l > 0.0 ? clamped * (target / l) : vec3(0.0);
+}
+
 /// sRGB values to linear ones (IEC 61966-2-1).
 vec3 linear_from_srgb(vec3 c) {
     return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045)));

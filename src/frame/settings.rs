@@ -18,6 +18,7 @@ use crate::passes::light::lighting::{
 };
 use crate::passes::occlusion::ssao::SsaoSettings;
 use crate::passes::picture::tone_map::{Scale, ToneMap, ToneSettings};
+use crate::passes::sky::air::{Air, LEAST_SCENE};
 use crate::passes::sky::irradiance::IrradianceSettings;
 use crate::passes::sun_shadow::cascades;
 use crate::passes::sun_shadow::map::Shadow;
@@ -74,6 +75,7 @@ impl Default for FrameSettings {
                 has_albedo: true,
                 emission: EmissionSource::None,
                 occlusion_downscale: ssao.pixels_per_texel(),
+                air: false,
                 fresnel: false,
                 shadows: Shadows::default(),
                 mirrors: Mirrors::default(),
@@ -180,12 +182,21 @@ impl FrameSettings {
         Background::new(context, self.lighting)
     }
 
+    /// The air before the eye, if it is drawn.
+    pub(super) fn air(&self, context: &Arc<Context>, geometry: &Geometry) -> Result<Option<Air>> {
+        let is_drawn = self.lighting.air;
+        is_drawn
+            .then(|| Air::new(context, geometry.bounds()))
+            .transpose()
+    }
+
     /// Tone mapping.
     pub(super) fn tone_map(&self, context: &Arc<Context>) -> Result<ToneMap> {
         ToneMap::new(context, self.size.to_array(), self.tone)
     }
 
-    /// Adjusts the settings to a scene: no specular lookups without ρ_s, no albedo image without textures, no emission without L_e, cascades for large scenes.
+    /// Adjusts the settings to a scene: no specular lookups without ρ_s, no albedo image without textures, no emission without L_e, no air in
+    /// small scenes, cascades for large ones.
     pub(super) fn for_scene(mut self, context: &Context, geometry: &Geometry) -> Self {
         let shadows = &mut self.lighting.shadows;
         if shadows.cascades == 0 {
@@ -195,6 +206,7 @@ impl FrameSettings {
         if !geometry.is_specular() {
             self.lighting.specular_scale = 0.0;
         }
+        self.lighting.air &= geometry.bounds().diagonal() >= LEAST_SCENE;
         self.lighting.has_albedo = geometry.has_albedo();
         self.lighting.emission = geometry.emission_source();
         self

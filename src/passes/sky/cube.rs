@@ -11,7 +11,7 @@ use crate::daylight::grey_sky::GreySky;
 use crate::daylight::hosek::Hosek;
 use crate::daylight::preetham::PerezSky;
 use crate::daylight::sky::{Daylight, Sky};
-use crate::gpu::{Context, Format, Image, ImageDesc, Recorder, Result, Sampler, shaders};
+use crate::gpu::{Buffer, Context, Format, Image, ImageDesc, Recorder, Result, Sampler, shaders};
 use crate::gpu_struct;
 
 use crate::passes::kilo;
@@ -86,6 +86,8 @@ pub struct SkyImages<'s> {
     pub coarse: &'s Image,
     /// Whether the images were drawn in this frame.
     pub is_new: bool,
+    /// Tables of the air, if the sky is an atmosphere; else undefined.
+    pub air: &'s Buffer,
 }
 
 /// Pipelines of the sky models, for targets of one format.
@@ -215,6 +217,7 @@ impl SkyCube {
             smooth: &self.smooth,
             coarse: &self.coarse,
             is_new,
+            air: self.atmosphere.tables(),
         }
     }
 

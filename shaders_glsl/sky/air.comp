@@ -6,6 +6,12 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
+// Size of the table; of the rows half.
+layout(constant_id = 0) const int AZIMUTHS = 32;
+layout(constant_id = 1) const int SOURCE_ROWS = 24;
+layout(constant_id = 2) const int DENSITY_ROWS = 96;
+layout(constant_id = 3) const int STEPS = 24;
+
 layout(set = 0, binding = 2) uniform writeonly image2DArray air_table; // see air.glsl
 
 layout(push_constant, scalar) uniform Push {
@@ -13,7 +19,6 @@ layout(push_constant, scalar) uniform Push {
     float altitude; // of the eye, km; and the other parts of Rays
     float ceiling;
     float horizon;
-    ivec4 sizes; // azimuths, rows of sources, rows of densities (each half of them), steps
 } push;
 
 /// Sine of the elevation of a row of twice `rows`, and whether its ray meets the ground.
@@ -33,19 +38,19 @@ Path path_of_row(int row, int rows, out bool meets_ground) {
 
 /// Distance of half a step.
 float distance_at(float extent, int half_steps, bool meets_ground) {
-    float x = 0.5 * float(half_steps) / float(push.sizes.w - 1);
+    float x = 0.5 * float(half_steps) / float(STEPS - 1);
     return extent * (meets_ground ? x * (2.0 - x) : x * x);
 }
 
 void mean_densities(int row) {
     bool meets_ground;
-    Path path = path_of_row(row, push.sizes.z, meets_ground);
+    Path path = path_of_row(row, DENSITY_ROWS, meets_ground);
     vec3 column = vec3(0.0);
     vec3 mean = densities(push.altitude);
-    int first = 4 * push.sizes.y;
+    int first = 4 * SOURCE_ROWS;
     imageStore(air_table, ivec3(row, first, 0), vec4(mean, 1.0));
     float from = 0.0;
-    for (int half_step = 1; half_step < 2 * push.sizes.w - 1; half_step++) {
+    for (int half_step = 1; half_step < 2 * STEPS - 1; half_step++) {
         float to = distance_at(path.extent, half_step, meets_ground);
         column += densities(point_along(path, 0.5 * (from + to)).altitude) * (to - from);
         from = to;
@@ -62,15 +67,15 @@ Source source_along(Path path, float t, float cos_gamma, out vec4 extinction) {
 }
 
 void store(int row, int entry, int step, vec4 rest, vec4 aerosol) {
-    ivec2 at = ivec2(step * push.sizes.x + entry, row);
+    ivec2 at = ivec2(step * AZIMUTHS + entry, row);
     imageStore(air_table, ivec3(at, 0), rest);
-    imageStore(air_table, ivec3(at + ivec2(0, 2 * push.sizes.y), 0), aerosol);
+    imageStore(air_table, ivec3(at + ivec2(0, 2 * SOURCE_ROWS), 0), aerosol);
 }
 
 void mean_sources(int row, int entry) {
     bool meets_ground;
-    Path path = path_of_row(row, push.sizes.y, meets_ground);
-    float from_middle = 2.0 * float(entry) / float(push.sizes.x - 1) - 1.0;
+    Path path = path_of_row(row, SOURCE_ROWS, meets_ground);
+    float from_middle = 2.0 * float(entry) / float(AZIMUTHS - 1) - 1.0;
     float away = 1.0 - abs(from_middle);
     float azimuth = (1.0 - away * away) * sign(from_middle);
     float across = sqrt(max((1.0 - path.mu * path.mu) * (1.0 - push.sun_sine * push.sun_sine), 0.0));
@@ -83,7 +88,7 @@ void mean_sources(int row, int entry) {
     vec4 depth = vec4(0.0);
     Source sum = Source(vec4(0.0), vec4(0.0));
     float from = 0.0;
-    for (int half_step = 1; half_step < 2 * push.sizes.w - 1; half_step++) {
+    for (int half_step = 1; half_step < 2 * STEPS - 1; half_step++) {
         float to = distance_at(path.extent, half_step, meets_ground);
         here = source_along(path, 0.5 * (from + to), cos_gamma, extinction);
         vec4 own = extinction * (to - from);
@@ -100,12 +105,12 @@ void mean_sources(int row, int entry) {
 
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= push.sizes.x) return;
-    int sources = 2 * push.sizes.y;
+    if (at.x >= AZIMUTHS) return;
+    int sources = 2 * SOURCE_ROWS;
     if (at.y < sources) {
         mean_sources(at.y, at.x);
         return;
     }
-    int row = (at.y - sources) * push.sizes.x + at.x;
-    if (row < 2 * push.sizes.z) mean_densities(row);
+    int row = (at.y - sources) * AZIMUTHS + at.x;
+    if (row < 2 * DENSITY_ROWS) mean_densities(row);
 }

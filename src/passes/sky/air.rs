@@ -28,13 +28,12 @@ pub const LEAST_SCENE: f32 = 200.0;
 const LEAST_ALTITUDE: f64 = 1.0;
 
 gpu_struct! {
-    /// Sun, eye and size of the table.
+    /// Sun and eye.
     pub struct Push: push of AIR_COMP {
         sun_sine: f32,
         altitude: f32,
         ceiling: f32,
         horizon: f32,
-        sizes: IVec4,
     }
 }
 
@@ -64,6 +63,16 @@ const SIZES: IVec4 = IVec4::new(
     DENSITY_ROWS as i32,
     STEPS as i32,
 );
+
+/// The size of the table for the shader that fills it.
+fn constants() -> [(&'static str, u32); 4] {
+    [
+        ("AZIMUTHS", AZIMUTHS as u32),
+        ("SOURCE_ROWS", SOURCE_ROWS as u32),
+        ("DENSITY_ROWS", DENSITY_ROWS as u32),
+        ("STEPS", STEPS as u32),
+    ]
+}
 
 /// The air before the eye, as shaders look it up.
 #[derive(Clone, Copy)]
@@ -115,7 +124,7 @@ impl Air {
         let size = [STEPS * AZIMUTHS, 4 * SOURCE_ROWS + STEPS].map(|n| n as u32);
         let table = ImageDesc::flat("air", Format::R32G32B32A32_SFLOAT, size).stored();
         Ok(Self {
-            pipeline: compute(context, "air", &shaders::AIR_COMP, &[])?,
+            pipeline: compute(context, "air", &shaders::AIR_COMP, &constants())?,
             table: Image::new(context, &table)?,
             lowest: bounds.min.y.into(),
             drawn: None,
@@ -148,7 +157,6 @@ impl Air {
                     altitude: rays.altitude as f32,
                     ceiling: rays.ceiling as f32,
                     horizon: rays.horizon as f32,
-                    sizes: SIZES,
                 })
                 .store("air_table", &self.table)
                 .dispatch_over([AZIMUTHS as u32, rows as u32, 1]);

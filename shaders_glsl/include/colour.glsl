@@ -13,11 +13,10 @@ float luminance(vec3 rgb) {
 
 /// Clips negative components, which saturated sky colours outside of BT.709 have, preserving luminance.
 vec3 clip_negative(vec3 rgb) {
-    if (min(rgb.r, min(rgb.g, rgb.b)) >= 0.0) return rgb;
+    // Without a branch: an early return here crashed a software driver (Mesa 22.3) in the lighting.
     vec3 clamped = max(rgb, 0.0);
-    float target = luminance(rgb);
     float l = luminance(clamped);
-    return target > 0.0 && l > 0.0 ? clamped * (target / l) : vec3(0.0);
+    return clamped * (l > 0.0 ? max(luminance(rgb), 0.0) / l : 0.0);
 }
 
 /// sRGB values to linear ones (IEC 61966-2-1).

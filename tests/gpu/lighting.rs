@@ -109,7 +109,7 @@ fn the_addends_sum_to_the_picture() {
     let addends = Show::ADDENDS.map(&mut shown);
     let beauty = shown(Show::Beauty);
     let worst = roundings("sum of the addends, textured scene");
-    check_sum(&beauty, &addends, &[Show::Bounces], worst);
+    check_sum(&beauty, &addends, &[Show::Bounces, Show::Air], worst);
 }
 
 /// The three channels of a layer of a file, in cd/m².
@@ -150,7 +150,7 @@ fn the_layers_of_a_file_sum_to_its_picture() {
     let addends = Show::ADDENDS.map(|show| layer(&file, option_name(show)));
     // The means of the frames round, too.
     let worst = Worst::new("sum of the layers of a file", 1e-5);
-    check_sum(&layer(&file, ""), &addends, &[Show::Emission], worst);
+    check_sum(&layer(&file, ""), &addends, &[Show::Emission, Show::Air], worst);
     let names = Show::INPUTS.map(option_name);
     for name in names {
         let prefix = format!("{name}.");

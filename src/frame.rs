@@ -22,7 +22,7 @@ use crate::passes::light::probe::{Probe, Reading};
 use crate::passes::occlusion::ssao::Ssao;
 use crate::passes::picture::exposure::Exposure;
 use crate::passes::picture::tone_map::{ToneMap, ToneSettings};
-use crate::passes::sky::air::{Air, AirBefore};
+use crate::passes::sky::air::Air;
 use crate::passes::sky::cube::SkyCube;
 use crate::passes::sky::irradiance::Irradiance;
 use crate::passes::surfaces::gbuffer::Gbuffer;
@@ -186,8 +186,9 @@ impl Frame {
         let cells = remade(new.cells_need() != old.cells_need(), || {
             new.cells(device, &self.tree, geometry)
         })?;
-        let is_other_air = new.lighting.air != old.lighting.air;
-        let air = remade(is_other_air, || new.air(device, geometry))?;
+        let air = remade(new.lighting.air != old.lighting.air, || {
+            new.air(device, geometry)
+        })?;
         let tone_map = remade(is_resized || new.tone != old.tone, || new.tone_map(device))?;
 
         // From here on nothing fails.
@@ -234,10 +235,8 @@ impl Frame {
         // None of these passes reads another's images, so without a barrier in between they may overlap.
         rec.prepare(self.gbuffer.surfaces().images().chain(shadow.target()));
         let sky = self.sky_cube.record(rec, daylight);
-        let air = match &mut self.air {
-            Some(air) => air.record(rec, sky.air, daylight, view.camera.eye.y),
-            None => AirBefore::none(),
-        };
+        let (air, eye) = (self.air.as_mut(), view.camera.eye.y);
+        let air = air.map(|air| air.record(rec, sky.air, daylight, eye));
         let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
         let (sun_views, shadow_map) = shadow.record(rec, geometry);
         let surfaces = self.gbuffer.record(rec, geometry, &view);
@@ -278,7 +277,7 @@ impl Frame {
             shadow_map,
             sky_irradiance,
             sky_radiance: sky.radiance,
-            air,
+            air: air.unwrap_or_default(),
         };
         let materials = geometry.materials();
         let frame = lighting.record(rec, surfaces, materials, ambient, &light, &view);

@@ -421,7 +421,8 @@ impl Options {
 /// `--irradiance-samples` alone sets the number of samples.
 pub(crate) fn decides_light(name: &str) -> bool {
     let mut tables = tables(name).iter();
-    !["irradiance-error", "aerial"].contains(&name) && tables.any(|table| ["sun", "sky"].contains(table))
+    !["irradiance-error", "aerial"].contains(&name)
+        && tables.any(|table| ["sun", "sky"].contains(table))
 }
 
 /// Identifiers of all options, with the tables of a scene file in which they may appear.

@@ -97,7 +97,9 @@ impl Options {
         }
         options.complete_air();
         options.check()?;
-        options.aerial = options.has_air().then(|| options.aerial.unwrap_or_default());
+        options.aerial = options
+            .has_air()
+            .then(|| options.aerial.unwrap_or_default());
         Ok(options)
     }
 

@@ -418,8 +418,15 @@ fn bad_words_end_with_2_and_touch_nothing() {
         ),
         (&["render", "-o", "old.png", "--polish", "3"], &["--polish"]),
         (
-            &["render", "-o", "old.png", "--sky", "cie-12", "--aerial", "on"],
-            &["--aerial on", "--sky atmosphere", "--sky cie-12", "--aerial off"],
+            &[
+                "render", "-o", "old.png", "--sky", "cie-12", "--aerial", "on",
+            ],
+            &[
+                "--aerial on",
+                "--sky atmosphere",
+                "--sky cie-12",
+                "--aerial off",
+            ],
         ),
         (
             &["render", "-o", "old.png", "--aerial", "half"],

@@ -81,11 +81,13 @@ fn the_air_of_tiles_has_no_seam() {
     let place = Place::new();
     // A plain of 80 km with a wall of 3 km across it, 30 km away.
     let model = place.0.path().join("far.obj");
-    let plain = "v -40000 0 40000\nv 40000 0 40000\nv 40000 0 -40000\nv -40000 0 -40000\nf 1 2 3 4\n";
+    let plain =
+        "v -40000 0 40000\nv 40000 0 40000\nv 40000 0 -40000\nv -40000 0 -40000\nf 1 2 3 4\n";
     let wall = "v -40000 0 -30000\nv 40000 0 -30000\nv 40000 3000 -34000\nv -40000 3000 -34000\nf 5 6 7 8\n";
     std::fs::write(&model, format!("{plain}{wall}")).expect("a model");
     let far = model.to_string_lossy().into_owned();
-    let line = "--sky atmosphere --sun 310,8 --show air --eye 0,300,0 --target 0,900,-9000 --size 317x203";
+    let line =
+        "--sky atmosphere --sun 310,8 --show air --eye 0,300,0 --target 0,900,-9000 --size 317x203";
     let words: Vec<&str> = [&*far].into_iter().chain(line.split_whitespace()).collect();
     for samples in ["1", "2"] {
         let words = [&words[..], &["--samples", samples]].concat();
@@ -95,7 +97,10 @@ fn the_air_of_tiles_has_no_seam() {
         let (whole, tiles) = (read(&whole).expect("whole"), read(&tiles).expect("tiles"));
         let brightest = whole.rgb.iter().flatten().copied().fold(0.0f32, f32::max);
         let (largest, more) = differences(&whole, &tiles, 1e-4 * brightest);
-        println!("brightest {brightest} cd/m2, largest difference {largest}, {:.4} % above 1e-4 of it", more * 100.0);
+        println!(
+            "brightest {brightest} cd/m2, largest difference {largest}, {:.4} % above 1e-4 of it",
+            more * 100.0
+        );
         // Edges of the wall snap to other subpixel positions.
         assert!(brightest > 100.0 && more < 1e-3, "{more}");
     }

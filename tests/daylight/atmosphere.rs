@@ -204,7 +204,10 @@ fn the_air_before_a_mountain_is_that_of_a_monte_carlo_solution() {
         let air = sky.aerial(sun, view, row.get("distance_km"));
         let key = ["aod550", "sun_elevation"].map(|name| row.text(name));
         let table = tables.entry(key).or_insert_with(|| {
-            AirBefore::new(&ScatteredSky::new((*sky).clone(), sun), row.get("altitude_km"))
+            AirBefore::new(
+                &ScatteredSky::new((*sky).clone(), sun),
+                row.get("altitude_km"),
+            )
         });
         let looked_up = table.between(view, row.get("distance_km"));
         let expected = row.get("transmittance_Y");

@@ -195,7 +195,10 @@ fn pictures_have_the_air_before_them() {
                 let error = (found - expected).abs().max_element();
                 scattered[k].push(error / luminance(expected));
             }
-            for (k, expected) in [twin.transmittance, own.transmittance].into_iter().enumerate() {
+            for (k, expected) in [twin.transmittance, own.transmittance]
+                .into_iter()
+                .enumerate()
+            {
                 through[k].push((seen - expected).abs().max_element());
             }
         }
@@ -204,7 +207,11 @@ fn pictures_have_the_air_before_them() {
     let [mut through_twin, mut through_own] = through;
     judge("in-scattered light, twin", &mut scattered_twin, 0.003);
     judge("transmittance, twin", &mut through_twin, 0.003);
-    judge("in-scattered light, path by path", &mut scattered_own, 0.015);
+    judge(
+        "in-scattered light, path by path",
+        &mut scattered_own,
+        0.015,
+    );
     judge("transmittance, path by path", &mut through_own, 0.003);
     assert!(scattered_twin.len() > 10_000);
 }
@@ -238,7 +245,10 @@ fn light_is_dimmed_and_added_in_single_and_in_converging_frames() {
         let (clear, whole) = (picture(Show::Beauty, false), picture(Show::Beauty, true));
         let addends: Vec<Picture> = Show::ADDENDS.map(|show| picture(show, true)).into();
         let lux = [false, true].map(|air| picture(Show::Irradiance, air));
-        assert_eq!(lux[0].texels, lux[1].texels, "illuminance is that of the surface");
+        assert_eq!(
+            lux[0].texels, lux[1].texels,
+            "illuminance is that of the surface"
+        );
         let sky = sky_of(&cases[0].0);
         // The wall reaches far below the sea: the scene is lifted.
         let before = AirBefore::new(sky, altitude_of(0.0, 800.0, -50_000.0) / 1000.0);

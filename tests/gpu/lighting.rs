@@ -11,7 +11,7 @@ use crate::gpu::{
 use crate::truth::Exr;
 use glam::DVec3;
 use skylight::daylight::irradiance::IrradianceMethod;
-use skylight::daylight::sky::{Conditions, Daylight};
+use skylight::daylight::sky::{Conditions, Daylight, SkyModel};
 use skylight::frame::FrameSettings;
 use skylight::options::name as option_name;
 use skylight::passes::light::lighting::Show;
@@ -150,7 +150,12 @@ fn the_layers_of_a_file_sum_to_its_picture() {
     let addends = Show::ADDENDS.map(|show| layer(&file, option_name(show)));
     // The means of the frames round, too.
     let worst = Worst::new("sum of the layers of a file", 1e-5);
-    check_sum(&layer(&file, ""), &addends, &[Show::Emission, Show::Air], worst);
+    check_sum(
+        &layer(&file, ""),
+        &addends,
+        &[Show::Emission, Show::Air],
+        worst,
+    );
     let names = Show::INPUTS.map(option_name);
     for name in names {
         let prefix = format!("{name}.");
@@ -165,6 +170,8 @@ fn files_are_in_candelas_and_carry_their_parameters() {
     let file = render(&[
         "--sun",
         "150,35",
+        "--sky",
+        "preetham",
         "--turbidity",
         "4",
         "--eye=0,500,0",
@@ -173,6 +180,7 @@ fn files_are_in_candelas_and_carry_their_parameters() {
         "20",
     ]);
     let day = Daylight::new(&Conditions {
+        model: SkyModel::Preetham,
         turbidity: 4.0,
         sun_azimuth_deg: 150.0,
         sun_elevation_deg: 35.0,

@@ -82,9 +82,9 @@ pub struct AirBefore<'a> {
     block: AirBlock,
 }
 
-impl<'a> AirBefore<'a> {
+impl Default for AirBefore<'_> {
     /// No air.
-    pub fn none() -> Self {
+    fn default() -> Self {
         // exp(0) at four wavelengths: transmittance 1.
         let block = AirBlock {
             transmittance: [Vec3::splat(0.25); 4],
@@ -94,7 +94,9 @@ impl<'a> AirBefore<'a> {
         };
         Self { table: None, block }
     }
+}
 
+impl<'a> AirBefore<'a> {
     /// Binds it in a pass; without a table, `other` takes its place, as every binding must be written.
     pub fn sampled_by<'r>(&self, pass: Pass<'r>, other: &'r Image) -> Pass<'r>
     where
@@ -140,7 +142,7 @@ impl Air {
         eye: f32,
     ) -> AirBefore<'_> {
         let Sky::Atmosphere(sky) = &daylight.sky else {
-            return AirBefore::none();
+            return AirBefore::default();
         };
         let place = sky.atmosphere.air.altitude_m;
         let altitude = altitude_of(place, eye.into(), self.lowest) / 1000.0;

@@ -156,16 +156,15 @@ fn pictures_have_the_air_before_them() {
     let mut device = Device::new();
     let scene = far_scene();
     let mut cases = Vec::new();
-    for (i, sun) in [60.0, 10.0, 2.0, -2.0, -4.0].into_iter().enumerate() {
+    for sun in [60.0, 10.0, 2.0, -2.0, -4.0] {
         for (height, medium) in [
             (2.0, Medium::default()),
             (1500.0, Medium::default()),
             (300.0, hazy()),
             (9000.0, Medium::default()),
         ] {
-            for turn in [0.0, 137.0] {
-                cases.push((day(sun, medium), view(height, 50.0 * i as f32 + turn)));
-            }
+            let azimuth = 137.0 * cases.len() as f32;
+            cases.push((day(sun, medium), view(height, azimuth)));
         }
     }
     let [lit, light, depth] = [Show::Emission, Show::Air, Show::Depth]
@@ -213,7 +212,7 @@ fn pictures_have_the_air_before_them() {
         0.015,
     );
     judge("transmittance, path by path", &mut through_own, 0.003);
-    assert!(scattered_twin.len() > 10_000);
+    assert!(scattered_twin.len() > 5000);
 }
 
 /// A wall that fills the view at 20 km.

@@ -186,9 +186,8 @@ impl Frame {
         let cells = remade(new.cells_need() != old.cells_need(), || {
             new.cells(device, &self.tree, geometry)
         })?;
-        let air = remade(new.lighting.air != old.lighting.air, || {
-            new.air(device, geometry)
-        })?;
+        let is_other_air = new.air_need() != old.air_need();
+        let air = remade(is_other_air, || new.air(device, geometry))?;
         let tone_map = remade(is_resized || new.tone != old.tone, || new.tone_map(device))?;
 
         // From here on nothing fails.
@@ -236,7 +235,7 @@ impl Frame {
         rec.prepare(self.gbuffer.surfaces().images().chain(shadow.target()));
         let sky = self.sky_cube.record(rec, daylight);
         let (air, eye) = (self.air.as_mut(), view.camera.eye.y);
-        let air = air.map(|air| air.record(rec, sky.air, daylight, eye));
+        let air = air.map(|air| air.record(rec, daylight, eye));
         let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
         let (sun_views, shadow_map) = shadow.record(rec, geometry);
         let surfaces = self.gbuffer.record(rec, geometry, &view);

@@ -182,11 +182,15 @@ impl FrameSettings {
         Background::new(context, self.lighting)
     }
 
+    /// Edge of a face of the sky behind the air; `None` if the air is not drawn.
+    pub(super) fn air_need(&self) -> Option<u32> {
+        self.lighting.air.then_some(self.sky_edge)
+    }
+
     /// The air before the eye, if it is drawn.
     pub(super) fn air(&self, context: &Arc<Context>, geometry: &Geometry) -> Result<Option<Air>> {
-        let is_drawn = self.lighting.air;
-        is_drawn
-            .then(|| Air::new(context, geometry.bounds()))
+        let edge = self.air_need();
+        edge.map(|edge| Air::new(context, geometry.bounds(), edge))
             .transpose()
     }
 

@@ -12,7 +12,6 @@ use skylight::daylight::sky::{Conditions, Daylight, Sky, SkyModel};
 use skylight::frame::{Frame, FrameSettings, Visibility};
 use skylight::passes::light::lighting::Show;
 use skylight::passes::sky::air::{Air, altitude_of};
-use skylight::passes::sky::cube::SkyCube;
 use skylight::scene::{Bounds, Camera, Scene};
 
 fn day(sun_elevation_deg: f64, air: Medium) -> Daylight {
@@ -53,8 +52,7 @@ fn judge(what: &str, errors: &mut [f64], bound: f64) {
 #[test]
 fn the_table_is_the_cpus() {
     let mut device = Device::new();
-    let mut cube = SkyCube::new(&device.context, 16).expect("a cube");
-    let mut air = Air::new(&device.context, &Bounds::EMPTY).expect("a table");
+    let mut air = Air::new(&device.context, &Bounds::EMPTY, 16).expect("a table");
     for (sun, medium, eye) in [
         (50.0, Medium::default(), 1500.0),
         (2.0, hazy(), 2.0),
@@ -63,8 +61,7 @@ fn the_table_is_the_cpus() {
     ] {
         let daylight = day(sun, medium);
         device.run(|rec| {
-            let sky = cube.record(rec, &daylight);
-            air.record(rec, sky.air, &daylight, eye);
+            air.record(rec, &daylight, eye);
         });
         let altitude = altitude_of(medium.altitude_m, eye.into(), 0.0) / 1000.0;
         let twin = AirBefore::new(sky_of(&daylight), altitude);
@@ -262,6 +259,38 @@ fn light_is_dimmed_and_added_in_single_and_in_converging_frames() {
             assert!(error < 1e-6 * luminance(expected), "{visibility:?} {sum}");
         }
         judge(&format!("{visibility:?}"), &mut errors, 0.003);
+    }
+}
+
+#[test]
+fn the_sky_behind_is_that_of_the_altitude_of_the_eye() {
+    let mut device = Device::new();
+    let scene = far_scene();
+    for (sun, height) in [(12.0, 3000.0), (-3.0, 900.0)] {
+        let daylight = day(sun, Medium::default());
+        let mut atmosphere = sky_of(&daylight).atmosphere.clone();
+        atmosphere.air.altitude_m = f64::from(height);
+        let there = Daylight {
+            sky: Sky::Atmosphere(ScatteredSky::new(atmosphere, sky_of(&daylight).sun)),
+            ..daylight.clone()
+        };
+        let view = view(height, 100.0);
+        let cases = [(daylight.clone(), view)];
+        let picture = shown(&mut device, &scene, with_air(Show::Background), &cases).remove(0);
+        let errors = |of: &Daylight| -> Vec<f64> {
+            let sky = picture.pixels().filter(|(_, seen)| seen.y > 0.0);
+            let error = sky.map(|(pixel, seen)| {
+                let expected = of.radiance(pixel_ray(&view, picture.size, pixel));
+                (seen * 1e3 - expected).abs().max_element() / luminance(expected)
+            });
+            error.collect()
+        };
+        judge("sky from there", &mut errors(&there), 0.02);
+        let mut others = errors(&daylight);
+        assert!(
+            at_share(&mut others, 0.5) > 0.02,
+            "the sky of the place differs"
+        );
     }
 }
 

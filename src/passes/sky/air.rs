@@ -1,5 +1,5 @@
 //! The air between the eye and the surfaces: its table for every direction and distance ([`crate::daylight::atmosphere::aerial`]), made
-//! again when sun, air or the altitude of the eye change. Turning the eye, moving it on a level and tiles of a picture need no other.
+//! again when sun, air or the altitude of the eye change; and the sky behind them, seen from that altitude. Turning the eye, moving it on a level and tiles of a picture need no other.
 
 use std::sync::Arc;
 
@@ -14,10 +14,11 @@ use crate::daylight::atmosphere::sky_view::toward;
 use crate::daylight::colour::rgb_from_xyz;
 use crate::daylight::sky::{Daylight, Sky};
 use crate::gpu::{
-    Buffer, Context, Format, Image, ImageDesc, Pass, Pipeline, Recorder, Result, Sampler, shaders,
+    Context, Format, Image, ImageDesc, Pass, Pipeline, Recorder, Result, Sampler, shaders,
 };
 use crate::gpu_struct;
-use crate::passes::sky::atmosphere::air_model;
+use crate::passes::sky::atmosphere::{AtmosphereView, air_model};
+use crate::passes::sky::cube::SkyBehind;
 use crate::passes::{compute, kilo};
 use crate::scene::Bounds;
 
@@ -79,6 +80,8 @@ fn constants() -> [(&'static str, u32); 4] {
 pub struct AirBefore<'a> {
     /// `None`: there is none, or it is not drawn.
     table: Option<&'a Image>,
+    /// The sky behind, kcd/m².
+    behind: Option<&'a Image>,
     block: AirBlock,
 }
 
@@ -92,11 +95,20 @@ impl Default for AirBefore<'_> {
             sizes: SIZES,
             ..AirBlock::zeroed()
         };
-        Self { table: None, block }
+        Self {
+            table: None,
+            behind: None,
+            block,
+        }
     }
 }
 
 impl<'a> AirBefore<'a> {
+    /// The sky behind as the eye sees it; without air, `sky`.
+    pub fn sky_or(&self, sky: &'a Image) -> &'a Image {
+        self.behind.unwrap_or(sky)
+    }
+
     /// Binds it in a pass; without a table, `other` takes its place, as every binding must be written.
     pub fn sampled_by<'r>(&self, pass: Pass<'r>, other: &'r Image) -> Pass<'r>
     where
@@ -111,33 +123,37 @@ impl<'a> AirBefore<'a> {
 pub struct Air {
     pipeline: Pipeline,
     table: Image,
+    /// Tables of the air, and the view from the altitude of the eye.
+    view: AtmosphereView,
+    behind: SkyBehind,
     /// y of the lowest point of the scene, metres.
     lowest: f64,
-    /// The sky and the altitude, km, of the table.
-    drawn: Option<(ScatteredSky, f64)>,
+    /// Daylight and altitude, km, of the newest table and sky.
+    drawn: Option<(Daylight, f64)>,
 }
 
 impl Air {
-    /// Creates pipeline and table for a scene within `bounds`.
+    /// Creates pipelines and images for a scene within `bounds`; a face of the sky's cube has `edge` texels.
     ///
     /// # Errors
     /// Fails when the device cannot create the resources.
-    pub fn new(context: &Arc<Context>, bounds: &Bounds) -> Result<Self> {
+    pub fn new(context: &Arc<Context>, bounds: &Bounds, edge: u32) -> Result<Self> {
         let size = [STEPS * AZIMUTHS, 4 * SOURCE_ROWS + STEPS].map(|n| n as u32);
         let table = ImageDesc::flat("air", Format::R32G32B32A32_SFLOAT, size).stored();
         Ok(Self {
             pipeline: compute(context, "air", &shaders::AIR_COMP, &constants())?,
             table: Image::new(context, &table)?,
+            view: AtmosphereView::new(context)?,
+            behind: SkyBehind::new(context, edge)?,
             lowest: bounds.min.y.into(),
             drawn: None,
         })
     }
 
-    /// The air before an eye whose y is `eye`, metres. `tables` are those of the air of the daylight. Without an atmosphere there is none.
+    /// The air before an eye whose y is `eye`, metres. Without an atmosphere there is none.
     pub fn record(
         &mut self,
         recorder: &mut Recorder,
-        tables: &Buffer,
         daylight: &Daylight,
         eye: f32,
     ) -> AirBefore<'_> {
@@ -147,13 +163,16 @@ impl Air {
         let place = sky.atmosphere.air.altitude_m;
         let altitude = altitude_of(place, eye.into(), self.lowest) / 1000.0;
         let rays = Rays::new(altitude);
-        let is_drawn = |(of, at): &(ScatteredSky, f64)| of == sky && *at == altitude;
+        let is_drawn = |(of, at): &(Daylight, f64)| of == daylight && *at == altitude;
         if !self.drawn.as_ref().is_some_and(is_drawn) {
+            let here = seen_from(sky, rays.altitude);
+            let view = self.view.record(recorder, &here);
+            self.behind.record(recorder, daylight, &here, view);
             let rows = 2 * SOURCE_ROWS + (2 * DENSITY_ROWS).div_ceil(AZIMUTHS);
             recorder
                 .pass("air", &self.pipeline)
                 .uniform("model", &air_model(&sky.atmosphere))
-                .storage("air", tables)
+                .storage("air", self.view.tables())
                 .push(&Push {
                     sun_sine: sky.sun.y as f32,
                     altitude: rays.altitude as f32,
@@ -162,16 +181,18 @@ impl Air {
                 })
                 .store("air_table", &self.table)
                 .dispatch_over([AZIMUTHS as u32, rows as u32, 1]);
-            self.drawn = Some((sky.clone(), altitude));
+            self.drawn = Some((daylight.clone(), altitude));
         }
         AirBefore {
             table: Some(&self.table),
+            behind: Some(self.behind.image()),
             block: block_of(daylight, sky, &rays),
         }
     }
 
-    /// Makes the next table new.
+    /// Makes the next table and sky new.
     pub fn invalidate(&mut self) {
+        self.view.invalidate();
         self.drawn = None;
     }
 
@@ -186,6 +207,13 @@ impl Air {
 pub fn altitude_of(place: f64, eye: f64, lowest: f64) -> f64 {
     let lift = (-(place + lowest)).max(0.0);
     (place + eye + lift).max(LEAST_ALTITUDE)
+}
+
+/// The sky from an altitude, km.
+fn seen_from(sky: &ScatteredSky, altitude: f64) -> ScatteredSky {
+    let mut atmosphere = sky.atmosphere.clone();
+    atmosphere.air.altitude_m = 1000.0 * altitude;
+    ScatteredSky::new(atmosphere, sky.sun)
 }
 
 fn block_of(daylight: &Daylight, sky: &ScatteredSky, rays: &Rays) -> AirBlock {

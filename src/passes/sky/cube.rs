@@ -11,7 +11,7 @@ use crate::daylight::grey_sky::GreySky;
 use crate::daylight::hosek::Hosek;
 use crate::daylight::preetham::PerezSky;
 use crate::daylight::sky::{Daylight, Sky};
-use crate::gpu::{Buffer, Context, Format, Image, ImageDesc, Recorder, Result, Sampler, shaders};
+use crate::gpu::{Context, Format, Image, ImageDesc, Recorder, Result, Sampler, shaders};
 use crate::gpu_struct;
 
 use crate::passes::kilo;
@@ -86,8 +86,6 @@ pub struct SkyImages<'s> {
     pub coarse: &'s Image,
     /// Whether the images were drawn in this frame.
     pub is_new: bool,
-    /// Tables of the air, if the sky is an atmosphere; else undefined.
-    pub air: &'s Buffer,
 }
 
 /// Pipelines of the sky models, for targets of one format.
@@ -137,13 +135,7 @@ impl Painter {
         view: Option<&Image>,
         target: &Image,
     ) {
-        let mut push = Push {
-            sun_direction: daylight.guard.sun_direction.as_vec3(),
-            scale: daylight.guard.scale as f32,
-            night: kilo(daylight.guard.night),
-            ground: kilo(daylight.ground_luminance),
-            clouds: (daylight.guard.clouds * 1e-3) as f32,
-        };
+        let mut push = push_of(daylight);
         let pipeline = match &daylight.sky {
             Sky::Preetham(_) => &self.preetham,
             Sky::Hosek(_) => &self.hosek,
@@ -166,6 +158,58 @@ impl Painter {
             }
         };
         pipeline.fill(pass.push(&push), &[("sky_radiance", target)]);
+    }
+}
+
+/// An atmosphere as the eye sees it from its own altitude.
+pub(in crate::passes::sky) struct SkyBehind {
+    pipeline: CubePipeline,
+    radiance: Image,
+}
+
+impl SkyBehind {
+    pub fn new(context: &Arc<Context>, edge: u32) -> Result<Self> {
+        let float = Format::R32G32B32A32_SFLOAT;
+        let (route, name) = (CubeRoute::of(context), "sky: behind");
+        let pipeline = CubePipeline::new(context, route, name, ATMOSPHERE, &[float], &[])?;
+        let radiance = Image::new(context, &ImageDesc::cube("sky behind", float, edge))?;
+        Ok(Self { pipeline, radiance })
+    }
+
+    /// Draws the sky of the daylight from where `sky` is seen; `view` is the table of its view.
+    pub fn record(
+        &self,
+        recorder: &mut Recorder,
+        daylight: &Daylight,
+        sky: &ScatteredSky,
+        view: &Image,
+    ) {
+        let (ground_scale, added) = daylight.ground_of(sky);
+        let push = Push {
+            ground: kilo(added),
+            ..push_of(daylight)
+        };
+        let pass = self.pipeline.pass(recorder, "sky behind");
+        let pass = pass
+            .uniform("model", &view_model(sky, ground_scale))
+            .sample("sky_view", view, Sampler::Nearest);
+        let target = [("sky_radiance", &self.radiance)];
+        self.pipeline.fill(pass.push(&push), &target);
+    }
+
+    /// The cube, kcd/m².
+    pub fn image(&self) -> &Image {
+        &self.radiance
+    }
+}
+
+fn push_of(daylight: &Daylight) -> Push {
+    Push {
+        sun_direction: daylight.guard.sun_direction.as_vec3(),
+        scale: daylight.guard.scale as f32,
+        night: kilo(daylight.guard.night),
+        ground: kilo(daylight.ground_luminance),
+        clouds: (daylight.guard.clouds * 1e-3) as f32,
     }
 }
 
@@ -217,7 +261,6 @@ impl SkyCube {
             smooth: &self.smooth,
             coarse: &self.coarse,
             is_new,
-            air: self.atmosphere.tables(),
         }
     }
 

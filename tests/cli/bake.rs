@@ -201,7 +201,11 @@ fn all_files_or_none() {
     );
     assert_eq!(folder.path().read_dir().expect("folder").count(), 1);
     for (line, part) in [
-        ("--map sky -o a.png", ".exr or .hdr"),
+        ("--map sky -o a.png", ".exr or .hdr or .ktx2"),
+        ("--map sky --size 100 -o a.ktx2", "--size 128"),
+        ("--map specular --size 16 -o a.exr", "--size 16"),
+        ("--map sky --layout cross -o a.ktx2", "--layout"),
+        ("--map sky --texels bc6h -o a.hdr", "--texels"),
         ("--map sky --size 3 -o a.exr", "4..=4096"),
         ("-o a.exr", "--map"),
         ("--map moon -o a.exr", "moon"),

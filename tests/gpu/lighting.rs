@@ -150,12 +150,7 @@ fn the_layers_of_a_file_sum_to_its_picture() {
     let addends = Show::ADDENDS.map(|show| layer(&file, option_name(show)));
     // The means of the frames round, too.
     let worst = Worst::new("sum of the layers of a file", 1e-5);
-    check_sum(
-        &layer(&file, ""),
-        &addends,
-        &[Show::Emission, Show::Air],
-        worst,
-    );
+    check_sum(&layer(&file, ""), &addends, &[Show::Emission], worst);
     let names = Show::INPUTS.map(option_name);
     for name in names {
         let prefix = format!("{name}.");

@@ -12,6 +12,8 @@ use std::thread::{self, ScopedJoinHandle};
 pub use self::sample::{Filter, Sampling, Visibility};
 pub use self::settings::FrameSettings;
 
+use glam::UVec2;
+
 use crate::daylight::sky::Daylight;
 use crate::gpu::{Context, Image, Recorder, Result};
 use crate::passes::bounces::cells::{Cells, Surroundings, Work};
@@ -22,6 +24,7 @@ use crate::passes::light::probe::{Probe, Reading};
 use crate::passes::occlusion::ssao::Ssao;
 use crate::passes::picture::exposure::Exposure;
 use crate::passes::picture::tone_map::{ToneMap, ToneSettings};
+use crate::passes::sky::air::Air;
 use crate::passes::sky::cube::SkyCube;
 use crate::passes::sky::irradiance::Irradiance;
 use crate::passes::surfaces::gbuffer::Gbuffer;
@@ -57,6 +60,8 @@ pub struct Frame {
     cells: Option<Cells>,
     sky_cube: SkyCube,
     irradiance: Irradiance,
+    /// The air before the eye, if it is drawn.
+    air: Option<Air>,
     gbuffer: Gbuffer,
     /// Panes of glass, if the scene has any.
     panes: Option<Panes>,
@@ -90,6 +95,11 @@ struct Tiling {
 }
 
 impl Tiling {
+    /// Upper left corner of the frame in the picture, pixels.
+    fn origin(&self) -> UVec2 {
+        self.tile.map_or(UVec2::ZERO, |tile| tile.origin)
+    }
+
     /// Shared ambient occlusion for sample `index`, if any. The images repeat if there are more samples than images.
     fn occlusion(&self, index: Option<u32>) -> Option<&Image> {
         let count = self.occlusion.len().max(1);
@@ -123,6 +133,7 @@ impl Frame {
                 cells: settings.cells(device, &tree, &geometry)?,
                 tree,
                 irradiance: Irradiance::new(recorder, settings.irradiance)?,
+                air: settings.air(device, &geometry)?,
                 preview: Lit {
                     shadow: settings.shadow(device, &geometry)?,
                     lighting: joined(lighting)?,
@@ -190,11 +201,14 @@ impl Frame {
         let cells = remade(new.cells_need() != old.cells_need(), || {
             new.cells(device, &self.tree, geometry)
         })?;
+        let is_other_air = new.air_need() != old.air_need();
+        let air = remade(is_other_air, || new.air(device, geometry))?;
         let tone_map = remade(is_resized || new.tone != old.tone, || new.tone_map(device))?;
 
         // From here on nothing fails.
         replace(&mut self.sky_cube, sky_cube);
         replace(&mut self.irradiance, irradiance);
+        replace(&mut self.air, air);
         replace(&mut self.gbuffer, gbuffer);
         replace(&mut self.panes, panes);
         replace(&mut self.ambient, ambient);
@@ -236,6 +250,8 @@ impl Frame {
         // None of these passes reads another's images, so without a barrier in between they may overlap.
         rec.prepare(self.gbuffer.surfaces().images().chain(shadow.target()));
         let sky = self.sky_cube.record(rec, daylight);
+        let (air, eye) = (self.air.as_mut(), view.camera.eye.y);
+        let air = air.map(|air| air.record(rec, daylight, eye));
         let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
         let (sun_views, shadow_map, sun_glass) = shadow.record(rec, geometry);
         let surfaces = self.gbuffer.record(rec, geometry, &view);
@@ -276,6 +292,7 @@ impl Frame {
             shadow_map,
             sky_irradiance,
             sky_radiance: sky.radiance,
+            air: air.unwrap_or_default(),
             panes: BeforePicture(None),
             sun_glass,
         };
@@ -290,7 +307,8 @@ impl Frame {
         let scene = (geometry, &self.tree, self.cells.as_ref());
         let radiance = resolve.record(rec, scene, frame, surfaces, &light, &view);
         let average = self.exposure.record(rec, radiance);
-        self.tone_map.record(rec, radiance, average);
+        self.tone_map
+            .record(rec, radiance, average, self.tiling.origin());
         self.drawn = Some(Drawn { index, view });
     }
 
@@ -304,7 +322,8 @@ impl Frame {
     pub fn expose(&self, rec: &mut Recorder) {
         let radiance = self.radiance();
         let average = self.exposure.record(rec, radiance);
-        self.tone_map.record(rec, radiance, average);
+        self.tone_map
+            .record(rec, radiance, average, self.tiling.origin());
     }
 
     /// Tone maps the newest picture again with new settings. `rec` must be recording, with no frame in flight.
@@ -317,7 +336,8 @@ impl Frame {
             ..self.settings
         };
         let tone_map = settings.tone_map(&self.context)?;
-        tone_map.record(rec, self.radiance(), self.exposure.image());
+        let origin = self.tiling.origin();
+        tone_map.record(rec, self.radiance(), self.exposure.image(), origin);
         self.tone_map = tone_map;
         self.settings = settings;
         Ok(())
@@ -415,6 +435,7 @@ impl Frame {
     /// Invalidates sky, irradiance and shadow map, so that the next frame redraws everything. For benchmarks.
     pub fn invalidate(&mut self) {
         self.sky_cube.invalidate();
+        self.air.iter_mut().for_each(Air::invalidate);
         self.preview.shadow.invalidate();
     }
 

@@ -163,9 +163,17 @@ options! {
             /// sun, and the disc stands and shines at its apparent elevation. --sun is taken as given for both.
             #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
             refraction: Switch,
-            /// Whether the moon shines: its disc in the sky, and its light when the sun gives none (of --place and --when).
+            /// Whether the moon shines: its disc in the sky, its light when the sun gives none, and the air that it lights with --sky atmosphere (of
+            /// --place and --when).
             #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
             moon: Switch,
+            /// Whether the brightest stars are drawn, as points of light, where --sky atmosphere is dark enough (of --place and --when).
+            #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
+            stars: Switch,
+            /// Whether the air between surfaces and the eye dims them and adds its light: on by default with --sky atmosphere, which alone
+            /// has air to draw. Scenes less than 200 m across have too little of it to see, and are drawn without.
+            #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>())]
+            aerial: Option<Switch>,
             /// Reflectance of the ground below the horizon, 0 to 1; 0 is black.
             #[arg(value_name = "ALBEDO", value_parser = values::ground_albedo, allow_hyphen_values = true,
                   default_value_t = Conditions::default().ground_albedo)]
@@ -250,6 +258,10 @@ options! {
             /// Exposure from the picture itself, unless --ev100 or --scale is given.
             #[arg(value_name = "MODE", value_parser = choice::<ExposureMode>(), default_value_t)]
             exposure: ExposureMode,
+            /// Lowest exposure value of the automatic exposure, which leaves darker pictures dark: -2 shows a landscape under the full moon as
+            /// a night; by default every night is exposed until it is as bright as a day.
+            #[arg(value_name = "EV", value_parser = values::ev100, allow_hyphen_values = true)]
+            min_ev100: Option<f64>,
             /// Tone curve of .png pictures and the window.
             #[arg(value_name = "CURVE", value_parser = choice::<ToneCurve>(), default_value_t)]
             tonemap: ToneCurve,
@@ -405,9 +417,20 @@ impl Options {
         list.retain(|(name, _)| match name.as_str() {
             "exposure" => self.ev100.is_none(),
             "false-colour" => colours,
+            "aerial" => self.has_air(),
             _ => true,
         });
         OptionValues::from(list)
+    }
+
+    /// Whether the sky is one whose air can be drawn.
+    fn has_air(&self) -> bool {
+        self.sky == SkyModel::Atmosphere
+    }
+
+    /// Whether the air between surfaces and the eye is drawn, if the scene is large enough.
+    pub fn draws_air(&self) -> bool {
+        self.has_air() && self.aerial != Some(Switch::Off)
     }
 
     /// The subset of [`Options::values`] that determines a daylight and how its irradiance is integrated.
@@ -421,7 +444,8 @@ impl Options {
 /// `--irradiance-samples` alone sets the number of samples.
 pub(crate) fn decides_light(name: &str) -> bool {
     let mut tables = tables(name).iter();
-    name != "irradiance-error" && tables.any(|table| ["sun", "sky"].contains(table))
+    !["irradiance-error", "aerial"].contains(&name)
+        && tables.any(|table| ["sun", "sky"].contains(table))
 }
 
 /// Identifiers of all options, with the tables of a scene file in which they may appear.

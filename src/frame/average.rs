@@ -207,6 +207,7 @@ impl<'a> Resolve<'a> {
                     sky_irradiance: light.sky_irradiance,
                     sky_radiance: light.sky_radiance,
                     panes: light.panes,
+                    air: light.air,
                     bounced,
                 };
                 let picture = dome.record(rec, geometry, &gathered, light.daylight, view, index);

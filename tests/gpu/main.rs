@@ -9,6 +9,7 @@ mod room;
 #[path = "../common/truth.rs"]
 mod truth;
 
+mod air;
 mod atmosphere;
 mod bounces;
 mod canary;
@@ -32,6 +33,7 @@ mod shadow;
 mod sky;
 mod specular;
 mod ssao;
+mod stars;
 mod steady_frame;
 mod timings;
 mod tone;

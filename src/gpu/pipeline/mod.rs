@@ -54,7 +54,8 @@ impl Depth {
     }
 }
 
-/// How fragments are combined with what is in the colour attachments. Only half floats and bytes can be combined on every device.
+/// How fragments are combined with what is in the colour attachments. Half floats and bytes can be combined on every device, other
+/// formats if [`Context::can_blend`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Blend {
     /// They replace it.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use crate::daylight::atmosphere::columns::horizon_cosine;
 use crate::daylight::atmosphere::scattered_sky::ScatteredSky;
@@ -15,7 +15,7 @@ use crate::gpu::{Context, Format, Image, ImageDesc, Recorder, Result, Sampler, s
 use crate::gpu_struct;
 
 use crate::passes::kilo;
-use crate::passes::sky::atmosphere::AtmosphereView;
+use crate::passes::sky::atmosphere::{AtmosphereView, SkyViews};
 use crate::passes::sky::route::{CubePipeline, CubeRoute, CubeShaders};
 
 gpu_struct! {
@@ -61,9 +61,11 @@ gpu_struct! {
 }
 
 gpu_struct! {
-    /// Where the table of an atmosphere's view lies, and the light of its ground.
+    /// Where the tables of an atmosphere's view lie, and the light of its ground.
     pub struct ViewModel: model of SKY_ATMOSPHERE_FRAG, SKY_ATMOSPHERE_COMP {
         toward_sun: Vec2,
+        toward_moon: Vec2,
+        moon_share: f32,
         horizon: f32,
         ground_scale: f32,
     }
@@ -94,6 +96,7 @@ struct Painter {
     hosek: CubePipeline,
     grey: CubePipeline,
     atmosphere: CubePipeline,
+    moonlit: CubePipeline,
 }
 
 const PREETHAM: CubeShaders = CubeShaders {
@@ -117,35 +120,32 @@ const ATMOSPHERE: CubeShaders = CubeShaders {
 impl Painter {
     fn new(context: &Arc<Context>, format: Format) -> Result<Self> {
         let route = CubeRoute::of(context);
-        let pipeline =
-            |name, shaders| CubePipeline::new(context, route, name, shaders, &[format], &[]);
+        let pipeline = |name, shaders, constants: &[(&str, u32)]| {
+            CubePipeline::new(context, route, name, shaders, &[format], constants)
+        };
         Ok(Self {
-            preetham: pipeline("sky: Preetham", PREETHAM)?,
-            hosek: pipeline("sky: Hosek", HOSEK)?,
-            grey: pipeline("sky: grey", GREY)?,
-            atmosphere: pipeline("sky: atmosphere", ATMOSPHERE)?,
+            preetham: pipeline("sky: Preetham", PREETHAM, &[])?,
+            hosek: pipeline("sky: Hosek", HOSEK, &[])?,
+            grey: pipeline("sky: grey", GREY, &[])?,
+            atmosphere: pipeline("sky: atmosphere", ATMOSPHERE, &[("MOON", 0)])?,
+            moonlit: pipeline("sky: atmosphere, moon", ATMOSPHERE, &[("MOON", 1)])?,
         })
     }
 
-    /// `view` is the table of the view, if the sky is an atmosphere.
+    /// `views` are the tables of the view, if the sky is an atmosphere.
     fn paint(
         &self,
         recorder: &mut Recorder,
         daylight: &Daylight,
-        view: Option<&Image>,
+        views: Option<SkyViews<'_>>,
         target: &Image,
     ) {
-        let mut push = Push {
-            sun_direction: daylight.guard.sun_direction.as_vec3(),
-            scale: daylight.guard.scale as f32,
-            night: kilo(daylight.guard.night),
-            ground: kilo(daylight.ground_luminance),
-            clouds: (daylight.guard.clouds * 1e-3) as f32,
-        };
+        let mut push = push_of(daylight);
         let pipeline = match &daylight.sky {
             Sky::Preetham(_) => &self.preetham,
             Sky::Hosek(_) => &self.hosek,
             Sky::Grey(_) => &self.grey,
+            Sky::Atmosphere(sky) if sky.moon.is_some() => &self.moonlit,
             Sky::Atmosphere(_) => &self.atmosphere,
         };
         let pass = pipeline.pass(recorder, "sky cube");
@@ -157,13 +157,70 @@ impl Painter {
                 let (ground_scale, added) = daylight.ground_of(sky);
                 push.ground = kilo(added);
                 let pass = pass.uniform("model", &view_model(sky, ground_scale));
-                match view {
-                    Some(view) => pass.sample("sky_view", view, Sampler::Nearest),
+                match views {
+                    Some(SkyViews { sun, moon }) => pass
+                        .sample("sky_view", sun, Sampler::Nearest)
+                        .sample("moon_view", moon, Sampler::Nearest),
                     None => pass,
                 }
             }
         };
         pipeline.fill(pass.push(&push), &[("sky_radiance", target)]);
+    }
+}
+
+/// An atmosphere as the eye sees it from its own altitude.
+pub(in crate::passes::sky) struct SkyBehind {
+    pipeline: CubePipeline,
+    radiance: Image,
+}
+
+impl SkyBehind {
+    pub fn new(context: &Arc<Context>, edge: u32) -> Result<Self> {
+        let float = Format::R32G32B32A32_SFLOAT;
+        let (route, name) = (CubeRoute::of(context), "sky: behind");
+        // The share of a moon that does not count is 0.
+        let moonlit = [("MOON", 1)];
+        let pipeline = CubePipeline::new(context, route, name, ATMOSPHERE, &[float], &moonlit)?;
+        let radiance = Image::new(context, &ImageDesc::cube("sky behind", float, edge))?;
+        Ok(Self { pipeline, radiance })
+    }
+
+    /// Draws the sky of the daylight from where `sky` is seen; `views` are the tables of its view.
+    pub fn record(
+        &self,
+        recorder: &mut Recorder,
+        daylight: &Daylight,
+        sky: &ScatteredSky,
+        views: SkyViews<'_>,
+    ) {
+        let (ground_scale, added) = daylight.ground_of(sky);
+        let push = Push {
+            ground: kilo(added),
+            ..push_of(daylight)
+        };
+        let pass = self.pipeline.pass(recorder, "sky behind");
+        let pass = pass
+            .uniform("model", &view_model(sky, ground_scale))
+            .sample("sky_view", views.sun, Sampler::Nearest)
+            .sample("moon_view", views.moon, Sampler::Nearest);
+        let target = [("sky_radiance", &self.radiance)];
+        self.pipeline.fill(pass.push(&push), &target);
+    }
+
+    /// The cube, kcd/m².
+    pub fn image(&self) -> &Image {
+        &self.radiance
+    }
+}
+
+fn push_of(daylight: &Daylight) -> Push {
+    Push {
+        sun_direction: daylight.guard.sun_direction.as_vec3(),
+        scale: daylight.guard.scale as f32,
+        night: kilo(daylight.guard.night),
+        ground: kilo(daylight.ground_luminance),
+        clouds: (daylight.guard.clouds * 1e-3) as f32,
     }
 }
 
@@ -200,14 +257,15 @@ impl SkyCube {
     pub fn record(&mut self, recorder: &mut Recorder, daylight: &Daylight) -> SkyImages<'_> {
         let is_new = self.drawn.as_ref() != Some(daylight);
         if is_new {
-            let view = match &daylight.sky {
+            let views = match &daylight.sky {
                 Sky::Atmosphere(sky) => Some(self.atmosphere.record(recorder, sky)),
                 _ => None,
             };
-            self.painter.paint(recorder, daylight, view, &self.radiance);
-            self.painter.paint(recorder, daylight, view, &self.smooth);
+            self.painter
+                .paint(recorder, daylight, views, &self.radiance);
+            self.painter.paint(recorder, daylight, views, &self.smooth);
             recorder.mipmap("sky mips", &self.smooth);
-            self.painter.paint(recorder, daylight, view, &self.coarse);
+            self.painter.paint(recorder, daylight, views, &self.coarse);
             self.drawn = Some(daylight.clone());
         }
         SkyImages {
@@ -224,9 +282,9 @@ impl SkyCube {
         self.drawn = None;
     }
 
-    /// The table of an atmosphere's view, kcd/m².
-    pub fn sky_view(&self) -> &Image {
-        self.atmosphere.image()
+    /// The tables of an atmosphere's view under the sun and under the moon, kcd/m².
+    pub fn sky_views(&self) -> &[Image; 2] {
+        self.atmosphere.images()
     }
 
     /// The cube, kcd/m².
@@ -236,8 +294,11 @@ impl SkyCube {
 }
 
 fn view_model(sky: &ScatteredSky, ground_scale: f64) -> ViewModel {
+    let moon = sky.moon.as_ref();
     ViewModel {
-        toward_sun: toward(sky.sun).as_vec2(),
+        toward_sun: toward(sky.sun.direction).as_vec2(),
+        toward_moon: toward(moon.map_or(DVec3::Y, |moon| moon.direction)).as_vec2(),
+        moon_share: moon.map_or(0.0, |moon| moon.share) as f32,
         horizon: horizon_cosine(sky.atmosphere.observer()).asin() as f32,
         ground_scale: ground_scale as f32,
     }

@@ -38,6 +38,9 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
         .on_hover_text("reflectance of the ground below the horizon, 0 to 1");
     choice(ui, "refraction", &mut settings.refraction);
     choice(ui, "moon", &mut settings.moon);
+    if settings.sky == SkyModel::Atmosphere {
+        choice(ui, "stars", &mut settings.stars);
+    }
     let is_moonlit = document.job.daylight.moon.is_some()
         && document.job.daylight.sun_illuminance == DVec3::ZERO;
     let source = if is_moonlit { "moon" } else { "sun" };
@@ -72,6 +75,8 @@ fn atmosphere(ui: &mut Ui, settings: &mut Options) {
     }
     ui.add(Slider::new(&mut settings.ozone, OZONE_RANGE_DU).text("ozone, DU"));
     ui.add(Slider::new(&mut settings.altitude, ALTITUDE_RANGE_M).text("altitude, m"));
+    let aerial = settings.aerial.get_or_insert_default();
+    choice(ui, "air before surfaces", aerial);
 }
 
 /// Illuminances of a horizontal plane by sun (or moon) and sky, lux.

@@ -256,11 +256,8 @@ impl Frame {
         let (sun_views, shadow_map, sun_glass) = shadow.record(rec, geometry);
         let surfaces = self.gbuffer.record(rec, geometry, &view);
         let is_dome = resolve.is_dome();
-        if let Some(cells) = self
-            .cells
-            .as_mut()
-            .filter(|_| resolve.gathers() || !is_dome)
-        {
+        let cells = self.cells.as_mut();
+        if let Some(cells) = cells.filter(|_| resolve.gathers() || !is_dome) {
             let around = Surroundings {
                 tree: &self.tree,
                 view: &view,
@@ -285,7 +282,7 @@ impl Frame {
             };
             self.ambient.record(rec, &inputs)
         };
-        let mut light = Light {
+        let light = Light {
             daylight,
             sun_direction: sample.sun_direction,
             sun_views,
@@ -293,23 +290,20 @@ impl Frame {
             sky_irradiance,
             sky_radiance: sky.radiance,
             air: air.unwrap_or_default(),
-            panes: BeforePicture(None),
+            panes: BeforePicture(self.panes.as_ref()),
             sun_glass,
         };
         if let Some(panes) = &self.panes {
             panes.record(rec, (geometry, &self.tree), &surfaces.depth, &light, &view);
-            light.panes = BeforePicture(Some(panes));
         }
         let materials = geometry.materials();
         let frame = lighting.record(rec, surfaces, materials, ambient, &light, &view);
         self.background
             .record(rec, &surfaces.depth, &light, &view, frame);
         let scene = (geometry, &self.tree, self.cells.as_ref());
-        let radiance = resolve.record(rec, scene, frame, surfaces, &light, &view);
-        let average = self.exposure.record(rec, radiance);
-        self.tone_map
-            .record(rec, radiance, average, self.tiling.origin());
+        resolve.record(rec, scene, frame, surfaces, &light, &view);
         self.drawn = Some(Drawn { index, view });
+        self.expose(rec);
     }
 
     /// Sets the adaptation rate of automatic exposure: the fraction of the difference in log luminance covered with each following

@@ -262,14 +262,16 @@ fn missing_libraries_and_textures_are_warnings() {
 }
 
 #[test]
-fn transparent_materials_are_not_drawn_and_counted() {
+fn invisible_materials_are_not_drawn_and_counted_and_others_are_glass() {
     let obj = format!("mtllib m.mtl\n{TRIANGLE}usemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\n");
     let files: [(&str, &[u8]); 2] = [
         ("m.obj", obj.as_bytes()),
-        ("m.mtl", b"newmtl a\nd 0.2\nnewmtl b\nd 0.6\n"),
+        ("m.mtl", b"newmtl a\nd 0\nnewmtl b\nd 0.6\n"),
     ];
     let scene = try_load(&files).expect("one triangle is left").scene;
     assert_eq!(scene.triangles(), 1);
+    let glass = scene.materials[0].glass.expect("glass");
+    assert!(glass.iter().all(|v| (v - 0.4).abs() < 1e-6), "{glass:?}");
     assert!(
         scene.warnings[0].contains("1 triangles of transparent materials"),
         "{:?}",

@@ -115,3 +115,70 @@ fn no_light_comes_through_a_partition() {
     let lux = measured("office_leak", &sensors, &["--sun", "200,38"]);
     assert!(lux.iter().all(|row| row[9] == 0.0), "{lux:?}");
 }
+
+/// Number, sun (azimuth and elevation, degrees), direct normal and diffuse horizontal irradiance (W/m²) and dew point (°C) of moments
+/// with and without sun on the window.
+const MOMENTS: [(u32, &str, [&str; 3]); 3] = [
+    (0, "143.0951,17.9093", ["522", "81", "-9.4"]),
+    (1, "191.6244,47.7692", ["810", "133", "-8.3"]),
+    (3, "267.7369,24.1363", ["0", "89", "2.2"]),
+];
+
+#[test]
+fn an_office_behind_glass_meets_the_path_tracer() {
+    let Some(shared) = common::shared() else {
+        return;
+    };
+    let folder = shared.join("daylight");
+    let table = std::fs::read_to_string(folder.join("pit/office_glass_pit.csv")).expect("a table");
+    let header: Vec<&str> = table.lines().next().expect("a header").split(',').collect();
+    let truth = rows(&table);
+    for (moment, sun, [dni, dhi, dew_point]) in MOMENTS {
+        let output = Command::new(env!("CARGO_BIN_EXE_skylight"))
+            .arg("daylight")
+            .arg(folder.join("models/office_glass.obj"))
+            .arg("--grid")
+            .arg(folder.join("models/office.pts"))
+            .args(["--sun", sun, "--sky", "perez", "--dni", dni, "--dhi", dhi])
+            .arg(format!("--dew-point={dew_point}"))
+            .args([
+                "--ground-albedo",
+                "0",
+                "--error",
+                "0.03",
+                "--csv",
+                "--quiet",
+            ])
+            .output()
+            .expect("it runs");
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{errors}");
+        let ours = rows(&String::from_utf8_lossy(&output.stdout));
+        assert_eq!(ours.len(), truth.len());
+        let sum = |names: &[&str]| -> f64 {
+            let names = names.iter().map(|name| format!("m{moment}_{name}"));
+            let columns = names.map(|name| header.iter().position(|own| *own == name));
+            let sums = columns.map(|i| {
+                truth
+                    .iter()
+                    .map(|row| row[i.expect("a column")])
+                    .sum::<f64>()
+            });
+            sums.sum()
+        };
+        // Where the edge of the sun's light lies on a sensor, the two differ.
+        for (what, column, names, bound) in [
+            ("sky", 6, &["sky_direct"][..], 0.02),
+            ("reflected", 8, &["sky_reflected", "sun_reflected"], 0.02),
+            ("total", 9, &["total"], 0.02),
+        ] {
+            let found: f64 = ours.iter().map(|row| row[column]).sum();
+            let ratio = found / sum(names);
+            println!("moment {moment}, {what}: {ratio:.4}");
+            assert!(
+                (ratio - 1.0).abs() < bound,
+                "moment {moment}, {what}: {ratio}"
+            );
+        }
+    }
+}

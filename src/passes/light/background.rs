@@ -56,10 +56,6 @@ impl Background {
     /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, settings: LightingSettings) -> Result<Self> {
         let (sky, empty) = content(settings.show);
-        let mirrors = matches!(
-            settings.show,
-            Show::Beauty | Show::Luminance | Show::SkySpecular
-        );
         let pipeline = |disc: bool| {
             fullscreen_at(
                 context,
@@ -72,7 +68,7 @@ impl Background {
                     ("EMPTY", empty.to_bits()),
                     ("DISC", disc.into()),
                     ("PANES", settings.panes.is_some().into()),
-                    ("MIRRORED", mirrors.into()),
+                    ("MIRRORED", settings.show.is_mirrored().into()),
                 ],
             )
         };

@@ -128,7 +128,12 @@ impl Show {
         }
     }
 
-    fn constants(self, specular: bool, emits: bool) -> [(&'static str, u32); 14] {
+    /// Whether what panes of glass mirror is part of it.
+    pub(super) fn is_mirrored(self) -> bool {
+        matches!(self, Self::Beauty | Self::Luminance | Self::SkySpecular)
+    }
+
+    fn constants(self, specular: bool, emits: bool) -> [(&'static str, u32); 13] {
         let whole = matches!(self, Self::Beauty | Self::Luminance);
         let on = |shown: Self| u32::from(self == shown);
         let addend = |shown: Self| u32::from(whole || self == shown);
@@ -145,7 +150,6 @@ impl Show {
                 "SKY_SPECULAR",
                 u32::from(specular) & addend(Self::SkySpecular),
             ),
-            ("MIRRORED", addend(Self::SkySpecular)),
             ("INSCATTER", addend(Self::Air)),
             ("SHOW_VISIBILITY", on(Self::Visibility)),
             ("SHOW_OCCLUSION", on(Self::Occlusion)),
@@ -305,6 +309,7 @@ impl Lighting {
         constants.push(("AMBIENT", (!is_converging).into()));
         constants.push(("CELLS", (settings.ambient == Ambient::Cells).into()));
         constants.push(("PLANE_SHADOW", is_converging.into()));
+        constants.push(("MIRRORED", settings.show.is_mirrored().into()));
         constants.push(("PANES", settings.panes.is_some().into()));
         constants.push(("CASCADES", settings.shadows.cascades.max(1)));
         constants.push(("PCSS", settings.shadows.penumbrae.into()));

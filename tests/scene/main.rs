@@ -4,6 +4,7 @@
 mod common;
 
 mod breaks;
+mod cases;
 mod emission;
 mod files;
 mod fuzz;

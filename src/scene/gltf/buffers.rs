@@ -16,6 +16,7 @@ use crate::scene::builder::Builder;
 use crate::scene::files::Lookup;
 use crate::scene::gltf::item::Item;
 use crate::scene::gltf::meshopt::{Plan, compression};
+use crate::scene::losses::shortened;
 use crate::scene::texture::picture::EmbeddedImage;
 
 /// Limit on all decompressed views together, bytes.
@@ -336,7 +337,7 @@ fn read_uri(builder: &Builder, path: &Path, uri: &str) -> Result<Vec<u8>, String
     match resolve(builder, path, uri)? {
         Uri::Data(bytes) => Ok(bytes),
         Uri::File(Lookup::Found(file)) => builder.files.read(&file).map_err(|e| e.to_string()),
-        Uri::File(Lookup::Missing(file)) => Err(format!("{} is missing", file.display())),
+        Uri::File(Lookup::Missing(_)) => Err(format!("{} is missing", shortened(uri, 60))),
         Uri::File(Lookup::Outside(file)) => Err(format!(
             "{} is outside the model's folder; pass --allow-outside to allow it",
             file.display()

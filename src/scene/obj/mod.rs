@@ -22,8 +22,10 @@ use crate::scene::origin;
 use crate::scene::placement::Placement;
 use crate::scene::texture::linear_from_srgb;
 
-/// Longest list of reasons why there is nothing to draw, characters.
-const MAX_REASONS: usize = 125;
+/// Longest path and list of reasons why there is nothing to draw, characters: what is around them makes a line of 200.
+const MAX_REASONS: usize = 150;
+/// What is left for the reasons, however long the path is.
+const MIN_REASONS: usize = 60;
 
 /// Adds the model at `path` to the scene.
 ///
@@ -118,7 +120,9 @@ impl ImportReport {
             let why = if left_out.is_empty() {
                 String::new()
             } else {
-                format!(" ({})", shortened(&left_out.join("; "), MAX_REASONS))
+                let most = MAX_REASONS.saturating_sub(path.as_os_str().len());
+                let reasons = left_out.join("; ");
+                format!(" ({})", shortened(&reasons, most.max(MIN_REASONS)))
             };
             return Err(SceneError::NoTriangles {
                 path: path.to_owned(),

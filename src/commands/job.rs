@@ -166,7 +166,7 @@ impl Job {
             )
         });
         let (job, context) = (job?, context?);
-        if !job.settings.no_warnings {
+        if !(job.settings.quiet || job.settings.no_warnings) {
             notice(&context);
         }
         Ok((job, context))

@@ -14,6 +14,9 @@ pub enum SceneError {
     /// The path is a pipe, a device or a socket.
     #[error("{} is not a regular file; save it to disk first", shown(.0))]
     NotAFile(PathBuf),
+    /// The file stands for one that Git LFS keeps elsewhere.
+    #[error("{} is a Git LFS pointer, not the file itself; run git lfs pull", shown(.0))]
+    Pointer(PathBuf),
     /// The operating system cannot read the file.
     #[error("{}: cannot be read ({reason}); check its permissions", shown(path))]
     Unreadable {
@@ -67,16 +70,6 @@ pub enum SceneError {
         /// The file.
         path: PathBuf,
         /// What is unsupported, and the remedy.
-        what: String,
-    },
-    /// A line of a model is malformed.
-    #[error("{}, line {line}: {what}", shown(path))]
-    Malformed {
-        /// The file.
-        path: PathBuf,
-        /// Line number, from 1.
-        line: usize,
-        /// What is wrong with it.
         what: String,
     },
     /// There is nothing to draw; `why` is empty or lists in parentheses what was dropped.

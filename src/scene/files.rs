@@ -31,6 +31,9 @@ impl ReadFile {
     }
 }
 
+/// Start of the file that stands for a file kept elsewhere (Git LFS, specification 1).
+const LFS_POINTER: &[u8] = b"version https://git-lfs.github.com/spec/";
+
 /// A source of files.
 #[derive(Debug, Clone)]
 pub(super) struct Files {
@@ -174,6 +177,9 @@ impl Files {
         match self.source {
             Source::Disk { max_bytes } => {
                 let bytes = read_disk(path, max_bytes)?;
+                if bytes.starts_with(LFS_POINTER) {
+                    return Err(SceneError::Pointer(path.to_owned()));
+                }
                 let left = self.left.get().checked_sub(bytes.len() as u64);
                 self.left.set(left.ok_or_else(|| SceneError::TooMuch {
                     path: path.to_owned(),
@@ -214,8 +220,7 @@ impl Files {
             return Ok(text_of(&bytes));
         }
         // Valid UTF-8 is not copied, because models are large.
-        Ok(String::from_utf8(bytes)
-            .unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned()))
+        Ok(String::from_utf8(bytes).unwrap_or_else(|error| latin(error.as_bytes())))
     }
 
     /// Whether [`Files::read`] would find a file, without reading it.
@@ -238,11 +243,20 @@ impl Files {
     }
 }
 
-/// The text of a file, without a byte order mark: UTF-8 or UTF-16. What is neither (names from old exporters) becomes
-/// replacement characters.
+/// The text of a file, without a byte order mark: UTF-8 or UTF-16, and Latin-1 where it is neither (names from old exporters).
 pub(super) fn text_of(bytes: &[u8]) -> String {
     let plain = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    utf16(bytes).unwrap_or_else(|| String::from_utf8_lossy(plain).into_owned())
+    utf16(bytes).unwrap_or_else(|| latin(plain))
+}
+
+/// UTF-8, with the bytes that are not as letters of Latin-1.
+pub(super) fn latin(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(bytes.len());
+    for chunk in bytes.utf8_chunks() {
+        text.push_str(chunk.valid());
+        text.extend(chunk.invalid().iter().map(|byte| char::from(*byte)));
+    }
+    text
 }
 
 /// UTF-16 with a byte order mark, as some shells of Windows write it.
@@ -348,6 +362,6 @@ mod tests {
         assert_eq!(read(b"\xEF\xBB\xBFv 1"), "v 1");
         assert_eq!(read(b"\xFF\xFEv\0 \x001\0\n\0"), "v 1\n");
         assert_eq!(read(b"\xFE\xFF\0v\0 \x001"), "v 1");
-        assert_eq!(read(b"caf\xE9\r"), "caf\u{FFFD}\n");
+        assert_eq!(read(b"caf\xE9\r"), "café\n");
     }
 }

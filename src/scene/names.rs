@@ -2,11 +2,13 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::{Component, Path, PathBuf};
 use std::rc::Rc;
 
 use percent_encoding::percent_decode_str;
+
+use crate::scene::files::latin;
 
 /// Components at the end of a name that are looked for in the model's own folder.
 const MAX_SUFFIX: usize = 4;
@@ -60,7 +62,7 @@ fn forward(name: &str) -> String {
 pub struct Listings(HashMap<PathBuf, Rc<HashMap<String, Vec<OsString>>>>);
 
 impl Listings {
-    /// The file of this name below `folder` without regard to case, if there is just one.
+    /// The file of this name below `folder` without regard to case, accents and encoding, if there is just one.
     pub fn find(&mut self, folder: &Path, name: &str) -> Option<PathBuf> {
         let mut at = if folder.as_os_str().is_empty() {
             PathBuf::from(".")
@@ -77,7 +79,7 @@ impl Listings {
                         exact
                     } else {
                         let names = self.of(&at);
-                        let [only] = &names.get(&part.to_string_lossy().to_lowercase())?[..] else {
+                        let [only] = &names.get(&folded(part))?[..] else {
                             return None;
                         };
                         at.join(only)
@@ -94,12 +96,21 @@ impl Listings {
             let mut names: HashMap<String, Vec<OsString>> = HashMap::new();
             let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
             for name in entries.map(|entry| entry.file_name()) {
-                let folded = name.to_string_lossy().to_lowercase();
-                names.entry(folded).or_default().push(name);
+                names.entry(folded(&name)).or_default().push(name);
             }
             Rc::new(names)
         };
         self.0.entry(folder.to_owned()).or_insert_with(read).clone()
+    }
+}
+
+/// A name in small letters without accents: archives of other systems write them composed, decomposed, or in Latin-1.
+fn folded(name: &OsStr) -> String {
+    let text = latin(name.as_encoded_bytes());
+    if text.is_ascii() {
+        text.to_ascii_lowercase()
+    } else {
+        deunicode::deunicode(&text).to_lowercase()
     }
 }
 
@@ -125,7 +136,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a scratch folder");
         let inner = folder.path().join("Textures");
         std::fs::create_dir(&inner).expect("a folder");
-        for name in ["Brick.PNG", "Wood.png", "wood.PNG"] {
+        for name in ["Brick.PNG", "Wood.png", "wood.PNG", "caf\u{e9}.png"] {
             std::fs::write(inner.join(name), "").expect("a file");
         }
         let mut listings = Listings::default();
@@ -134,6 +145,8 @@ mod tests {
         assert_eq!(find("./textures/Wood.png"), Some(inner.join("Wood.png")));
         assert_eq!(find("textures/WOOD.png"), None, "two are meant");
         assert_eq!(find("textures/none.png"), None);
+        let decomposed = find("textures/cafe\u{301}.png");
+        assert_eq!(decomposed, Some(inner.join("caf\u{e9}.png")));
         assert_eq!(find("textures"), None, "a folder");
     }
 }

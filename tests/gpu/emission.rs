@@ -6,7 +6,7 @@ use skylight::daylight::colour::luminance;
 use skylight::frame::{Frame, FrameSettings};
 use skylight::passes::bounces::cells::Bounces;
 use skylight::passes::light::lighting::Show;
-use skylight::scene::{Camera, Encoding, Material, Scene, Texture};
+use skylight::scene::{Camera, Encoding, Material, Scene, Texture, Wrap};
 
 use crate::bounces::{converged, mean, single, with_bounces};
 use crate::common::Worst;
@@ -182,6 +182,31 @@ fn a_panel_shows_what_it_emits_and_nothing_more_at_night() {
         }
         let dark = device.picture(&panel(&plain), showing(Show::Bounces, set), &day, &view);
         assert_eq!(mean(&dark), 0.0, "{what}");
+    }
+}
+
+#[test]
+fn a_texture_is_repeated_mirrored_or_clamped_outside_of_its_picture() {
+    let mut device = Device::new();
+    let (day, view) = (constant_sky(0.0), camera([0.0, 1.0, 1.9], [0.0, 1.0, 0.0]));
+    let lamp = Material {
+        emissive_texture: Some(0),
+        ..glowing(0.0, 3000.0)
+    };
+    let set = showing(Show::Emission, with_bounces(Bounces::UpTo(0), settings(32, 32)));
+    for (wrap, reds) in [
+        (Wrap::Repeat, [true, false]),
+        (Wrap::Mirror, [false, true]),
+        (Wrap::Clamp, [false, false]),
+    ] {
+        let mut scene = panel(&lamp);
+        scene.textures[0].wrap = [wrap, Wrap::Repeat];
+        scene.texcoords.iter_mut().for_each(|uv| uv[0] *= 2.0);
+        let picture = device.picture(&scene, set, &day, &view);
+        // u = 1.25 and 1.7: the left and the right half of the picture's second copy.
+        let found = [21, 30].map(|x| picture.at(x, 16)).map(|l| l.x > l.z);
+        assert_eq!(found, reds, "{wrap:?}");
+        assert!(picture.at(4, 16).x > 2.9, "within the picture: {wrap:?}");
     }
 }
 

@@ -131,7 +131,6 @@ fn what_is_not_drawn_of_a_gltf_does_not_matter() {
         ),
         ("/animations", json!("a word")),
         ("/cameras", json!([{"type": "perspective"}])),
-        ("/nodes/0/camera", json!(7)),
         ("/scenes/-", json!({})),
         ("/scenes/-", json!({"nodes": [99]})),
         ("/scenes/-", json!({"nodes": "none", "name": 5})),
@@ -326,6 +325,7 @@ fn a_broken_part_of_a_gltf_costs_itself() {
             "nodes[99] of the scene",
         ),
         ("/nodes/1/skin".to_owned(), json!(0), 4, "skins[0]"),
+        ("/nodes/1/camera".to_owned(), json!(7), 4, "nodes[1].camera"),
         (
             "/accessors/1/count".to_owned(),
             json!(5),

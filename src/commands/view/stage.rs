@@ -52,7 +52,7 @@ impl Stage {
             .map_err(|e| GpuError::Window(super::reason(&e)))?;
         let window = Arc::new(window);
         let (context, surface) = Context::for_window(&context_options(options), window.clone())?;
-        if !options.no_warnings {
+        if !(options.quiet || options.no_warnings) {
             notice(&context);
         }
         let mut presenter = Presenter::new(surface, window.inner_size().into())?;

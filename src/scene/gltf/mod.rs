@@ -167,8 +167,12 @@ impl Model<'_> {
         };
         let world_from_node = self.placement.world_from_mesh * file_from_node;
         if node.get("camera").exists() {
-            self.cameras
-                .extend(camera::read(root, node, world_from_node, &self.cameras));
+            let camera = camera::read(root, node, world_from_node, &self.cameras);
+            if camera.is_none() {
+                let place = || format!("nodes[{number}].camera");
+                self.report.losses.add("cameras that are not perspective left out", place);
+            }
+            self.cameras.extend(camera);
         }
         let Some(mesh) = node.get("mesh").index() else {
             return Ok(());

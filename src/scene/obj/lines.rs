@@ -47,7 +47,7 @@ impl<'t> Statement<'t> {
             "vt" => Self::Texcoord(rest),
             "vn" => Self::Normal(rest),
             "f" | "fo" => Self::Face(rest),
-            "l" | "p" => Self::Undrawn,
+            "l" | "p" | "curv" | "curv2" | "surf" => Self::Undrawn,
             "s" => Self::Smoothing(rest.split_whitespace().next().map_or(0, smoothing_group)),
             "usemtl" if !rest.is_empty() => Self::Material(rest),
             "mtllib" if !rest.is_empty() => Self::Library(rest),

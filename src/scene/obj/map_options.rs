@@ -3,7 +3,7 @@
 use crate::scene::number;
 use crate::scene::texture::picture::Channel;
 
-/// Options of a `map_..` statement. `-blendu`, `-blendv`, `-mm`, `-t`, `-type` and unknown options are ignored.
+/// Options of a `map_..` statement. `-blendu`, `-blendv`, `-t`, `-type` and unknown options are ignored.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapOptions {
     /// `-s`: factor on the texture coordinates.
@@ -16,6 +16,8 @@ pub struct MapOptions {
     pub channel: Channel,
     /// `-clamp on`: nothing repeats outside of the picture.
     pub clamp: bool,
+    /// `-mm` with another base than 0 or gain than 1: other colours, which are not drawn.
+    pub has_gain: bool,
 }
 
 impl Default for MapOptions {
@@ -26,6 +28,7 @@ impl Default for MapOptions {
             bump: 1.0,
             channel: Channel::Automatic,
             clamp: false,
+            has_gain: false,
         }
     }
 }
@@ -111,6 +114,7 @@ impl MapOptions {
             "o" => self.offset = [number(0).unwrap_or(0.0), number(1).unwrap_or(0.0)],
             "bm" => self.bump = number(0).unwrap_or(1.0),
             "clamp" => self.clamp = arguments[0].eq_ignore_ascii_case("on"),
+            "mm" => self.has_gain = [number(0), number(1)] != [Some(0.0), Some(1.0)],
             "imfchan" => self.channel = channel(arguments[0]),
             _ => {}
         }
@@ -160,5 +164,7 @@ mod tests {
         assert_eq!(options("-imfchan g a.png").channel, Channel::Number(1));
         assert_eq!(options("-s nan 1e30 a.png").scale, [1.0, 1.0]);
         assert_eq!(options("a.png"), MapOptions::default());
+        assert!(options("-clamp on a.png").clamp && !options("-clamp off a.png").clamp);
+        assert!(options("-mm 0.1 2 a.png").has_gain && !options("-mm 0 1 a.png").has_gain);
     }
 }

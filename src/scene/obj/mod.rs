@@ -99,7 +99,7 @@ pub struct ImportReport {
     pub dropped: Dropped,
     /// Triangles of transparent materials.
     pub undrawn: usize,
-    /// Points, lines, and faces with fewer than three corners.
+    /// Points, lines, curves, and faces with fewer than three corners.
     pub not_faces: usize,
     /// Faces with out-of-range indices.
     pub dangling: usize,
@@ -148,7 +148,7 @@ impl ImportReport {
             ),
             (
                 self.not_faces,
-                "points, lines and faces of fewer than three corners skipped",
+                "points, lines, curves and faces of fewer than three corners skipped",
             ),
             (
                 self.dangling,

@@ -37,7 +37,7 @@ pub struct Entry {
 }
 
 /// Statements that change the picture in other programs and are not drawn, and the value that does nothing.
-const NOT_DRAWN: [(&str, Option<f32>); 20] = [
+const NOT_DRAWN: [(&str, Option<f32>); 19] = [
     ("aniso", Some(0.0)),
     ("bump_parallax", None),
     ("decal", None),
@@ -57,7 +57,6 @@ const NOT_DRAWN: [(&str, Option<f32>); 20] = [
     ("pc", Some(0.0)),
     ("ps", Some(0.0)),
     ("refl", None),
-    ("-mm", None),
 ];
 
 /// The arguments of a `map_..` statement.
@@ -124,7 +123,12 @@ impl Entry {
         rest: &str,
         told: &mut BTreeSet<&'static str>,
     ) -> bool {
-        let map = || Map::read(folder, rest);
+        let mut map = || {
+            let map = Map::read(folder, rest);
+            let has_gain = map.as_ref().is_some_and(|map| map.options.has_gain);
+            told.extend(has_gain.then_some("-mm"));
+            map
+        };
         match key {
             "kd" => set(&mut self.diffuse, colour(rest)),
             "ks" => set(&mut self.specular, colour(rest)),

@@ -9,7 +9,7 @@ use clap::error::ErrorKind;
 use clap::{Arg, Parser, Subcommand};
 
 pub use args::{
-    BakeArgs, BenchArgs, CompareArgs, DaylightArgs, Layout, Map, Motion, SkyArgs, Sweep,
+    BakeArgs, BenchArgs, CompareArgs, DaylightArgs, Layout, Map, Motion, SkyArgs, Sweep, Texels,
 };
 
 use crate::options::{OptionValues, Optional, choice, decides_light, one_line};
@@ -73,8 +73,9 @@ pub enum Command {
         #[command(flatten)]
         options: OptionValues,
     },
-    /// Write the sky or its irradiance as an environment map, with a JSON file of its units beside it.
+    /// Write the sky, its irradiance or its reflection in rough metals as an environment map, with a JSON file of its units beside it.
     ///
+    /// No map has the discs of sun and moon: the JSON file has them as directional lights.
     /// The options of a picture (its size, camera, tone ..) are accepted and have no effect.
     #[command(mut_args = of_maps)]
     Bake {

@@ -1,6 +1,9 @@
 """Reads a baked equirect sky with Mitsuba 3 as an environment light, without any rotation, and prints what it finds.
 
-usage: mitsuba_bake.py SKY.exr ELEVATION-OF-THE-SUN    exit code 3: Mitsuba is not installed
+usage: mitsuba_bake.py SKY.exr SKY.json planes|up    exit code 3: Mitsuba is not installed
+
+planes: five planes, and the brightest azimuth at the elevation of the sun. up: a horizontal plane, without the sun and with the
+sun that the JSON file says to add.
 
 Mitsuba's envmap has +Y up, its first column at -Z and grows toward +X: with +Y up and -Z north that is azimuth clockwise
 from north, so `to_world` stays the identity.
@@ -41,6 +44,32 @@ def irradiance(path, normal):
     return [float(pixel.array[c]) for c in range(3)]
 
 
+def illuminated(path, lights):
+    """Irradiance (linear RGB) of a plane that faces up, from the light that a white matt plane reflects: an irradiance meter does not
+    meet the light of a direction."""
+    scene = mi.load_dict({
+        "type": "scene",
+        "integrator": {"type": "direct"},
+        "sky": {"type": "envmap", "filename": path},
+        **lights,
+        "plane": {
+            "type": "rectangle",
+            "to_world": mi.ScalarTransform4f().look_at([0, 0, 0], [0, 1, 0], [0, 0, 1]),
+            "bsdf": {"type": "diffuse", "reflectance": 1.0},
+        },
+        "meter": {
+            "type": "radiancemeter",
+            "origin": [0.1, 1, 0.2],
+            "direction": [0, -1, 0],
+            "sampler": {"type": "multijitter", "sample_count": 1 << 18},
+            "film": {"type": "hdrfilm", "width": 1, "height": 1, "pixel_format": "rgb",
+                     "rfilter": {"type": "box"}, "component_format": "float32"},
+        },
+    })
+    pixel = mi.render(scene)
+    return [3.141592653589793 * float(pixel.array[c]) for c in range(3)]
+
+
 def brightest_azimuth(path, elevation):
     """Azimuth, degrees clockwise from north, of the most radiant direction at `elevation`, asked of the emitter."""
     import math
@@ -56,10 +85,20 @@ def brightest_azimuth(path, elevation):
     return best[1]
 
 
-path, elevation = sys.argv[1], float(sys.argv[2])
-normals = {"+y": [0, 1, 0], "+x": [1, 0, 0], "-x": [-1, 0, 0], "+z": [0, 0, 1], "-z": [0, 0, -1]}
-print(json.dumps({
-    "mitsuba": mi.__version__,
-    "irradiance": {name: irradiance(path, n) for name, n in normals.items()},
-    "azimuth": brightest_azimuth(path, elevation),
-}))
+path, sidecar, mode = sys.argv[1:]
+with open(sidecar) as file:
+    sun = json.load(file)["sun"]
+found = {"mitsuba": mi.__version__}
+if mode == "planes":
+    normals = {"+y": [0, 1, 0], "+x": [1, 0, 0], "-x": [-1, 0, 0], "+z": [0, 0, 1], "-z": [0, 0, -1]}
+    found["irradiance"] = {name: irradiance(path, n) for name, n in normals.items()}
+    found["azimuth"] = brightest_azimuth(path, sun["elevation_deg"])
+else:
+    light = {
+        "type": "directional",
+        "direction": [-c for c in sun["direction"]],
+        "irradiance": {"type": "rgb", "value": sun["illuminance_rgb"]},
+    }
+    found["sky"] = illuminated(path, {})
+    found["sky_and_sun"] = illuminated(path, {"sun": light})
+print(json.dumps(found))

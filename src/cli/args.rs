@@ -86,15 +86,18 @@ pub struct BakeArgs {
     #[arg(long, value_name = "WHAT", value_parser = choice::<Map>())]
     pub map: Map,
     /// Texels along an edge of a cube face, 4 to 4096; 32 by default for irradiance, which is smooth, and each texel of it a sum
-    /// over the sky.
+    /// over the sky. A power of two for mip levels: in .ktx2, and with --map specular.
     #[arg(long = "size", id = "edge", value_name = "N", value_parser = value_parser!(u32).range(4..=4096), default_value_t = 256,
           default_value_if("map", "irradiance", "32"))]
     pub edge: u32,
-    /// How the sphere is laid out.
-    #[arg(long, value_name = "LAYOUT", value_parser = choice::<Layout>(), default_value_t)]
-    pub layout: Layout,
-    /// Where to: .exr (32-bit floats) or .hdr (Radiance); the JSON file has the same name.
-    #[arg(short, long, value_name = "FILE", value_parser = named(&["exr", "hdr"]))]
+    /// How the sphere is laid out in .exr and .hdr (equirect by default); a .ktx2 file holds a cube.
+    #[arg(long, value_name = "LAYOUT", value_parser = choice::<Layout>())]
+    pub layout: Option<Layout>,
+    /// How a .ktx2 file stores its texels (half by default).
+    #[arg(long, value_name = "FORMAT", value_parser = choice::<Texels>())]
+    pub texels: Option<Texels>,
+    /// Where to: .exr (32-bit floats), .hdr (Radiance) or .ktx2 (cube map with mip levels); the JSON file has the same name.
+    #[arg(short, long, value_name = "FILE", value_parser = named(&["exr", "hdr", "ktx2"]))]
     pub output: PathBuf,
 }
 
@@ -103,6 +106,17 @@ choice_enum! {
     pub enum Map {
         Sky = "sky": "Radiance of sky and ground without the sun's disc, cd/m²",
         Irradiance = "irradiance": "Irradiance E(n) of sky and ground without the sun, lux, by the direction of the normal",
+        Specular = "specular": "Sky and ground prefiltered for rough metals, cd/m²: GGX, one level for each roughness, from 0 to 1",
+    }
+}
+
+choice_enum! {
+    /// How a KTX2 file stores texels.
+    #[derive(Default)]
+    pub enum Texels {
+        #[default]
+        Half = "half": "R16G16B16A16_SFLOAT, 8 bytes a texel; the key skylight:scale says what a 1 stands for",
+        Bc6h = "bc6h": "BC6H_UFLOAT_BLOCK, 1 byte a texel, in blocks of 4 x 4",
     }
 }
 

@@ -140,13 +140,13 @@ impl Job {
         check_strict(&self.settings, self.warnings())
     }
 
-    /// Updates sun and daylight after a change of the options.
+    /// Updates sun and daylight to these options.
     ///
     /// # Errors
     /// A moment that the ephemeris does not cover; the light is then unchanged.
-    pub fn relight(&mut self) -> Result<()> {
-        self.sun = sun_position(&self.settings)?;
-        self.daylight = Daylight::new(&conditions(&self.settings, &self.sun));
+    pub fn relight(&mut self, settings: &Options) -> Result<()> {
+        self.sun = sun_position(settings)?;
+        self.daylight = Daylight::new(&conditions(settings, &self.sun));
         Ok(())
     }
 

@@ -1,6 +1,8 @@
 //! Resolves options into a sun position and a daylight. `sky` and `bake` need nothing else.
 
-use crate::daylight::atmosphere::air::{Air, aod_of_turbidity, aod_of_visibility};
+use crate::daylight::atmosphere::air::{
+    Air, aod_of_turbidity, aod_of_visibility, turbidity_of_aod,
+};
 use crate::daylight::moon::Moon;
 use crate::daylight::perez::Measured;
 use crate::daylight::sky::{Conditions, Daylight};
@@ -96,9 +98,7 @@ fn moon(settings: &Options) -> Option<Moon> {
 pub fn conditions(settings: &Options, sun: &SunPosition) -> Conditions {
     Conditions {
         model: settings.sky,
-        turbidity: settings
-            .turbidity
-            .unwrap_or(Conditions::default().turbidity),
+        turbidity: turbidity(settings),
         ground_albedo: settings.ground_albedo,
         sun_azimuth_deg: sun.azimuth_deg,
         sun_elevation_deg: sun.apparent_elevation_deg,
@@ -114,6 +114,15 @@ pub fn conditions(settings: &Options, sun: &SunPosition) -> Conditions {
             day_of_year: settings.sun.day_of_year(),
         },
     }
+}
+
+/// The turbidity of the options: as given, or that of the given air.
+pub fn turbidity(settings: &Options) -> f64 {
+    let given = settings.turbidity;
+    let is_air_given = settings.aod.is_some() || settings.visual_range.is_some();
+    let of_air = || is_air_given.then(|| turbidity_of_aod(air(settings).aod));
+    let default = Conditions::default().turbidity;
+    given.or_else(of_air).unwrap_or(default)
 }
 
 /// The air of the options.

@@ -1,5 +1,6 @@
 //! What decides a daylight: the model of the sky and its inputs, and their ranges.
 
+use super::atmosphere::Atmosphere;
 use super::atmosphere::air::Air;
 use super::cie::{self, SkyCover, StandardSky, standard_sky};
 use super::moon::Moon;
@@ -9,8 +10,10 @@ use super::{hosek, preetham};
 /// Model of the sky.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SkyModel {
-    /// Clear sky of Preetham, Shirley & Smits 1999 (the lecture's).
+    /// Clear sky with all orders of scattering on the sphere, from noon to night: [`super::atmosphere`].
     #[default]
+    Atmosphere,
+    /// Clear sky of Preetham, Shirley & Smits 1999 (the lecture's).
     Preetham,
     /// Clear sky of Hošek & Wilkie 2012.
     Hosek,
@@ -52,8 +55,6 @@ pub enum SkyModel {
     Cie15,
     /// Traditional overcast.
     Cie16,
-    /// Clear sky with all orders of scattering on the sphere, from noon to night: [`super::atmosphere`].
-    Atmosphere,
 }
 
 impl SkyModel {
@@ -129,7 +130,7 @@ pub struct Conditions {
 }
 
 impl Default for Conditions {
-    /// Preetham, turbidity 3, albedo 0.2, sun in the south at 45°.
+    /// The atmosphere of clear air; for other models turbidity 3; albedo 0.2, sun in the south at 45°.
     fn default() -> Self {
         Self {
             model: SkyModel::default(),
@@ -148,6 +149,21 @@ impl Default for Conditions {
 }
 
 impl Conditions {
+    /// The air over the ground.
+    pub(super) fn air_over_ground(&self) -> Air {
+        Air {
+            ground_albedo: self.ground_albedo,
+            ..self.air
+        }
+    }
+
+    /// The air that [`super::sky::Daylight::new`] would have to solve first, which takes the time of some ten frames.
+    pub fn unsolved_air(&self) -> Option<Air> {
+        let air = self.air_over_ground();
+        let is_needed = self.model == SkyModel::Atmosphere && !Atmosphere::is_solved(&air);
+        is_needed.then_some(air)
+    }
+
     /// These conditions with every value within its range; `warnings` takes a sentence for each one that was not.
     pub(super) fn validated(&self, warnings: &mut Vec<String>) -> Self {
         let (mut valid, fallback) = (*self, Self::default());

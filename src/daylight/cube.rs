@@ -90,6 +90,15 @@ impl CubeMap {
         Self { size, texels }
     }
 
+    /// A map with `size` texels per edge from its texels in memory order: face by face, row by row.
+    ///
+    /// # Panics
+    /// Unless there are 6 `size`² of them.
+    pub fn from_texels(size: usize, texels: Vec<DVec3>) -> Self {
+        assert_eq!(texels.len(), FACES * size * size, "texels of a cube");
+        Self { size, texels }
+    }
+
     /// Texels along an edge.
     pub fn size(&self) -> usize {
         self.size

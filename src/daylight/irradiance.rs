@@ -11,7 +11,7 @@
 //!
 //! # How fast they converge
 //!
-//! `skylight sky --irradiance-study --sun 180,45 --ground-albedo 0` (Preetham, turbidity 3): rms over the 26 normals to the faces, edges and
+//! `skylight sky --irradiance-study --sky preetham --sun 180,45 --ground-albedo 0`: rms over the 26 normals to the faces, edges and
 //! corners of a cube, largest channel, relative to E(up). Samples are directions for each normal; for `exact` the texels of a
 //! cube (of 4, 8, 16, 32 and 64 along an edge), for `sh` the nodes of its projection, both for all normals together.
 //! A low sun in clear air is worse for both sampling methods: at turbidity 2 and 10° `quasi` has 0.7 % with 1024 directions.

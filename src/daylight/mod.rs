@@ -14,7 +14,8 @@
 //!    [`conditions`] has the inputs and their ranges.
 //! 5. [`cube`]: cube maps in Vulkan's convention. [`irradiance`]: E(n) of a radiance, by four methods, with the points of
 //!    [`sampling`] in the bases of [`tangent_frame`]; [`quadrature`] is their reference, [`convergence`] compares them, and
-//!    [`sample_count`] has the samples of the device's map.
+//!    [`sample_count`] has the samples of the device's map. [`ggx`] filters a sky for reflections of rough metals, with lookups
+//!    in a [`cube_pyramid`].
 //! 6. [`sky_sampler`]: directional lights drawn from the sky by luminance, one shadow map each.
 //! 7. [`exposure`] and [`tone_curve`]: from cd/m² to a picture; [`false_colour`]: to a picture with readable values.
 //!
@@ -35,11 +36,13 @@ pub mod colour;
 pub mod conditions;
 pub mod convergence;
 pub mod cube;
+pub mod cube_pyramid;
 mod data;
 pub mod day_times;
 
 pub mod exposure;
 pub mod false_colour;
+pub mod ggx;
 
 pub mod grey_sky;
 pub mod hosek;

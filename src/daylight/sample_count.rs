@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::colour::luminance;
 use super::cube::CubeMap;
+use super::cube_pyramid::CubePyramid;
 use super::irradiance::IrradianceMethod;
 use super::quadrature::SphereQuadrature;
 use super::sampling::{cosine_hemisphere, hammersley};
@@ -31,9 +32,9 @@ const MIN_SAMPLES: u32 = 32;
 /// A sample direction about +Z with its solid angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilteredSample {
-    /// Unit direction, cosine-weighted.
+    /// Unit direction.
     pub direction: DVec3,
-    /// 1/(N pdf) = π/(N cos θ), sr, with cos θ at least that of 45°.
+    /// 1/(N pdf), sr.
     pub solid_angle: f64,
 }
 
@@ -47,7 +48,7 @@ impl FilteredSample {
     }
 }
 
-/// Hammersley's `count` points as cosine-weighted directions, permuted by a golden-ratio stride so that every prefix covers
+/// Hammersley's `count` points as cosine-weighted directions, their solid angles π/(N cos θ) with cos θ at least that of 45°, permuted by a golden-ratio stride so that every prefix covers
 /// the hemisphere.
 pub fn filtered_samples(count: u32) -> Vec<FilteredSample> {
     let stride = golden_stride(count);
@@ -88,7 +89,7 @@ pub fn normals() -> impl Iterator<Item = DVec3> {
 
 /// Error of the sampled irradiance of one sky, as a function of the number of samples.
 pub struct ErrorEstimate {
-    levels: Vec<CubeMap>,
+    sky: CubePyramid,
     /// Normals with their E, lux.
     exact: Vec<(DVec3, f64)>,
     /// Mean over the normals of the variance of π L, lux².
@@ -99,10 +100,7 @@ pub struct ErrorEstimate {
 impl ErrorEstimate {
     /// Prepares a radiance function (unit direction to cd/m²).
     pub fn new(radiance: impl Fn(DVec3) -> DVec3) -> Self {
-        let mut levels = vec![CubeMap::from_fn(ESTIMATE_EDGE, &radiance)];
-        while let Some(last) = levels.last().filter(|map| map.size() > 4) {
-            levels.push(last.halved());
-        }
+        let sky = CubePyramid::new(CubeMap::from_fn(ESTIMATE_EDGE, &radiance));
         let nodes: Vec<(DVec3, f64, f64)> = SphereQuadrature::sphere(64, 128)
             .nodes
             .into_iter()
@@ -123,7 +121,7 @@ impl ErrorEstimate {
             .map(|(_, (e, second))| (second - e * e).max(0.0))
             .sum::<f64>();
         Self {
-            levels,
+            sky,
             variance: variance / all.len() as f64,
             exact: all.iter().map(|&(n, (e, _))| (n, e)).collect(),
             up: moments(DVec3::Y).0,
@@ -166,9 +164,7 @@ impl ErrorEstimate {
     fn look_up(&self, sample: &FilteredSample, normal: DVec3) -> f64 {
         let direction = tangent_frame::to_world(sample.direction, normal);
         let level = sample.level(ESTIMATE_EDGE as u32);
-        let (lower, blend) = (level.floor() as usize, level.fract());
-        let at = |level: usize| self.levels[level.min(self.levels.len() - 1)].bilinear(direction);
-        luminance(at(lower).lerp(at(lower + 1), blend))
+        luminance(self.sky.trilinear(direction, level).as_dvec3())
     }
 }
 

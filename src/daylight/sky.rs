@@ -10,7 +10,6 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::atmosphere::air::Air;
 use super::atmosphere::scattered_sky::ScatteredSky;
 use super::atmosphere::{Atmosphere, sun_share};
 use super::cie::{self, SkyCover, StandardSky, daylight_availability};
@@ -244,11 +243,7 @@ fn sun_through_air(valid: &Conditions) -> (DVec3, DVec3) {
 }
 
 fn atmosphere_of(valid: &Conditions) -> Atmosphere {
-    let ground_albedo = valid.ground_albedo;
-    Atmosphere::of(&Air {
-        ground_albedo,
-        ..valid.air
-    })
+    Atmosphere::of(&valid.air_over_ground())
 }
 
 /// The moon through a sky without clouds of its own; `share` is what clouds leave.

@@ -1,6 +1,7 @@
 //! Every model at every sun: finite, without steps, with its published levels.
 
 use super::*;
+use crate::daylight::atmosphere::air::Air;
 use crate::daylight::perez::Measured;
 
 const MODELS: [SkyModel; 5] = [

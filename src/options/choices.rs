@@ -181,9 +181,9 @@ choices! {
         Luminance = "luminance": "Luminance of the whole picture, cd/m², as grey",
     }
     SkyModel {
+        Atmosphere = "atmosphere": "Clear sky of all orders of scattering in air, aerosol and ozone on the sphere, from noon to night: --aod, --ozone, --altitude ..",
         Preetham = "preetham": "Clear sky of Preetham, Shirley & Smits 1999 (the lecture's)",
         Hosek = "hosek": "Clear sky of Hošek & Wilkie 2012",
-        Atmosphere = "atmosphere": "Clear sky of all orders of scattering in air, aerosol and ozone on the sphere, from noon to night: --aod, --ozone, --altitude ..",
         Overcast = "overcast": "CIE standard overcast sky; no sun (cie-16)",
         CieClear = "cie-clear": "CIE standard clear sky, white (cie-12)",
         Perez = "perez": "Sky of measured irradiances, Perez et al. 1993, white: --dni and --dhi",

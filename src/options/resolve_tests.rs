@@ -237,7 +237,7 @@ fn bad_values_are_one_line() {
         (
             ("sky", "blue"),
             ("fov", "30"),
-            "possible values: preetham, hosek",
+            "possible values: atmosphere, preetham",
         ),
     ] {
         let error = resolve(&[user], &[file]).expect_err(part);

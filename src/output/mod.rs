@@ -3,6 +3,7 @@
 mod exr;
 mod exr_rows;
 mod hdr;
+mod ktx2;
 mod legend;
 mod png;
 mod rows;
@@ -13,6 +14,7 @@ use std::path::{Path, PathBuf};
 pub use self::exr::{Channels, Layer, encode_exr, write_exr};
 pub use self::exr_rows::{LayerKind, write_exr_rows};
 pub use self::hdr::encode_hdr;
+pub use self::ktx2::{CubeLevel, TexelFormat, encode_ktx2, scale};
 pub use self::legend::draw_legend;
 pub use self::png::{Effort, Encoding, write_png};
 pub use self::rows::PngRows;

@@ -254,9 +254,9 @@ fn an_earlier_run_is_a_yardstick() {
 #[test]
 fn what_differs_from_the_earlier_run_is_said() {
     let folder = place();
-    succeeded(&bench(folder.path(), "--json old.json --turbidity 4"));
+    succeeded(&bench(folder.path(), "--json old.json --aod 0.2"));
     let table = succeeded(&bench(folder.path(), "--compare old.json --motion none"));
-    for part in ["turbidity was 4, is 3", "motion was camera, is none"] {
+    for part in ["aod was 0.2, is 0.1", "motion was camera, is none"] {
         assert!(table.contains(part), "no {part}: {table}");
     }
 }

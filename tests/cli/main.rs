@@ -1,6 +1,7 @@
 //! End-to-end tests of the program: options, files, exit codes.
 
 mod bake;
+mod bake_ktx2;
 mod bench;
 mod compare;
 mod daylight;

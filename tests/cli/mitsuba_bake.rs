@@ -3,18 +3,20 @@
 //! Skipped if `python3` (or the interpreter named by `SKYLIGHT_PYTHON`) has no Mitsuba; with `SKYLIGHT_MITSUBA=require` that
 //! is a failure.
 
+use std::path::Path;
 use std::process::Command;
 
 use serde_json::Value;
 
 const SUN: (f64, f64) = (137.0, 25.0);
 
-/// The values that Mitsuba computes from the map; `None` without Mitsuba.
-fn mitsuba(map: &std::path::Path) -> Option<Value> {
+/// The values that Mitsuba computes from `sky.exr` in a folder; `None` without Mitsuba.
+fn mitsuba(folder: &Path, mode: &str) -> Option<Value> {
     let python = std::env::var("SKYLIGHT_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mitsuba_bake.py");
     let mut command = Command::new(&python);
-    let output = command.arg(script).arg(map).arg(SUN.1.to_string()).output();
+    let files = ["sky.exr", "sky.json"].map(|name| folder.join(name));
+    let output = command.arg(script).args(files).arg(mode).output();
     let absent = match &output {
         Ok(output) => output.status.code() == Some(3),
         Err(_) => true,
@@ -34,23 +36,29 @@ fn mitsuba(map: &std::path::Path) -> Option<Value> {
     Some(serde_json::from_slice(&output.stdout).expect("JSON"))
 }
 
-#[test]
-fn mitsuba_sees_the_same_sky() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let sun = format!("{},{}", SUN.0, SUN.1);
+/// Bakes `sky.exr`; its description.
+fn bake(folder: &Path, sky: &str) -> Value {
     let output = Command::new(env!("CARGO_BIN_EXE_skylight"))
-        .current_dir(folder.path())
-        .args([
-            "bake", "--map", "sky", "--size", "512", "-o", "sky.exr", "--sun", &sun,
-        ])
+        .current_dir(folder)
+        .args(["bake", "--map", "sky", "--size", "512", "-o", "sky.exr"])
+        .args(sky.split_whitespace())
         .output()
         .expect("it starts");
     assert!(output.status.success(), "{output:?}");
-    let Some(found) = mitsuba(&folder.path().join("sky.exr")) else {
+    let text = std::fs::read_to_string(folder.join("sky.json")).expect("a sidecar");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+#[test]
+fn mitsuba_sees_the_same_sky() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sidecar = bake(
+        folder.path(),
+        &format!("--sky preetham --sun {},{}", SUN.0, SUN.1),
+    );
+    let Some(found) = mitsuba(folder.path(), "planes") else {
         return;
     };
-    let text = std::fs::read_to_string(folder.path().join("sky.json")).expect("a sidecar");
-    let sidecar: Value = serde_json::from_str(&text).expect("JSON");
     for normal in ["+y", "+x", "-x", "+z", "-z"] {
         for channel in 0..3 {
             let mitsubas = found["irradiance"][normal][channel].as_f64().expect("lux");
@@ -68,4 +76,33 @@ fn mitsuba_sees_the_same_sky() {
     let azimuth = found["azimuth"].as_f64().expect("degrees");
     println!("brightest azimuth {azimuth}");
     assert!((azimuth - SUN.0).abs() < 0.2, "{azimuth}");
+}
+
+/// Noon, a low sun, dusk.
+const ATMOSPHERES: [&str; 3] = ["180,60", "137,10", "137,-4"];
+
+#[test]
+fn planes_under_an_atmosphere_have_our_illuminance() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let luminance = |rgb: &Value| {
+        let of = |c: usize| rgb[c].as_f64().expect("lux");
+        0.2126 * of(0) + 0.7152 * of(1) + 0.0722 * of(2)
+    };
+    for sun in ATMOSPHERES {
+        let sidecar = bake(folder.path(), &format!("--sky atmosphere --sun {sun}"));
+        let Some(found) = mitsuba(folder.path(), "up") else {
+            return;
+        };
+        let ours = [
+            luminance(&sidecar["sky"]["diffuse_horizontal_rgb"]),
+            sidecar["global_horizontal_lux"].as_f64().expect("lux"),
+        ];
+        let mitsubas = ["sky", "sky_and_sun"].map(|key| luminance(&found[key]));
+        let errors = [0, 1].map(|i| mitsubas[i] / ours[i] - 1.0);
+        println!(
+            "sun {sun}: {mitsubas:.4?} and {ours:.4?} lux, {:.3?} %",
+            errors.map(|e| 100.0 * e)
+        );
+        assert!(errors.iter().all(|e| e.abs() < 3e-3), "{sun}: {errors:?}");
+    }
 }

@@ -394,7 +394,7 @@ fn bad_words_end_with_2_and_touch_nothing() {
         "[[mesh]]\nfile = \"m.obj\"\n[[camera]]\nname = \"porch\"\neye = [9, 1, 1]\n",
     );
     let before = place.contents();
-    let cases: [(&[&str], &[&str]); 17] = [
+    let cases: [(&[&str], &[&str]); 18] = [
         (
             &["render", "-o", "old.png", "--size", "0x0"],
             &["0x0", "1 to 32768"],
@@ -499,7 +499,10 @@ fn bad_scenes_end_with_1_and_touch_nothing() {
         (&["folder.obj"], &["folder.obj is a directory"]),
         (&["empty.obj"], &["empty.obj has no triangles"]),
         (&["cut.obj"], &["cut.obj has no triangles", "line 3"]),
-        (&["model.gltf"], &["model.gltf has no triangles", "export it"]),
+        (
+            &["model.gltf"],
+            &["model.gltf has no triangles", "export it"],
+        ),
         (&["text.txt"], &["text.txt", ".obj"]),
         (&["key.toml"], &["key.toml", "\"turbidty\"", "turbidity"]),
         (
@@ -592,7 +595,11 @@ fn missing_helpers_are_warnings_that_no_warnings_silences() {
     // Cut off within a vertex that no face has.
     place.put("vertex.obj", &format!("{OBJ}v 0 1"));
     let ended = place.render(&["vertex.obj", "-o", "a.png"]).succeeded();
-    assert!(ended.stderr.contains("needs three numbers"), "{}", ended.stderr);
+    assert!(
+        ended.stderr.contains("needs three numbers"),
+        "{}",
+        ended.stderr
+    );
     // Cut off within its last face: the complete faces are drawn.
     place.put("cut.obj", &OBJ[..OBJ.len() - 6]);
     let ended = place.render(&["cut.obj", "-o", "a.png"]).succeeded();

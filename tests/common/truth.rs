@@ -155,7 +155,7 @@ fn load_scene(scenes: &Path, models: &Value) -> Scene {
         .scene
 }
 
-/// Camera, sun and turbidity of a view as options of `render`, at the reference's size. Ground light and specular reflection
+/// Camera, sun and sky of a view as options of `render`, at the reference's size. Ground light and specular reflection
 /// are off: the reference has neither.
 fn options(view: &Value) -> Vec<String> {
     let (sun, camera) = (&view["sun"], &view["camera"]);
@@ -168,6 +168,7 @@ fn options(view: &Value) -> Vec<String> {
         "--ground-albedo=0".to_owned(),
         "--specular=0".to_owned(),
         format!("--sun={},{}", sun["azimuth_deg"], sun["elevation_deg"]),
+        "--sky=preetham".to_owned(),
         format!("--turbidity={}", view["turbidity"]),
         format!("--eye={}", words(&camera["origin"])),
         format!("--target={}", words(&camera["target"])),

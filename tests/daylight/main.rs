@@ -8,6 +8,7 @@ mod model;
 mod atmosphere;
 mod bounces;
 mod emission;
+mod ggx;
 mod grey_skies;
 mod irradiance;
 mod moon;

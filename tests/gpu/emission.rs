@@ -193,7 +193,10 @@ fn a_texture_is_repeated_mirrored_or_clamped_outside_of_its_picture() {
         emissive_texture: Some(0),
         ..glowing(0.0, 3000.0)
     };
-    let set = showing(Show::Emission, with_bounces(Bounces::UpTo(0), settings(32, 32)));
+    let set = showing(
+        Show::Emission,
+        with_bounces(Bounces::UpTo(0), settings(32, 32)),
+    );
     for (wrap, reds) in [
         (Wrap::Repeat, [true, false]),
         (Wrap::Mirror, [false, true]),

@@ -11,7 +11,7 @@ use crate::gpu::{
 use crate::truth::Exr;
 use glam::DVec3;
 use skylight::daylight::irradiance::IrradianceMethod;
-use skylight::daylight::sky::{Conditions, Daylight};
+use skylight::daylight::sky::{Conditions, Daylight, SkyModel};
 use skylight::frame::FrameSettings;
 use skylight::options::name as option_name;
 use skylight::passes::light::lighting::Show;
@@ -166,6 +166,8 @@ fn files_are_in_candelas_and_carry_their_parameters() {
     let file = render(&[
         "--sun",
         "150,35",
+        "--sky",
+        "preetham",
         "--turbidity",
         "4",
         "--eye=0,500,0",
@@ -174,6 +176,7 @@ fn files_are_in_candelas_and_carry_their_parameters() {
         "20",
     ]);
     let day = Daylight::new(&Conditions {
+        model: SkyModel::Preetham,
         turbidity: 4.0,
         sun_azimuth_deg: 150.0,
         sun_elevation_deg: 35.0,

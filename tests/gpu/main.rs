@@ -29,6 +29,7 @@ mod rays;
 mod reflections;
 mod shadow;
 mod sky;
+mod specular;
 mod ssao;
 mod steady_frame;
 mod timings;

@@ -9,7 +9,8 @@ use glam::UVec2;
 use skylight::daylight::{Conditions, Daylight};
 use skylight::frame::{Frame, FrameSettings};
 use skylight::gpu::{Context, ContextOptions, Recorder, Timing, read_back};
-use skylight::passes::light::lighting::{Precision, Show};
+use skylight::passes::bounces::cells::Bounces;
+use skylight::passes::light::lighting::{Ambient, Precision, Show};
 use skylight::scene::{Camera, LoadOptions, Scene, load};
 
 use crate::support::files_below;
@@ -36,11 +37,14 @@ const KENNEY: &str = "kenney_suburb/OBJ format";
 const KENNEY_COUNT: usize = 49;
 
 fn settings() -> FrameSettings {
+    // Direct light: the passes of the bounces would be compiled again for every model.
     let mut set = FrameSettings {
         size: SIZE,
         shadow_resolution: 1024,
+        bounces: Bounces::UpTo(0),
         ..FrameSettings::default()
     };
+    set.lighting.ambient = Ambient::Ssao;
     set.irradiance.samples = 64;
     set.irradiance.samples_per_pass = 64;
     set.lighting.precision = Precision::Float;

@@ -94,7 +94,7 @@ fn an_office_meets_the_path_tracer() {
     check(
         "office",
         "clear_sky_and_sun",
-        &["--sun", "200,38", "--turbidity", "3"],
+        &["--sun", "200,38", "--sky", "preetham", "--turbidity", "3"],
     );
     check("office", "overcast_10klx", &OVERCAST);
 }

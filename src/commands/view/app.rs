@@ -43,6 +43,8 @@ pub(super) struct App {
     ticked: Option<Instant>,
     /// Time of the next redraw without an event.
     pub(super) again_at: Option<Instant>,
+    /// Whether the next frame of the options is to be saved.
+    is_capture_due: bool,
     error: Option<Error>,
 }
 
@@ -68,6 +70,7 @@ impl App {
             started: Instant::now(),
             ticked: None,
             again_at: None,
+            is_capture_due: false,
             error: None,
         }
     }
@@ -141,6 +144,7 @@ impl App {
         }
         self.probe()?;
         let requests = self.lay_out_and_draw(event_loop)?;
+        self.capture();
         for request in requests {
             self.handle(request)?;
         }
@@ -149,6 +153,22 @@ impl App {
             self.request_redraw();
         }
         Ok(())
+    }
+
+    /// Saves the newest frame if that was asked for, once it has the daylight of the options.
+    fn capture(&mut self) {
+        let (Some(stage), Some(document)) = (&mut self.stage, &self.document) else {
+            return;
+        };
+        if !self.is_capture_due || document.is_behind() {
+            return;
+        }
+        self.is_capture_due = false;
+        match capture::save(stage, document) {
+            Ok(line) => self.interface.say(&line),
+            Err(error) => tell(&mut self.interface, &error),
+        }
+        stage.window.request_redraw();
     }
 
     /// Whether another frame is needed without any event.
@@ -252,10 +272,7 @@ impl App {
             return Ok(());
         };
         match action {
-            Action::Screenshot => match capture::save(stage, document) {
-                Ok(line) => self.interface.say(&line),
-                Err(error) => tell(&mut self.interface, &error),
-            },
+            Action::Screenshot => self.is_capture_due = true,
             Action::FullScreen => {
                 let full = stage.window.fullscreen().is_none();
                 let wanted = full.then_some(Fullscreen::Borderless(None));

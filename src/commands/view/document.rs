@@ -17,6 +17,7 @@ use super::adaptation::Adaptation;
 use super::controls::{Controls, FlyKeys};
 use super::interface::{Notes, shift};
 use super::keys::Action;
+use super::light_ahead::LightAhead;
 use super::viewpoints::{Viewpoint, Viewpoints};
 
 /// Default of `--samples` in the window: number of frames averaged at rest.
@@ -34,8 +35,9 @@ pub(super) struct Document {
     /// Viewpoints: named and saved cameras.
     pub(super) viewpoints: Viewpoints,
     frame: Frame,
-    /// Options that daylight and frame were last updated to.
+    /// Options that the frame was last updated to; the daylight too, unless its air is being solved.
     followed: Options,
+    light: LightAhead,
     /// Camera of the newest frame; `None` restarts the average.
     drawn: Option<Camera>,
     /// Number of frames in the average.
@@ -65,6 +67,7 @@ impl Document {
             controls: Controls::new(&job.camera, &job.scene.bounds),
             viewpoints,
             followed: job.settings.clone(),
+            light: LightAhead::new(&job.settings),
             frame,
             job,
             drawn: None,
@@ -125,12 +128,13 @@ impl Document {
         self.job.camera = self.controls.camera();
     }
 
-    /// Whether the options have changed since the last update of daylight and frame.
+    /// Whether the options have changed since the last update of daylight and frame, or the daylight follows later.
     pub(super) fn is_behind(&self) -> bool {
-        self.job.settings != self.followed
+        self.job.settings != self.followed || self.light.is_solving()
     }
 
-    /// Updates daylight and frame to the options. `recorder` must be recording, with no frame in flight.
+    /// Updates daylight and frame to the options. `recorder` must be recording, with no frame in flight. While another thread solves
+    /// a new air, the daylight stays as it is.
     ///
     /// # Errors
     /// Options that cannot be applied; the previous ones are restored.
@@ -139,7 +143,7 @@ impl Document {
         if followed.is_err() {
             self.job.settings = self.followed.clone();
             // Succeeds: it did before, with the same options.
-            self.job.relight()?;
+            self.light.go_back(&mut self.job)?;
         }
         self.followed = self.job.settings.clone();
         self.start_over();
@@ -150,9 +154,7 @@ impl Document {
         if self.job.settings.show != self.followed.show {
             self.adaptation.cut();
         }
-        if self.job.settings.light() != self.followed.light() {
-            self.job.relight()?;
-        }
+        self.light.follow(&mut self.job)?;
         let wanted = frame_settings(&self.job);
         if wanted != *self.frame.settings() {
             self.frame.apply(recorder, wanted)?;

@@ -15,6 +15,7 @@ mod events;
 mod input;
 mod interface;
 mod keys;
+mod light_ahead;
 mod loader;
 mod resume;
 mod stage;

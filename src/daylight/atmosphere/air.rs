@@ -182,6 +182,13 @@ pub fn aod_of_turbidity(turbidity: f64) -> f64 {
     (angstrom_beta(turbidity) * 0.55f64.powf(-1.3)).max(0.0)
 }
 
+/// Preetham's turbidity T of an aerosol optical depth at 550 nm: [`aod_of_turbidity`] the other way round.
+pub fn turbidity_of_aod(aod: f64) -> f64 {
+    // β is linear in T.
+    let [zero, one] = [0.0, 1.0].map(angstrom_beta);
+    (aod / 0.55f64.powf(-1.3) - zero) / (one - zero)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -240,6 +247,7 @@ mod tests {
             );
             assert!((aod_of_visibility(air.visibility_km(), 1.2) - aod).abs() < 1e-12);
             assert!((aod_of_turbidity(turbidity) - aod).abs() < 0.01);
+            assert!((turbidity_of_aod(aod_of_turbidity(turbidity)) - turbidity).abs() < 1e-12);
         }
         assert_eq!(aod_of_visibility(1e6, 1.2), 0.0);
     }

@@ -4,6 +4,8 @@
 //! 2. [`columns`]: table A, columns of each species to the top of the air.
 //! 3. [`mod@solve`]: the scattered light order by order; [`field`]: the tables B and C that it fills.
 //! 4. [`Atmosphere`]: radiance by one more march along [`path`], where the first order is exact.
+//!
+//!    [`Atmosphere::of`] keeps the tables of the last airs.
 //! 5. [`sky_view`]: table D, the whole view under one sun; [`scattered_sky`]: the sky that is read from it.
 
 pub mod air;
@@ -15,9 +17,10 @@ pub mod path;
 pub mod scattered_sky;
 pub mod sky_view;
 pub mod solve;
+mod solved;
 
 use std::f64::consts::PI;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use glam::{DVec3, DVec4};
 
@@ -81,34 +84,10 @@ pub struct Atmosphere {
     pub field: Arc<Field>,
 }
 
-/// Airs whose tables are kept.
-const KEPT: usize = 4;
-/// The atmospheres that were asked for last, the newest first; at sea level.
-static SOLVED: Mutex<Vec<Atmosphere>> = Mutex::new(Vec::new());
-
 impl Atmosphere {
     /// The tables of `air`, which is [`Air::clamped`] first.
     pub fn new(air: &Air) -> Self {
         Self::with(air, colour::WAVELENGTHS, &Effort::of_haze(air.aod))
-    }
-
-    /// The same, from the tables of the last airs that were asked for if it is one of them: the observer's altitude changes no table.
-    pub fn of(air: &Air) -> Self {
-        let (air, _) = air.clamped();
-        let at_sea_level = Air {
-            altitude_m: 0.0,
-            ..air
-        };
-        // A thread that panicked left whole atmospheres.
-        let mut solved = SOLVED.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = solved.iter().position(|kept| kept.air == at_sea_level);
-        let found = match known {
-            Some(i) => solved.remove(i),
-            None => Self::new(&at_sea_level),
-        };
-        solved.truncate(KEPT - 1);
-        solved.insert(0, found.clone());
-        Self { air, ..found }
     }
 
     /// The tables at four other wavelengths, nm, and at another effort.

@@ -170,7 +170,9 @@ impl Model<'_> {
             let camera = camera::read(root, node, world_from_node, &self.cameras);
             if camera.is_none() {
                 let place = || format!("nodes[{number}].camera");
-                self.report.losses.add("cameras that are not perspective left out", place);
+                self.report
+                    .losses
+                    .add("cameras that are not perspective left out", place);
             }
             self.cameras.extend(camera);
         }

@@ -4,12 +4,12 @@ use egui::{Slider, Ui};
 use glam::DVec3;
 
 use super::choice;
-use crate::commands::light::air;
+use crate::commands::light::{self, air};
 use crate::commands::view::document::Document;
 use crate::daylight::atmosphere::air::{ALTITUDE_RANGE_M, AOD_RANGE, OZONE_RANGE_DU};
 use crate::daylight::colour::luminance;
 use crate::daylight::perez::MOST_IRRADIANCE_W;
-use crate::daylight::sky::{Conditions, SkyModel};
+use crate::daylight::sky::SkyModel;
 use crate::options::Options;
 
 pub(super) fn show(ui: &mut Ui, document: &mut Document) {
@@ -50,9 +50,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
 
 fn turbidity(ui: &mut Ui, settings: &mut Options) {
     let (least, most) = settings.sky.turbidity_range();
-    let mut value = settings
-        .turbidity
-        .unwrap_or(Conditions::default().turbidity);
+    let mut value = light::turbidity(settings);
     let slider = ui
         .add(Slider::new(&mut value, least..=most).text("turbidity"))
         .on_hover_text("2 very clear, 3 clear, 6 hazy, 10 very hazy");

@@ -12,6 +12,8 @@ use std::thread::{self, ScopedJoinHandle};
 pub use self::sample::{Filter, Sampling, Visibility};
 pub use self::settings::FrameSettings;
 
+use glam::UVec2;
+
 use crate::daylight::sky::Daylight;
 use crate::gpu::{Context, Image, Recorder, Result};
 use crate::passes::bounces::cells::{Cells, Surroundings, Work};
@@ -87,6 +89,11 @@ struct Tiling {
 }
 
 impl Tiling {
+    /// Upper left corner of the frame in the picture, pixels.
+    fn origin(&self) -> UVec2 {
+        self.tile.map_or(UVec2::ZERO, |tile| tile.origin)
+    }
+
     /// Shared ambient occlusion for sample `index`, if any. The images repeat if there are more samples than images.
     fn occlusion(&self, index: Option<u32>) -> Option<&Image> {
         let count = self.occlusion.len().max(1);
@@ -275,7 +282,8 @@ impl Frame {
         let scene = (geometry, &self.tree, self.cells.as_ref());
         let radiance = resolve.record(rec, scene, frame, surfaces, &light, &view);
         let average = self.exposure.record(rec, radiance);
-        self.tone_map.record(rec, radiance, average);
+        self.tone_map
+            .record(rec, radiance, average, self.tiling.origin());
         self.drawn = Some(Drawn { index, view });
     }
 
@@ -289,7 +297,8 @@ impl Frame {
     pub fn expose(&self, rec: &mut Recorder) {
         let radiance = self.radiance();
         let average = self.exposure.record(rec, radiance);
-        self.tone_map.record(rec, radiance, average);
+        self.tone_map
+            .record(rec, radiance, average, self.tiling.origin());
     }
 
     /// Tone maps the newest picture again with new settings. `rec` must be recording, with no frame in flight.
@@ -302,7 +311,8 @@ impl Frame {
             ..self.settings
         };
         let tone_map = settings.tone_map(&self.context)?;
-        tone_map.record(rec, self.radiance(), self.exposure.image());
+        let origin = self.tiling.origin();
+        tone_map.record(rec, self.radiance(), self.exposure.image(), origin);
         self.tone_map = tone_map;
         self.settings = settings;
         Ok(())

@@ -163,9 +163,13 @@ options! {
             /// sun, and the disc stands and shines at its apparent elevation. --sun is taken as given for both.
             #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
             refraction: Switch,
-            /// Whether the moon shines: its disc in the sky, and its light when the sun gives none (of --place and --when).
+            /// Whether the moon shines: its disc in the sky, its light when the sun gives none, and the air that it lights with --sky atmosphere (of
+            /// --place and --when).
             #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
             moon: Switch,
+            /// Whether the brightest stars are drawn, as points of light, where --sky atmosphere is dark enough (of --place and --when).
+            #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
+            stars: Switch,
             /// Reflectance of the ground below the horizon, 0 to 1; 0 is black.
             #[arg(value_name = "ALBEDO", value_parser = values::ground_albedo, allow_hyphen_values = true,
                   default_value_t = Conditions::default().ground_albedo)]
@@ -250,6 +254,10 @@ options! {
             /// Exposure from the picture itself, unless --ev100 or --scale is given.
             #[arg(value_name = "MODE", value_parser = choice::<ExposureMode>(), default_value_t)]
             exposure: ExposureMode,
+            /// Lowest exposure value of the automatic exposure, which leaves darker pictures dark: -2 shows a landscape under the full moon as
+            /// a night; by default every night is exposed until it is as bright as a day.
+            #[arg(value_name = "EV", value_parser = values::ev100, allow_hyphen_values = true)]
+            min_ev100: Option<f64>,
             /// Tone curve of .png pictures and the window.
             #[arg(value_name = "CURVE", value_parser = choice::<ToneCurve>(), default_value_t)]
             tonemap: ToneCurve,

@@ -15,4 +15,9 @@ float luminance(vec3 rgb) {
 vec3 linear_from_srgb(vec3 c) {
     return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045)));
 }
+
+/// Linear values to sRGB ones, the inverse.
+vec3 srgb_from_linear(vec3 c) {
+    return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, c * 12.92, lessThanEqual(c, vec3(0.0031308)));
+}
 #endif

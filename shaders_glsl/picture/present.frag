@@ -3,12 +3,9 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "colour.glsl"
 
-// Copies the picture to the window, scaled if their sizes differ.
+// Copies the picture to the window, scaled if their sizes differ. Its values are encoded: they are decoded, because the target's format encodes again.
 
 layout(location = 0) out vec4 window; // linear; the target's sRGB format encodes
-
-// Whether the picture holds encoded values; they are decoded, because the target's format encodes again.
-layout(constant_id = 0) const bool ENCODED = false;
 
 layout(set = 0, binding = 0) uniform sampler2D display;
 
@@ -19,6 +16,5 @@ layout(push_constant, scalar) uniform Push {
 void main() {
     ivec2 size = textureSize(display, 0);
     vec2 at = gl_FragCoord.xy * (vec2(size) / push.size);
-    vec3 c = texelFetch(display, min(ivec2(at), size - 1), 0).rgb;
-    window = vec4(ENCODED ? linear_from_srgb(c) : c, 1.0);
+    window = vec4(linear_from_srgb(texelFetch(display, min(ivec2(at), size - 1), 0).rgb), 1.0);
 }

@@ -4,6 +4,7 @@
 #include "colour.glsl"
 #include "tone_curve.glsl"
 #include "false_colour.glsl"
+#include "dither.glsl"
 
 layout(location = 0) out vec4 display;
 
@@ -13,14 +14,17 @@ layout(constant_id = 1) const bool REINHARD = false;
 layout(constant_id = 2) const bool AGX = false;
 layout(constant_id = 3) const bool NEUTRAL = false;
 layout(constant_id = 4) const bool ACES = false;
-// Encode with a power law; otherwise the target's sRGB format encodes.
+// At most one encoding is set.
 layout(constant_id = 5) const bool GAMMA = false;
+layout(constant_id = 11) const bool SRGB = false;
 // Exposure from the average luminance instead of the push constant.
 layout(constant_id = 6) const bool AUTO = false;
 // Ferschin's curve on luminance.
 layout(constant_id = 8) const bool EXPONENTIAL_LUMINANCE = false;
 // Show the luminance in grey.
 layout(constant_id = 7) const bool GREY = false;
+// Dither for 8 bits.
+layout(constant_id = 10) const bool DITHER = false;
 // Show false colours of the luminance instead of exposure and curve.
 layout(constant_id = 9) const bool FALSE_COLOUR = false;
 
@@ -33,6 +37,8 @@ layout(push_constant, scalar) uniform Push {
     float offset;        // added after the scale: shows signed quantities; with FALSE_COLOUR the position of 1 kcd/m^2 (1 klx)
     float white;         // Reinhard's white, display units
     float inverse_gamma; // of the power
+    float least;         // with AUTO: the lowest average luminance that is exposed for, kcd/m^2
+    uvec2 origin;        // of this tile in the picture, pixels
 } push;
 
 void main() {
@@ -40,11 +46,12 @@ void main() {
     if (FALSE_COLOUR) {
         float l = luminance(c);
         float share = clamp(log2(max(l, 1e-30)) * push.exposure + push.offset, 0.0, 1.0);
-        display = vec4(l > 0.0 ? turbo(share) : vec3(0.0), 1.0);
+        vec3 colour = l > 0.0 ? turbo(share) : vec3(0.0);
+        display = vec4(SRGB ? srgb_from_linear(colour) : colour, 1.0);
         return;
     }
     float exposure = push.exposure;
-    if (AUTO) exposure /= textureLod(average_luminance, vec2(0.5), 0.0).r;
+    if (AUTO) exposure /= max(textureLod(average_luminance, vec2(0.5), 0.0).r, push.least);
     if (GREY) c = vec3(luminance(c));
     c = max(c * exposure + push.offset, 0.0);
     if (EXPONENTIAL) c = tone_exponential(c);
@@ -55,5 +62,7 @@ void main() {
     if (ACES) c = tone_aces(c);
     c = clamp(c, 0.0, 1.0);
     if (GAMMA) c = pow(c, vec3(push.inverse_gamma));
+    if (SRGB) c = srgb_from_linear(c);
+    if (DITHER) c = dithered(c, uvec2(gl_FragCoord.xy) + push.origin);
     display = vec4(c, 1.0);
 }

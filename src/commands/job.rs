@@ -10,7 +10,7 @@ use glam::UVec2;
 use super::light::{conditions, sun_position};
 use super::{check_strict, tell};
 use crate::daylight::colour::luminance;
-use crate::daylight::exposure::{KEY, factor_from_ev100};
+use crate::daylight::exposure::{KEY, automatic, factor_from_ev100, least_average};
 use crate::daylight::sample_count::ErrorEstimate;
 use crate::daylight::sky::Daylight;
 use crate::daylight::spectrum::LUMINOUS_EFFICACY;
@@ -258,8 +258,17 @@ impl Job {
             // The lecture's scale applies to its own unit, luminance / 683.
             (Some(scale), _) => Scale::Fixed(scale / LUMINOUS_EFFICACY),
             (None, Some(ev100)) => Scale::Fixed(factor_from_ev100(ev100)),
-            (None, None) => Scale::Average(KEY),
+            (None, None) => Scale::Average {
+                key: KEY,
+                least: self.settings.min_ev100.map_or(0.0, least_average),
+            },
         }
+    }
+
+    /// EV100 of the automatic exposure for a picture of this average luminance, cd/m².
+    pub fn automatic_ev100(&self, average: f64) -> f64 {
+        let least = self.settings.min_ev100.map_or(0.0, least_average);
+        automatic(average.max(least))
     }
 
     /// The command line that renders this view with these options.

@@ -6,6 +6,7 @@ use crate::daylight::atmosphere::air::{
 use crate::daylight::moon::Moon;
 use crate::daylight::perez::Measured;
 use crate::daylight::sky::{Conditions, Daylight};
+use crate::daylight::stars::StarrySky;
 use crate::daylight::sun_position::{SunPosition, lecture};
 use crate::error::Result;
 use crate::options::{OptionValues, Options, SunInput, Switch};
@@ -94,6 +95,17 @@ fn moon(settings: &Options) -> Option<Moon> {
     Some(moon)
 }
 
+/// The stars of the place and the moment; `None` without them, or if they are switched off.
+fn stars(settings: &Options) -> Option<StarrySky> {
+    let (latitude, longitude, when) = settings.sun.place()?;
+    let is_on = settings.stars == Switch::On;
+    let stars = is_on.then(|| StarrySky::at(when, latitude, longitude).ok())??;
+    Some(StarrySky {
+        is_refracted: settings.refraction == Switch::On,
+        ..stars
+    })
+}
+
 /// Inputs of the daylight for this position of the sun.
 pub fn conditions(settings: &Options, sun: &SunPosition) -> Conditions {
     Conditions {
@@ -107,6 +119,7 @@ pub fn conditions(settings: &Options, sun: &SunPosition) -> Conditions {
         horizontal_illuminance: settings.sky_illuminance,
         cloud_cover: settings.cloud_cover,
         moon: moon(settings),
+        stars: stars(settings),
         measured: Measured {
             direct_normal_w: settings.dni.unwrap_or_default(),
             diffuse_horizontal_w: settings.dhi.unwrap_or_default(),

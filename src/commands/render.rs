@@ -7,7 +7,6 @@ use super::job::Job;
 use super::samples::{self, Drawn, Progress, Rule};
 use super::tiled::Tiled;
 use crate::daylight::colour::luminance;
-use crate::daylight::exposure::automatic;
 use crate::daylight::false_colour::{Quantity, Range};
 use crate::error::Result;
 use crate::frame::Frame;
@@ -178,7 +177,7 @@ impl<'j> Renderer<'j> {
             return Ok(Some(ev100));
         }
         let average = read_back(&mut self.recorder, self.frame.average_luminance())?.floats()[0];
-        Ok(Some(automatic(f64::from(average) * 1e3)))
+        Ok(Some(self.job.automatic_ev100(f64::from(average) * 1e3)))
     }
 
     fn save_exr(&mut self, path: &Path) -> Result<String> {

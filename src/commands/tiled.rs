@@ -15,7 +15,7 @@ use self::plan::{Plan, Span};
 use super::job::Job;
 use super::progress;
 use crate::daylight::colour::luminance;
-use crate::daylight::exposure::{KEY, automatic};
+use crate::daylight::exposure::automatic;
 use crate::daylight::false_colour::Range;
 use crate::error::Result;
 use crate::frame::{Frame, FrameSettings, Visibility};
@@ -100,7 +100,7 @@ impl<'j> Tiled<'j> {
                 .record_light(&mut self.recorder, &self.job.daylight);
             self.recorder.finish()?;
         }
-        let averages = matches!(settings.tone.scale, Scale::Average(_));
+        let averages = matches!(settings.tone.scale, Scale::Average { .. });
         let has_range = self.job.settings.false_colour.is_some();
         let mut occlusion = Vec::new();
         if occludes || averages || has_range {
@@ -132,9 +132,9 @@ impl<'j> Tiled<'j> {
         settings: &FrameSettings,
     ) -> Result<crate::passes::picture::tone_map::ToneSettings> {
         let mut tone = settings.tone;
-        if matches!(tone.scale, Scale::Average(_)) {
+        if let Scale::Average { key, least } = tone.scale {
             let average = self.read(|frame| frame.average_luminance())?.floats()[0];
-            let average = f64::from(average) * 1e3;
+            let average = (f64::from(average) * 1e3).max(least);
             self.average = Some(average);
             // As in the tone mapping pass: irradiance is exposed as such, not as white paper.
             let paper = if tone.show == Show::Irradiance {
@@ -142,7 +142,7 @@ impl<'j> Tiled<'j> {
             } else {
                 1.0
             };
-            tone.scale = Scale::Fixed(KEY / average * paper);
+            tone.scale = Scale::Fixed(key / average * paper);
         }
         if tone.false_colour.is_some() && self.job.settings.false_colour_range.is_none() {
             let texels = self.read(Frame::radiance)?.rgba();

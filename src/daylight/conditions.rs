@@ -5,6 +5,7 @@ use super::atmosphere::air::Air;
 use super::cie::{self, SkyCover, StandardSky, standard_sky};
 use super::moon::Moon;
 use super::perez::{DEW_POINTS, MOST_IRRADIANCE_W, Measured};
+use super::stars::StarrySky;
 use super::{hosek, preetham};
 
 /// Model of the sky.
@@ -125,6 +126,8 @@ pub struct Conditions {
     pub cloud_cover: f64,
     /// The moon. It shines through skies without clouds of their own, where it is dimmed by [`Self::cloud_cover`] as the sun is.
     pub moon: Option<Moon>,
+    /// The stars, which [`SkyModel::Atmosphere`] alone shows.
+    pub stars: Option<StarrySky>,
     /// The irradiances of [`SkyModel::Perez`], which alone has use for them. They are used without twilight fade.
     pub measured: Measured,
 }
@@ -143,6 +146,7 @@ impl Default for Conditions {
             horizontal_illuminance: None,
             cloud_cover: 0.0,
             moon: None,
+            stars: None,
             measured: Measured::default(),
         }
     }

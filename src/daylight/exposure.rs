@@ -101,6 +101,11 @@ pub fn automatic(log_average_luminance: f64) -> f64 {
     ev100_from_factor(KEY / log_average_luminance)
 }
 
+/// The log-average luminance, cd/m², that [`automatic`] exposes at `ev100`; its inverse.
+pub fn least_average(ev100: f64) -> f64 {
+    KEY * max_luminance(ev100)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -124,6 +129,7 @@ mod tests {
         let average = robust_log_average(&[800.0, 1250.0, 0.0, f64::NAN]);
         assert!((average.unwrap() - 1000.0).abs() < 1e-9);
         assert!((factor_from_ev100(automatic(1000.0)) * 1000.0 - KEY).abs() < 1e-15);
+        assert!((least_average(automatic(1000.0)) - 1000.0).abs() < 1e-9);
         assert_eq!(robust_log_average(&[0.0, -1.0, f64::NAN]), None);
         assert_eq!(robust_log_average(&[]), None);
     }

@@ -4,7 +4,8 @@
 //!
 //! 1. [`sun_position`]: the direction of the sun from a place and a moment, by SPA or by the lecture's formulas.
 //!    [`place`] and [`moment`] parse both; [`cities`] has places by name; [`sun_path`] has the lines of a sun-path diagram,
-//!    [`day_times`] the twilights of a day, [`moon`] the position and the light of the moon.
+//!    [`day_times`] the twilights of a day, [`moon`] the position and the light of the moon,
+//!    [`stars`] those of the stars.
 //! 2. [`sunlight`]: the sun's spectrum times five transmittances of the air gives the luminance of its disc in cd/m² and its
 //!    illuminance in lux. [`spectrum`] integrates, [`colour`] turns XYZ into linear BT.709 RGB.
 //! 3. [`preetham`], [`hosek`] and [`grey_sky`]: the sky's radiance in a direction. [`cie`] has the standard skies, [`perez`] the
@@ -29,6 +30,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 pub mod atmosphere;
+mod celestial;
 pub mod cie;
 pub mod cities;
 pub mod clouds;
@@ -58,6 +60,7 @@ pub mod sampling;
 pub mod sky;
 pub mod sky_sampler;
 pub mod spectrum;
+pub mod stars;
 pub mod sun_path;
 pub mod sun_position;
 pub mod sunlight;

@@ -9,12 +9,12 @@ use std::f64::consts::PI;
 use chrono::{DateTime, Duration, FixedOffset, NaiveDate};
 use glam::DVec3;
 
+use super::celestial::{Instant, UNIX_EPOCH_JD, world_from_earth};
 use super::colour;
 use super::preetham::angle_between;
 use super::sun_path::at_hour;
 use super::sun_position::{
-    SunPositionError, azimuth_elevation, check, delta_t_s, direction, distance_factor,
-    refraction_deg, spa, without_leap,
+    SunPositionError, azimuth_elevation, direction, distance_factor, refraction_deg, spa,
 };
 use super::sunlight::{Sunlight, visible_fraction};
 
@@ -28,9 +28,6 @@ pub const RADIUS_KM: f64 = 1737.4;
 pub const MAGNITUDE_ZERO_LUX: f64 = 2.54e-6;
 
 const ASTRONOMICAL_UNIT_KM: f64 = 149_597_870.7;
-
-/// The Julian date of 1970-01-01T00:00Z.
-const UNIX_EPOCH_JD: f64 = 2_440_587.5;
 
 /// Time step when searching for rise and set, minutes.
 const STEP_MINUTES: i64 = 20;
@@ -83,6 +80,11 @@ impl Moon {
     /// Unit vector toward the apparent moon, in world space.
     pub fn direction(&self) -> DVec3 {
         direction(self.azimuth_deg, self.apparent_elevation_deg)
+    }
+
+    /// Unit vector toward the true (not refracted) moon, in world space.
+    pub fn true_direction(&self) -> DVec3 {
+        direction(self.azimuth_deg, self.elevation_deg)
     }
 
     /// Share of the disc that is lit, 0..=1.
@@ -257,15 +259,11 @@ fn topocentric_km(
     latitude: f64,
     longitude: f64,
 ) -> Result<DVec3, SunPositionError> {
-    check(latitude, longitude)?;
-    let when = without_leap(when);
-    let delta_t_days = delta_t_s(when.date_naive())? / 86_400.0;
-    let days = when.timestamp_micros() as f64 / 86_400e6;
-    let terrestrial = days + delta_t_days;
-    let [position, _] = sofars::eph::moon98(UNIX_EPOCH_JD, terrestrial);
-    let turn = sofars::pnp::c2t00b(UNIX_EPOCH_JD, terrestrial, UNIX_EPOCH_JD, days, 0.0, 0.0);
+    let world_from_earth = world_from_earth(latitude, longitude)?;
+    let instant = Instant::of(when)?;
+    let [position, _] = sofars::eph::moon98(UNIX_EPOCH_JD, instant.terrestrial);
     let position = DVec3::from_array(position) * ASTRONOMICAL_UNIT_KM;
-    let moon = DVec3::from_array(turn.map(|row| DVec3::from_array(row).dot(position)));
+    let moon = instant.earth_from_celestial() * position;
     let ((sin_lat, cos_lat), (sin_lon, cos_lon)) = (
         latitude.to_radians().sin_cos(),
         longitude.to_radians().sin_cos(),
@@ -275,14 +273,7 @@ fn topocentric_km(
     let shrink = (1.0 - flattening) * (1.0 - flattening);
     let across = radius_km / (cos_lat * cos_lat + shrink * sin_lat * sin_lat).sqrt();
     let place = across * DVec3::new(cos_lat * cos_lon, cos_lat * sin_lon, shrink * sin_lat);
-    let seen = moon - place;
-    let east = DVec3::new(-sin_lon, cos_lon, 0.0);
-    let up = DVec3::new(cos_lat * cos_lon, cos_lat * sin_lon, sin_lat);
-    Ok(DVec3::new(
-        seen.dot(east),
-        seen.dot(up),
-        -seen.dot(up.cross(east)),
-    ))
+    Ok(world_from_earth * (moon - place))
 }
 
 #[cfg(test)]

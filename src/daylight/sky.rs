@@ -22,6 +22,7 @@ use super::moon::Moonlight;
 use super::perez::AllWeather;
 use super::preetham::Preetham;
 use super::quadrature::horizontal_irradiance;
+use super::stars::{MOST_SKY_LUX, PointLight, StarrySky};
 use super::sun_position::direction;
 use super::sunlight::{SUN_SOLID_ANGLE, Sunlight, air_mass, visible_fraction};
 
@@ -65,9 +66,7 @@ impl Sky {
     fn irradiance_up(&self) -> DVec3 {
         match self {
             Self::Grey(sky) => DVec3::splat(sky.horizontal_illuminance),
-            Self::Atmosphere(sky) => {
-                colour::clip_negative(sky.atmosphere.diffuse_illuminance(sky.sun.y))
-            }
+            Self::Atmosphere(sky) => colour::clip_negative(sky.irradiance_up()),
             _ => horizontal_irradiance(|dir| colour::clip_negative(self.radiance(dir))),
         }
     }
@@ -97,6 +96,13 @@ pub struct DirectLight {
     pub illuminance: DVec3,
 }
 
+impl DirectLight {
+    /// Illuminance of a horizontal plane that faces up, lux.
+    fn horizontal_lux(&self) -> f64 {
+        colour::luminance(self.illuminance) * self.direction.y.max(0.0)
+    }
+}
+
 /// Sun, moon, sky and ground at one moment. Every number is finite and none is negative.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Daylight {
@@ -108,6 +114,8 @@ pub struct Daylight {
     pub sun_luminance: DVec3,
     /// The moon, if it is above the horizon and no clouds hide it.
     pub moon: Option<Moonlight>,
+    /// The stars, if the sky is an atmosphere and dark enough ([`MOST_SKY_LUX`]).
+    pub stars: Option<StarrySky>,
     /// Model of the sky.
     pub sky: Sky,
     /// Parameters that extend the model beyond its valid range.
@@ -132,17 +140,25 @@ impl Daylight {
         let (sun_illuminance, sun_luminance) = sun(&valid, sun_factor);
         let own = sky.irradiance_up();
         let guard = guard_of(&valid, colour::luminance(own), above);
-        let sun_lux = colour::luminance(sun_illuminance) * elevation.to_radians().sin().max(0.0);
-        let (guard, sun_share) = under_clouds(&valid, guard, colour::luminance(own), sun_lux);
-        let (sun_illuminance, sun_luminance) =
-            (sun_illuminance * sun_share, sun_luminance * sun_share);
+        let moon = moonlight(&valid);
+        let sun_direction = direction(valid.sun_azimuth_deg, elevation);
+        let direct_lux = direct(sun_direction, sun_illuminance, moon).horizontal_lux();
+        let (guard, share) = under_clouds(&valid, guard, colour::luminance(own), direct_lux);
         let clouds = DVec3::splat(guard.clouds / OVERCAST_ZENITH_PER_LUX);
         let sky_irradiance_up = own * guard.scale + clouds + guard.night * PI;
+        let is_dark = colour::luminance(sky_irradiance_up) < MOST_SKY_LUX;
+        let shows_stars = is_dark && valid.model == SkyModel::Atmosphere;
         let mut daylight = Self {
-            sun_direction: direction(valid.sun_azimuth_deg, elevation),
-            sun_illuminance,
-            sun_luminance,
-            moon: moonlight(&valid, sun_share),
+            sun_direction,
+            sun_illuminance: sun_illuminance * share,
+            sun_luminance: sun_luminance * share,
+            moon: moon
+                .map(|moon| moon.scaled(share))
+                .filter(|moon| moon.illuminance != DVec3::ZERO),
+            stars: valid.stars.filter(|_| shows_stars).map(|stars| StarrySky {
+                clear: stars.clear * share,
+                ..stars
+            }),
             sky,
             guard,
             sky_irradiance_up,
@@ -155,17 +171,7 @@ impl Daylight {
 
     /// The directional light, the one that throws shadows: the sun, or the moon while the sun gives none.
     pub fn direct_light(&self) -> DirectLight {
-        let sun = DirectLight {
-            direction: self.sun_direction,
-            illuminance: self.sun_illuminance,
-        };
-        match self.moon {
-            Some(moon) if self.sun_illuminance == DVec3::ZERO => DirectLight {
-                direction: moon.direction,
-                illuminance: moon.illuminance,
-            },
-            _ => sun,
-        }
+        direct(self.sun_direction, self.sun_illuminance, self.moon)
     }
 
     /// Illuminance of open ground by the directional light and the sky, linear BT.709 RGB, lux.
@@ -174,10 +180,23 @@ impl Daylight {
         self.sky_irradiance_up + direct.illuminance * direct.direction.y.max(0.0)
     }
 
-    /// Radiance in the unit direction `dir`, linear BT.709 RGB, cd/m²: sky without the discs of sun and moon, ground below the horizon.
+    /// The stars in the sky; those behind the moon are left out.
+    pub fn stars(&self) -> Vec<PointLight> {
+        let (Some(stars), Sky::Atmosphere(sky)) = (&self.stars, &self.sky) else {
+            return Vec::new();
+        };
+        let mut seen = stars.seen(&sky.atmosphere);
+        if let Some(moon) = self.moon {
+            seen.retain(|s| s.direction.dot(moon.direction) < moon.angular_radius.cos());
+        }
+        seen
+    }
+
+    /// Radiance in the unit direction `dir`, linear BT.709 RGB, cd/m²: sky without the discs of sun and moon and without stars, ground below the
+    /// horizon.
     pub fn radiance(&self, dir: DVec3) -> DVec3 {
         match &self.sky {
-            Sky::Atmosphere(sky) if sky.view().is_ground(dir) => {
+            Sky::Atmosphere(sky) if sky.is_ground(dir) => {
                 let (scale, added) = self.ground_of(sky);
                 colour::clip_negative(sky.radiance(dir)) * scale + added
             }
@@ -187,15 +206,11 @@ impl Daylight {
         }
     }
 
-    /// How the ground that an atmosphere shows becomes [`Self::ground_luminance`] at the observer: a factor, and what night and
-    /// moon add, linear BT.709 RGB, cd/m².
+    /// How the ground that an atmosphere shows becomes [`Self::ground_luminance`] at the observer: a factor, and what the night adds,
+    /// linear BT.709 RGB, cd/m².
     pub fn ground_of(&self, sky: &ScatteredSky) -> (f64, DVec3) {
-        let direct = self.direct_light();
-        let is_moon = self.sun_illuminance == DVec3::ZERO;
-        let moon = direct.illuminance * direct.direction.y.max(0.0) * f64::from(u8::from(is_moon));
-        let albedo = sky.atmosphere.medium.ground_albedo;
-        let added = (self.guard.night + moon / PI) * albedo;
-        let own = colour::luminance(colour::clip_negative(sky.atmosphere.ground_rgb(sky.sun.y)));
+        let added = self.guard.night * sky.atmosphere.medium.ground_albedo;
+        let own = colour::luminance(colour::clip_negative(sky.ground_rgb()));
         let here = colour::luminance(self.ground_luminance - added).max(0.0);
         (if own > 1e-9 { here / own } else { 1.0 }, added)
     }
@@ -207,6 +222,20 @@ impl Daylight {
         } else {
             guarded(&self.sky, &self.guard, dir)
         }
+    }
+}
+
+/// The directional light under a sun and a moon.
+fn direct(sun: DVec3, sun_illuminance: DVec3, moon: Option<Moonlight>) -> DirectLight {
+    match moon {
+        Some(moon) if sun_illuminance == DVec3::ZERO => DirectLight {
+            direction: moon.direction,
+            illuminance: moon.illuminance,
+        },
+        _ => DirectLight {
+            direction: sun,
+            illuminance: sun_illuminance,
+        },
     }
 }
 
@@ -246,8 +275,8 @@ fn atmosphere_of(valid: &Conditions) -> Atmosphere {
     Atmosphere::of(&valid.air_over_ground())
 }
 
-/// The moon through a sky without clouds of its own; `share` is what clouds leave.
-fn moonlight(valid: &Conditions, share: f64) -> Option<Moonlight> {
+/// The moon through a sky without clouds of its own.
+fn moonlight(valid: &Conditions) -> Option<Moonlight> {
     let moon = valid.moon.filter(|_| valid.model.is_clear())?;
     let light = if valid.model == SkyModel::Atmosphere {
         let sine = moon.apparent_elevation_deg.to_radians().sin();
@@ -256,7 +285,6 @@ fn moonlight(valid: &Conditions, share: f64) -> Option<Moonlight> {
     } else {
         moon.light(valid.turbidity)
     };
-    let light = light.scaled(share);
     (light.illuminance != DVec3::ZERO).then_some(light)
 }
 
@@ -283,6 +311,10 @@ fn sky_and_sun_factor(valid: &Conditions, sun_direction: DVec3) -> (Sky, f64) {
             let true_deg = elevation - valid.refraction_deg;
             let sun = direction(valid.sun_azimuth_deg, true_deg.max(-90.0));
             let sky = ScatteredSky::new(atmosphere_of(valid), sun);
+            let sky = match valid.moon {
+                Some(moon) => sky.with_moon(moon.true_direction(), moon.outside_lux()),
+                None => sky,
+            };
             (Sky::Atmosphere(sky), 1.0)
         }
         _ => {
@@ -339,13 +371,14 @@ fn guard_of(valid: &Conditions, own_lux: f64, sun_direction: DVec3) -> Guard {
     }
 }
 
-/// The guard with clouds before the sky, and the share of the sun's light that they leave.
-fn under_clouds(valid: &Conditions, guard: Guard, own_lux: f64, sun_lux: f64) -> (Guard, f64) {
+/// The guard with clouds before the sky, and the share of the directional light that they leave. `direct_lux` is the horizontal illuminance by that
+/// light, the sun's or the moon's.
+fn under_clouds(valid: &Conditions, guard: Guard, own_lux: f64, direct_lux: f64) -> (Guard, f64) {
     if valid.cloud_cover == 0.0 || !valid.model.is_clear() {
         return (guard, 1.0);
     }
     let sky_lux = own_lux * guard.scale;
-    let light = clouded(valid.cloud_cover, sky_lux, sun_lux);
+    let light = clouded(valid.cloud_cover, sky_lux, direct_lux);
     let total = light.clear_sky * sky_lux + light.clouds_lux;
     // A given illuminance is that of the whole sky, clouds included.
     let level = match valid.horizontal_illuminance {
@@ -377,3 +410,7 @@ pub fn twilight_illuminance(elevation_deg: f64, sunset_lux: f64) -> f64 {
 #[cfg(test)]
 #[path = "sky_tests.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "moonlit_sky_tests.rs"]
+mod moonlit_tests;

@@ -12,7 +12,7 @@ const MODELS: [SkyModel; 5] = [
     SkyModel::Cie8,
 ];
 
-fn conditions(model: SkyModel, elevation: f64) -> Conditions {
+pub(super) fn conditions(model: SkyModel, elevation: f64) -> Conditions {
     Conditions {
         model,
         sun_elevation_deg: elevation,
@@ -101,6 +101,7 @@ fn absurd_inputs_are_replaced_and_named() {
                 horizontal_illuminance: Some(bad),
                 cloud_cover: bad,
                 moon: None,
+                stars: None,
                 measured: Measured {
                     direct_normal_w: bad,
                     diffuse_horizontal_w: bad,

@@ -81,7 +81,10 @@ impl Default for FrameSettings {
             tone: ToneSettings {
                 show,
                 curve: ToneCurve::default(),
-                scale: Scale::Average(KEY),
+                scale: Scale::Average {
+                    key: KEY,
+                    least: 0.0,
+                },
                 white: REINHARD_WHITE,
                 gamma: None,
                 depth_scale: 1.0,

@@ -240,6 +240,27 @@ fn a_png_is_8_bit_rgb_with_its_parameters() {
 }
 
 #[test]
+fn a_night_stays_dark_from_the_exposure_on_that_is_asked_for() {
+    let place = Place(tempfile::tempdir().expect("a scratch folder"));
+    let night = ["-o", "a.png", "--sky", "atmosphere", "--sun", "0,-30"];
+    for (more, is_dark) in [
+        (&["--min-ev100", "-2"][..], true),
+        (&["--min-ev100", "-2", "--tile", "64"], true),
+        (&["--min-ev100", "-20"], false),
+        (&[], false),
+    ] {
+        let said = place.render(&[&night[..], more].concat()).silently().stdout;
+        // The stars alone ask for less than -10.
+        let expected = if is_dark {
+            ", EV100 -2.00"
+        } else {
+            ", EV100 -1"
+        };
+        assert!(said.contains(expected), "{more:?}: {said}");
+    }
+}
+
+#[test]
 fn nothing_given_writes_skylight_png() {
     let place = Place(tempfile::tempdir().expect("a scratch folder"));
     place.render(&[]).silently();

@@ -4,7 +4,9 @@ use crate::common::at_share;
 use crate::gpu::Device;
 use skylight::daylight::atmosphere::air::{Aerosol, Air};
 use skylight::daylight::colour::luminance;
+use skylight::daylight::moon::{MEAN_DISTANCE_KM, Moon};
 use skylight::daylight::sky::{Conditions, Daylight, Sky, SkyModel};
+use skylight::daylight::sun_position::direction;
 use skylight::passes::sky::cube::SkyCube;
 
 fn conditions(sun_elevation_deg: f64, air: Air) -> Conditions {
@@ -13,6 +15,18 @@ fn conditions(sun_elevation_deg: f64, air: Air) -> Conditions {
         sun_elevation_deg,
         air,
         ..Conditions::default()
+    }
+}
+
+/// A full moon in the west of the south.
+fn full_moon(elevation_deg: f64) -> Moon {
+    Moon {
+        azimuth_deg: 250.0,
+        elevation_deg,
+        apparent_elevation_deg: elevation_deg,
+        distance_km: MEAN_DISTANCE_KM,
+        phase_angle_deg: 0.0,
+        sunward: -direction(250.0, elevation_deg),
     }
 }
 
@@ -40,6 +54,14 @@ fn cases() -> Vec<Conditions> {
     for elevation in [30.0, 1.0, -5.0] {
         cases.push(conditions(elevation, high));
         cases.push(conditions(elevation, hazy));
+    }
+    for (sun, moon) in [(-2.0, 3.0), (-12.0, 45.0), (-17.0, -4.0), (-40.0, 45.0)] {
+        for air in [clear, high] {
+            cases.push(Conditions {
+                moon: Some(full_moon(moon)),
+                ..conditions(sun, air)
+            });
+        }
     }
     cases
 }
@@ -70,18 +92,26 @@ fn view_and_cube_are_the_cpus() {
             panic!("not an atmosphere");
         };
         let what = format!(
-            "sun {}, AOD {}, {} m",
-            given.sun_elevation_deg, given.air.aod, given.air.altitude_m
+            "sun {}, moon {:?}, AOD {}, {} m",
+            given.sun_elevation_deg,
+            given.moon.map(|moon| moon.elevation_deg),
+            given.air.aod,
+            given.air.altitude_m
         );
-        let drawn = device.read(cube.sky_view());
-        let twin = &sky.view().entries;
-        assert_eq!(drawn.len(), twin.len());
-        // What is far darker than the night sky is no light.
-        let errors = drawn.iter().zip(twin).map(|(found, expected)| {
-            let found = glam::Vec3::from_slice(found).as_dvec3() * 1e3;
-            (found - expected).abs().max_element() / luminance(*expected).max(1e-6)
-        });
-        judge(&format!("view, {what}"), errors.collect());
+        assert_eq!(sky.moon.is_some(), given.moon.is_some());
+        let lights = [Some(&sky.sun), sky.moon.as_ref()];
+        for (image, light) in cube.sky_views().iter().zip(lights) {
+            let Some(light) = light else { continue };
+            let drawn = device.read(image);
+            let twin = &light.view(&sky.atmosphere).entries;
+            assert_eq!(drawn.len(), twin.len());
+            // What is far darker than the night sky is no light.
+            let errors = drawn.iter().zip(twin).map(|(found, expected)| {
+                let found = glam::Vec3::from_slice(found).as_dvec3() * 1e3;
+                (found - expected).abs().max_element() / luminance(*expected).max(1e-6)
+            });
+            judge(&format!("view, {what}"), errors.collect());
+        }
 
         let drawn = device.read_cube(cube.image());
         let errors = drawn.iter().map(|(direction, found, _)| {

@@ -23,6 +23,7 @@ fn draw_from_itself(recorder: &mut Recorder, no_feedback: bool) {
             stages: &[&shaders::FULLSCREEN_VERT, &shaders::ACCUMULATE_FRAG],
             vertex: &[],
             colors: &[format],
+            adds: false,
             depth: Depth::Off,
             constants: &[],
         },

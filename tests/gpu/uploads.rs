@@ -31,6 +31,7 @@ fn draw_uploaded_quad(device: &mut Device, size: u32, opaque: u32) -> Vec<f32> {
         stages: &[&shaders::SHADOW_CUT_OUT_VERT, &shaders::SHADOW_CUT_OUT_FRAG],
         vertex: &formats,
         colors: &[],
+        adds: false,
         depth: Depth::Write {
             format: depth_format,
             slope_bias: 0.0,
@@ -125,6 +126,7 @@ fn draw_in_turn(device: &mut Device, draws: usize) -> [f32; 4] {
         stages: &[&shaders::FULLSCREEN_VERT, &shaders::ACCUMULATE_FRAG],
         vertex: &[],
         colors: &[format],
+        adds: false,
         depth: Depth::Off,
         constants: &[],
     };

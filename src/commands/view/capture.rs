@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::daylight::exposure::automatic;
 use crate::error::Result;
 use crate::gpu::read_back;
 use crate::output::{Channels, Effort, Encoding, Layer, Metadata, write_exr, write_png};
@@ -44,7 +43,7 @@ fn metadata(stage: &mut Stage, document: &Document) -> Result<Metadata> {
     metadata.push(("samples drawn".into(), averaged.max(1).to_string()));
     if document.job.settings.ev100.is_none() {
         let average = read_back(stage.idle()?, document.frame().average_luminance())?.floats()[0];
-        let ev100 = automatic(f64::from(average) * 1e3);
+        let ev100 = document.job.automatic_ev100(f64::from(average) * 1e3);
         metadata.push(("ev100 used".into(), format!("{ev100:.3}")));
     }
     Ok(metadata)

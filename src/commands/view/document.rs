@@ -208,7 +208,7 @@ impl Document {
         if is_preview {
             self.adaptation.restart();
         }
-        if !matches!(self.frame.settings().tone.scale, Scale::Average(_)) {
+        if !matches!(self.frame.settings().tone.scale, Scale::Average { .. }) {
             self.adaptation.cut();
         }
         let is_last = !is_preview && self.averaged + 1 >= self.job.settings.samples;

@@ -187,10 +187,10 @@ impl Stage {
 /// A dark image of one texel.
 fn blank(recorder: &mut Recorder) -> Result<Image> {
     let context = recorder.context().clone();
-    let format = Format::R8G8B8A8_SRGB;
+    let format = Format::R8G8B8A8_UNORM;
     let image = Image::new(&context, &ImageDesc::flat("no picture", format, [1, 1]))?;
     recorder.begin()?;
-    recorder.clear(&image, [0.02, 0.02, 0.025, 1.0]);
+    recorder.clear(&image, [0.15, 0.15, 0.17, 1.0]);
     recorder.finish()?;
     Ok(image)
 }

@@ -6,7 +6,8 @@
 //! 4. [`Atmosphere`]: radiance by one more march along [`path`], where the first order is exact.
 //!
 //!    [`Atmosphere::of`] keeps the tables of the last airs.
-//! 5. [`sky_view`]: table D, the whole view under one sun; [`scattered_sky`]: the sky that is read from it.
+//! 5. [`sky_view`]: table D, the whole view under one sun; [`scattered_sky`]: the sky that is read from it. The moon has such
+//!    a view of its own.
 
 pub mod air;
 pub mod colour;
@@ -190,6 +191,13 @@ impl Atmosphere {
         each(depth, |d| (-d).exp()) * share
     }
 
+    /// Transmittance from the direction of sine `sine`, or from the horizon above it, to the observer.
+    pub fn to_space(&self, sine: f64) -> DVec4 {
+        let r = self.observer();
+        let columns = self.columns.to_top(r, sine.max(horizon_cosine(r)));
+        each(self.medium.optical_depth(columns), |d| (-d).exp())
+    }
+
     /// The air between the observer and a point `distance_km` away in the unit direction `dir`, under the (true) sun in the unit direction `sun`. The path ends
     /// at the ground or at the top of the air if these are nearer.
     pub fn aerial(&self, sun: DVec3, dir: DVec3, distance_km: f64) -> Aerial {
@@ -219,8 +227,12 @@ impl Atmosphere {
     /// Transmittance of sunlight from the direction of sine `sine` (or from the horizon above it): linear BT.709 RGB over the luminance
     /// outside the air, not clipped.
     pub fn transmittance_to_space(&self, sine: f64) -> DVec3 {
-        let outside = colour::xyz_of_all(std::iter::repeat_n(DVec4::ONE, 10)).y;
-        self.sunlight_along(sine) / outside
+        self.sunlight_along(sine) / Self::sun_outside_lux()
+    }
+
+    /// Illuminance of the sun at normal incidence outside the air, lux.
+    pub fn sun_outside_lux() -> f64 {
+        colour::xyz_of_all(std::iter::repeat_n(DVec4::ONE, 10)).y
     }
 
     /// Illuminance at normal incidence of sunlight from the direction of sine `sine`, or from the horizon above it.

@@ -254,6 +254,21 @@ impl Context {
         }
     }
 
+    /// Whether a pipeline may [add](crate::gpu::PipelineDesc::adds) to images of `format`.
+    pub fn can_blend(&self, format: vk::Format) -> bool {
+        self.can(format, vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND)
+    }
+
+    fn can(&self, format: vk::Format, needed: vk::FormatFeatureFlags) -> bool {
+        // SAFETY: the physical device belongs to the instance.
+        let properties = unsafe {
+            self.instance
+                .raw
+                .get_physical_device_format_properties(self.physical, format)
+        };
+        properties.optimal_tiling_features.contains(needed)
+    }
+
     /// The first of `formats` that can be sampled and rendered to. Blending and filtering are not required.
     ///
     /// # Errors
@@ -261,15 +276,7 @@ impl Context {
     pub fn supported_format(&self, formats: &[vk::Format]) -> Result<vk::Format> {
         let needed =
             vk::FormatFeatureFlags::COLOR_ATTACHMENT | vk::FormatFeatureFlags::SAMPLED_IMAGE;
-        let able = |format: &&vk::Format| {
-            // SAFETY: the physical device belongs to the instance.
-            let p = unsafe {
-                self.instance
-                    .raw
-                    .get_physical_device_format_properties(self.physical, **format)
-            };
-            p.optimal_tiling_features.contains(needed)
-        };
+        let able = |format: &&vk::Format| self.can(**format, needed);
         formats
             .iter()
             .find(able)

@@ -62,6 +62,8 @@ pub struct PipelineDesc<'a> {
     pub vertex: &'a [vk::Format],
     /// Formats of the colour attachments.
     pub colors: &'a [vk::Format],
+    /// Whether the outputs are added to what the colour attachments hold; see [`Context::can_blend`].
+    pub adds: bool,
     /// Depth test.
     pub depth: Depth,
     /// Values of specialization constants by name, as raw 32-bit words.

@@ -43,9 +43,7 @@ pub(super) fn graphics(
         .rasterization_samples(vk::SampleCountFlags::TYPE_1);
     let rasterization = rasterization(desc.depth);
     let depth = depth_state(desc.depth);
-    let opaque = vk::PipelineColorBlendAttachmentState::default()
-        .color_write_mask(vk::ColorComponentFlags::RGBA);
-    let blends = vec![opaque; desc.colors.len()];
+    let blends = vec![blend_state(desc.adds); desc.colors.len()];
     let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
     let dynamic =
         vk::PipelineDynamicStateCreateInfo::default().dynamic_states(dynamic_states(desc.depth));
@@ -68,6 +66,16 @@ pub(super) fn graphics(
     // SAFETY: everything that `info` points to lives on this stack.
     let created = unsafe { raw.create_graphics_pipelines(cache, &info, None) };
     created.map(|p| p[0]).map_err(|(_, result)| result)
+}
+
+fn blend_state(adds: bool) -> vk::PipelineColorBlendAttachmentState {
+    vk::PipelineColorBlendAttachmentState::default()
+        .color_write_mask(vk::ColorComponentFlags::RGBA)
+        .blend_enable(adds)
+        .src_color_blend_factor(vk::BlendFactor::ONE)
+        .dst_color_blend_factor(vk::BlendFactor::ONE)
+        .src_alpha_blend_factor(vk::BlendFactor::ONE)
+        .dst_alpha_blend_factor(vk::BlendFactor::ONE)
 }
 
 fn dynamic_states(depth: Depth) -> &'static [vk::DynamicState] {

@@ -168,10 +168,15 @@ impl<'r> Draws<'_, 'r> {
 
     /// Draws three vertices without vertex buffers.
     pub fn triangle(&mut self) {
+        self.vertices(3);
+    }
+
+    /// Draws `count` vertices, three a triangle, without vertex buffers.
+    pub fn vertices(&mut self, count: u32) {
         self.pass.flush();
         self.pass.drawn += 1;
         let (raw, command) = (self.pass.recorder.context.raw(), self.pass.recorder.command);
         // SAFETY: the pipeline has no vertex streams, so every vertex index is valid.
-        unsafe { raw.cmd_draw(command, 3, 1, 0, 0) };
+        unsafe { raw.cmd_draw(command, count, 1, 0, 0) };
     }
 }

@@ -1,4 +1,4 @@
-//! The background: the sky cube along each pixel's ray, and the discs of sun and moon, in pixels without a surface.
+//! The background: the sky cube along each pixel's ray, the discs of sun and moon, and the stars, in pixels without a surface.
 
 use std::sync::Arc;
 
@@ -11,6 +11,7 @@ use crate::gpu::{
 use crate::gpu_struct;
 
 use crate::passes::light::lighting::{Light, LightingSettings, Show};
+use crate::passes::light::stars::Stars;
 use crate::passes::view::View;
 use crate::passes::{fullscreen_at, kilo};
 
@@ -36,6 +37,8 @@ pub struct Background {
     /// For views without a disc.
     without_disc: Pipeline,
     with_disc: Pipeline,
+    /// Where the sky is shown.
+    stars: Option<Stars>,
 }
 
 /// Whether the sky is drawn; otherwise the constant value of pixels without a surface.
@@ -71,12 +74,17 @@ impl Background {
             settings,
             without_disc: pipeline(false)?,
             with_disc: pipeline(true)?,
+            stars: if sky {
+                Stars::new(context, settings.precision.format())?
+            } else {
+                None
+            },
         })
     }
 
     /// Fills the pixels without a surface.
     pub fn record(
-        &self,
+        &mut self,
         recorder: &mut Recorder,
         depth: &Image,
         light: &Light<'_>,
@@ -111,6 +119,9 @@ impl Background {
             .color(radiance, Load::Keep)
             .depth_test(depth)
             .draw();
+        if let Some(stars) = &mut self.stars {
+            stars.record(recorder, depth, light.daylight, view, radiance);
+        }
     }
 }
 

@@ -3,3 +3,4 @@
 pub mod background;
 pub mod lighting;
 pub mod probe;
+pub mod stars;

@@ -20,8 +20,7 @@ gpu_struct! {
 
 /// The presentation pass.
 pub struct Present {
-    /// For a linear and for an already encoded picture.
-    pipelines: [Pipeline; 2],
+    pipeline: Pipeline,
 }
 
 impl Present {
@@ -30,19 +29,8 @@ impl Present {
     /// # Errors
     /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, format: Format) -> Result<Self> {
-        let pipeline = |encoded: u32| {
-            let constants = [("ENCODED", encoded)];
-            fullscreen(
-                context,
-                "present",
-                &shaders::PRESENT_FRAG,
-                format,
-                &constants,
-            )
-        };
-        Ok(Self {
-            pipelines: [pipeline(0)?, pipeline(1)?],
-        })
+        let pipeline = fullscreen(context, "present", &shaders::PRESENT_FRAG, format, &[])?;
+        Ok(Self { pipeline })
     }
 
     /// Draws the display values, with the user interface on top.
@@ -57,11 +45,10 @@ impl Present {
         ui: &UiFrame,
         window: &Image,
     ) -> Result<()> {
-        let encoded = display.format() == Format::R8G8B8A8_UNORM;
         let [width, height] = window.size();
         let mut drawn = Ok(());
         recorder
-            .pass("present", &self.pipelines[usize::from(encoded)])
+            .pass("present", &self.pipeline)
             .sample("display", display, Sampler::Nearest)
             .push(&Push {
                 size: Vec2::new(width as f32, height as f32),

@@ -1,9 +1,11 @@
 //! Tone mapping from radiance to display values: exposure, tone curve, encoding.
 //!
-//! Without a gamma the render target has an sRGB format and the device encodes. With one (the lecture's (s R)^(1/γ)) the shader
-//! applies the power law and the target is UNORM.
+//! The shader encodes, by the sRGB curve or by a power law (the lecture's (s R)^(1/γ)): a device that encodes for a format may be off by 0.6 steps of 8 bits,
+//! more than the dither leaves. Light is dithered by a step of 8 bits after the tone curve; false colours and other quantities are not.
 
 use std::sync::Arc;
+
+use glam::UVec2;
 
 use crate::daylight::false_colour::Range;
 use crate::daylight::tone_curve::ToneCurve;
@@ -22,6 +24,8 @@ gpu_struct! {
         offset: f32,
         white: f32,
         inverse_gamma: f32,
+        least: f32,
+        origin: UVec2,
     }
 }
 
@@ -30,8 +34,13 @@ gpu_struct! {
 pub enum Scale {
     /// Factor from cd/m² to display values.
     Fixed(f64),
-    /// Automatic: the display value of the picture's average luminance, see [`crate::daylight::exposure`].
-    Average(f64),
+    /// Automatic, from the picture's average luminance, see [`crate::daylight::exposure`].
+    Average {
+        /// Display value of the average.
+        key: f64,
+        /// The lowest average that is exposed for, cd/m²; darker pictures stay dark.
+        least: f64,
+    },
 }
 
 /// Settings of the tone map.
@@ -80,13 +89,9 @@ impl ToneMap {
         let false_colour = settings.false_colour.is_some();
         let light = is_light(settings.show) && !false_colour;
         let curve = |c: ToneCurve| u32::from(light && settings.curve == c);
-        let average = light && matches!(settings.scale, Scale::Average(_));
+        let average = light && matches!(settings.scale, Scale::Average { .. });
         let gamma = settings.gamma.is_some() && !false_colour;
-        let format = if gamma {
-            Format::R8G8B8A8_UNORM
-        } else {
-            Format::R8G8B8A8_SRGB
-        };
+        let format = Format::R8G8B8A8_UNORM;
         let pipeline = fullscreen(
             context,
             "tone map",
@@ -103,9 +108,11 @@ impl ToneMap {
                 ("NEUTRAL", curve(ToneCurve::Neutral)),
                 ("ACES", curve(ToneCurve::Aces)),
                 ("GAMMA", gamma.into()),
+                ("SRGB", (!gamma).into()),
                 ("AUTO", average.into()),
                 ("GREY", (settings.show == Show::Luminance).into()),
                 ("FALSE_COLOUR", false_colour.into()),
+                ("DITHER", light.into()),
             ],
         )?;
         let display = Image::new(context, &ImageDesc::flat("display", format, size))?;
@@ -116,24 +123,26 @@ impl ToneMap {
         })
     }
 
-    /// Tone maps a picture. `average_luminance` (one texel, kcd/m²) is read only for automatic exposure.
+    /// Tone maps a picture, or a tile whose upper left corner in the picture is `origin`, pixels. `average_luminance` (one texel, kcd/m²) is read
+    /// only for automatic exposure.
     pub fn record(
         &self,
         recorder: &mut Recorder,
         radiance: &Image,
         average_luminance: &Image,
+        origin: UVec2,
     ) -> &Image {
         recorder
             .pass("tone map", &self.pipeline)
             .sample("radiance", radiance, Sampler::Nearest)
             .sample("average_luminance", average_luminance, Sampler::Nearest)
-            .push(&self.push())
+            .push(&self.push(origin))
             .color(&self.display, Load::Discard)
             .draw();
         &self.display
     }
 
-    fn push(&self) -> Push {
+    fn push(&self, origin: UVec2) -> Push {
         let s = &self.settings;
         let (exposure, offset) = s.false_colour.map_or_else(|| self.exposure(), kilo_range);
         Push {
@@ -141,6 +150,11 @@ impl ToneMap {
             offset: offset as f32,
             white: s.white as f32,
             inverse_gamma: s.gamma.map_or(1.0, f64::recip) as f32,
+            least: match s.scale {
+                Scale::Average { least, .. } => (least * 1e-3) as f32,
+                Scale::Fixed(_) => 0.0,
+            },
+            origin,
         }
     }
 
@@ -160,7 +174,7 @@ impl ToneMap {
                 };
                 match s.scale {
                     Scale::Fixed(per_candela) => (paper * per_candela * 1e3, 0.0),
-                    Scale::Average(key) => (key, 0.0),
+                    Scale::Average { key, .. } => (key, 0.0),
                 }
             }
         }

@@ -1,9 +1,9 @@
-//! The table of an atmosphere's view on the device: made again when sun, air or altitude change; the tables of the air are copied
-//! there when the air changes.
+//! The tables of an atmosphere's view on the device, one under the sun and one under the moon: each is made again when its light, air or altitude
+//! change; the tables of the air are copied there when the air changes.
 
 use std::sync::Arc;
 
-use glam::{IVec2, Vec2, Vec3};
+use glam::{DVec3, IVec2, Vec2, Vec3};
 
 use crate::daylight::atmosphere::Atmosphere;
 use crate::daylight::atmosphere::air::Air;
@@ -65,11 +65,21 @@ pub struct AtmosphereView {
     pipeline: Pipeline,
     /// Optical depths, field, irradiance of the ground.
     tables: Buffer,
-    view: Image,
+    /// Under the sun and under the moon.
+    views: [Image; 2],
     /// The air whose tables are on the device, at sea level.
     air: Option<Air>,
-    /// The sky whose view was made last.
-    drawn: Option<ScatteredSky>,
+    /// Air and light of each view.
+    drawn: [Option<(Air, DVec3)>; 2],
+}
+
+/// The tables of a sky's view, kcd/m², not clipped.
+#[derive(Clone, Copy)]
+pub struct SkyViews<'v> {
+    /// Under the sun.
+    pub sun: &'v Image,
+    /// Under a sun in the place of the moon; the same as [`Self::sun`] if the sky has no moon.
+    pub moon: &'v Image,
 }
 
 impl AtmosphereView {
@@ -84,53 +94,70 @@ impl AtmosphereView {
             + grid.suns;
         let bytes = (entries * size_of::<[f32; 4]>()) as u64;
         let size = [WIDTH as u32, 2 * HALF_HEIGHT as u32];
-        let view = ImageDesc::flat("sky view", Format::R32G32B32A32_SFLOAT, size).stored();
+        let view = |name| {
+            let desc = ImageDesc::flat(name, Format::R32G32B32A32_SFLOAT, size).stored();
+            Image::new(context, &desc)
+        };
         Ok(Self {
             pipeline: compute(context, "sky view", &shaders::SKY_VIEW_COMP, &[])?,
             tables: Buffer::new(context, "air", BufferKind::Storage, bytes)?,
-            view: Image::new(context, &view)?,
+            views: [view("sky view")?, view("sky view, moon")?],
             air: None,
-            drawn: None,
+            drawn: [None; 2],
         })
     }
 
-    /// The view of `sky`, kcd/m², not clipped; made if it is not the one of the last call.
-    pub fn record(&mut self, recorder: &mut Recorder, sky: &ScatteredSky) -> &Image {
-        if self.drawn.as_ref() != Some(sky) {
-            let atmosphere = &sky.atmosphere;
-            let air = Air {
-                altitude_m: 0.0,
-                ..atmosphere.air
-            };
-            if self.air != Some(air) {
-                recorder.write(&self.tables, bytemuck::cast_slice(&tables(atmosphere)));
-                self.air = Some(air);
-            }
-            let push = ViewPush {
-                sun_sine: sky.sun.y as f32,
-                altitude: (atmosphere.observer() - GROUND_RADIUS) as f32,
-                horizon: columns::horizon_cosine(atmosphere.observer()).asin() as f32,
-            };
-            recorder
-                .pass("sky view", &self.pipeline)
-                .uniform("model", &model(atmosphere))
-                .storage("air", &self.tables)
-                .push(&push)
-                .store("sky_view", &self.view)
-                .dispatch();
-            self.drawn = Some(sky.clone());
+    /// The views of `sky`; made where they are not those of the last call.
+    pub fn record(&mut self, recorder: &mut Recorder, sky: &ScatteredSky) -> SkyViews<'_> {
+        let atmosphere = &sky.atmosphere;
+        let air = Air {
+            altitude_m: 0.0,
+            ..atmosphere.air
+        };
+        if self.air != Some(air) {
+            recorder.write(&self.tables, bytemuck::cast_slice(&tables(atmosphere)));
+            self.air = Some(air);
         }
-        &self.view
+        for (i, light) in [Some(&sky.sun), sky.moon.as_ref()].into_iter().enumerate() {
+            let Some(toward) = light.map(|light| light.direction) else {
+                continue;
+            };
+            let wanted = Some((atmosphere.air, toward));
+            if self.drawn[i] != wanted {
+                self.draw(recorder, atmosphere, toward, &self.views[i]);
+                self.drawn[i] = wanted;
+            }
+        }
+        let [sun, moon] = &self.views;
+        SkyViews {
+            sun,
+            moon: if sky.moon.is_some() { moon } else { sun },
+        }
     }
 
-    /// Makes the next view new.
+    fn draw(&self, recorder: &mut Recorder, atmosphere: &Atmosphere, toward: DVec3, view: &Image) {
+        let push = ViewPush {
+            sun_sine: toward.y as f32,
+            altitude: (atmosphere.observer() - GROUND_RADIUS) as f32,
+            horizon: columns::horizon_cosine(atmosphere.observer()).asin() as f32,
+        };
+        recorder
+            .pass("sky view", &self.pipeline)
+            .uniform("model", &model(atmosphere))
+            .storage("air", &self.tables)
+            .push(&push)
+            .store("sky_view", view)
+            .dispatch();
+    }
+
+    /// Makes the next views new.
     pub fn invalidate(&mut self) {
-        self.drawn = None;
+        self.drawn = [None; 2];
     }
 
-    /// The table of the view, kcd/m².
-    pub fn image(&self) -> &Image {
-        &self.view
+    /// The tables of the view under the sun and under the moon, kcd/m².
+    pub fn images(&self) -> &[Image; 2] {
+        &self.views
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use crate::daylight::atmosphere::columns::horizon_cosine;
 use crate::daylight::atmosphere::scattered_sky::ScatteredSky;
@@ -15,7 +15,7 @@ use crate::gpu::{Context, Format, Image, ImageDesc, Recorder, Result, Sampler, s
 use crate::gpu_struct;
 
 use crate::passes::kilo;
-use crate::passes::sky::atmosphere::AtmosphereView;
+use crate::passes::sky::atmosphere::{AtmosphereView, SkyViews};
 use crate::passes::sky::route::{CubePipeline, CubeRoute, CubeShaders};
 
 gpu_struct! {
@@ -61,9 +61,11 @@ gpu_struct! {
 }
 
 gpu_struct! {
-    /// Where the table of an atmosphere's view lies, and the light of its ground.
+    /// Where the tables of an atmosphere's view lie, and the light of its ground.
     pub struct ViewModel: model of SKY_ATMOSPHERE_FRAG, SKY_ATMOSPHERE_COMP {
         toward_sun: Vec2,
+        toward_moon: Vec2,
+        moon_share: f32,
         horizon: f32,
         ground_scale: f32,
     }
@@ -94,6 +96,7 @@ struct Painter {
     hosek: CubePipeline,
     grey: CubePipeline,
     atmosphere: CubePipeline,
+    moonlit: CubePipeline,
 }
 
 const PREETHAM: CubeShaders = CubeShaders {
@@ -117,22 +120,24 @@ const ATMOSPHERE: CubeShaders = CubeShaders {
 impl Painter {
     fn new(context: &Arc<Context>, format: Format) -> Result<Self> {
         let route = CubeRoute::of(context);
-        let pipeline =
-            |name, shaders| CubePipeline::new(context, route, name, shaders, &[format], &[]);
+        let pipeline = |name, shaders, constants: &[(&str, u32)]| {
+            CubePipeline::new(context, route, name, shaders, &[format], constants)
+        };
         Ok(Self {
-            preetham: pipeline("sky: Preetham", PREETHAM)?,
-            hosek: pipeline("sky: Hosek", HOSEK)?,
-            grey: pipeline("sky: grey", GREY)?,
-            atmosphere: pipeline("sky: atmosphere", ATMOSPHERE)?,
+            preetham: pipeline("sky: Preetham", PREETHAM, &[])?,
+            hosek: pipeline("sky: Hosek", HOSEK, &[])?,
+            grey: pipeline("sky: grey", GREY, &[])?,
+            atmosphere: pipeline("sky: atmosphere", ATMOSPHERE, &[("MOON", 0)])?,
+            moonlit: pipeline("sky: atmosphere, moon", ATMOSPHERE, &[("MOON", 1)])?,
         })
     }
 
-    /// `view` is the table of the view, if the sky is an atmosphere.
+    /// `views` are the tables of the view, if the sky is an atmosphere.
     fn paint(
         &self,
         recorder: &mut Recorder,
         daylight: &Daylight,
-        view: Option<&Image>,
+        views: Option<SkyViews<'_>>,
         target: &Image,
     ) {
         let mut push = Push {
@@ -146,6 +151,7 @@ impl Painter {
             Sky::Preetham(_) => &self.preetham,
             Sky::Hosek(_) => &self.hosek,
             Sky::Grey(_) => &self.grey,
+            Sky::Atmosphere(sky) if sky.moon.is_some() => &self.moonlit,
             Sky::Atmosphere(_) => &self.atmosphere,
         };
         let pass = pipeline.pass(recorder, "sky cube");
@@ -157,8 +163,10 @@ impl Painter {
                 let (ground_scale, added) = daylight.ground_of(sky);
                 push.ground = kilo(added);
                 let pass = pass.uniform("model", &view_model(sky, ground_scale));
-                match view {
-                    Some(view) => pass.sample("sky_view", view, Sampler::Nearest),
+                match views {
+                    Some(SkyViews { sun, moon }) => pass
+                        .sample("sky_view", sun, Sampler::Nearest)
+                        .sample("moon_view", moon, Sampler::Nearest),
                     None => pass,
                 }
             }
@@ -200,14 +208,15 @@ impl SkyCube {
     pub fn record(&mut self, recorder: &mut Recorder, daylight: &Daylight) -> SkyImages<'_> {
         let is_new = self.drawn.as_ref() != Some(daylight);
         if is_new {
-            let view = match &daylight.sky {
+            let views = match &daylight.sky {
                 Sky::Atmosphere(sky) => Some(self.atmosphere.record(recorder, sky)),
                 _ => None,
             };
-            self.painter.paint(recorder, daylight, view, &self.radiance);
-            self.painter.paint(recorder, daylight, view, &self.smooth);
+            self.painter
+                .paint(recorder, daylight, views, &self.radiance);
+            self.painter.paint(recorder, daylight, views, &self.smooth);
             recorder.mipmap("sky mips", &self.smooth);
-            self.painter.paint(recorder, daylight, view, &self.coarse);
+            self.painter.paint(recorder, daylight, views, &self.coarse);
             self.drawn = Some(daylight.clone());
         }
         SkyImages {
@@ -224,9 +233,9 @@ impl SkyCube {
         self.drawn = None;
     }
 
-    /// The table of an atmosphere's view, kcd/m².
-    pub fn sky_view(&self) -> &Image {
-        self.atmosphere.image()
+    /// The tables of an atmosphere's view under the sun and under the moon, kcd/m².
+    pub fn sky_views(&self) -> &[Image; 2] {
+        self.atmosphere.images()
     }
 
     /// The cube, kcd/m².
@@ -236,8 +245,11 @@ impl SkyCube {
 }
 
 fn view_model(sky: &ScatteredSky, ground_scale: f64) -> ViewModel {
+    let moon = sky.moon.as_ref();
     ViewModel {
-        toward_sun: toward(sky.sun).as_vec2(),
+        toward_sun: toward(sky.sun.direction).as_vec2(),
+        toward_moon: toward(moon.map_or(DVec3::Y, |moon| moon.direction)).as_vec2(),
+        moon_share: moon.map_or(0.0, |moon| moon.share) as f32,
         horizon: horizon_cosine(sky.atmosphere.observer()).asin() as f32,
         ground_scale: ground_scale as f32,
     }

@@ -67,6 +67,7 @@ impl CubePipeline {
             stages,
             vertex: &[],
             colors,
+            adds: false,
             depth: Depth::Off,
             constants,
         };

@@ -160,6 +160,7 @@ fn pipeline(context: &Arc<Context>, name: &str, slope_bias: f32, holes: bool) ->
             stages: if holes { cut_out } else { solid },
             vertex: &streams[..if holes { 2 } else { 1 }],
             colors: &[],
+            adds: false,
             depth: Depth::Write {
                 format: Format::D32_SFLOAT,
                 slope_bias,

@@ -217,6 +217,7 @@ impl Targets {
                 stages: &stages,
                 vertex: &VERTEX[..streams],
                 colors: &self.formats,
+                adds: false,
                 depth: Depth::Write {
                     format: Format::D32_SFLOAT,
                     slope_bias: 0.0,

@@ -38,6 +38,9 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
         .on_hover_text("reflectance of the ground below the horizon, 0 to 1");
     choice(ui, "refraction", &mut settings.refraction);
     choice(ui, "moon", &mut settings.moon);
+    if settings.sky == SkyModel::Atmosphere {
+        choice(ui, "stars", &mut settings.stars);
+    }
     let is_moonlit = document.job.daylight.moon.is_some()
         && document.job.daylight.sun_illuminance == DVec3::ZERO;
     let source = if is_moonlit { "moon" } else { "sun" };

@@ -9,17 +9,19 @@ use crate::commands::view::document::Document;
 use crate::commands::view::keys::Action;
 use crate::options::{Choice, Options, Quantity, Range, Show};
 
-/// Range of the exposure slider, EV100: from dusk to sunlit snow.
-const EV100_RANGE: RangeInclusive<f64> = -4.0..=18.0;
+/// Range of the exposure slider, EV100: from starlight to sunlit snow.
+const EV100_RANGE: RangeInclusive<f64> = -14.0..=18.0;
 /// Exposure when automatic exposure is turned off, EV100: a sunny day.
 const SUNNY_EV100: f64 = 14.0;
+/// Lowest automatic exposure when one is asked for, EV100: a landscape under the full moon is dark.
+const MOONLIT_EV100: f64 = -2.0;
 
 pub(super) fn show(ui: &mut Ui, document: &mut Document, requests: &mut Vec<UiRequest>) {
     let settings = &mut document.job.settings;
     choice(ui, "show", &mut settings.show);
     false_colours(ui, settings);
     choice(ui, "tone curve", &mut settings.tonemap);
-    exposure(ui, &mut settings.ev100);
+    exposure(ui, &mut settings.ev100, &mut settings.min_ev100);
     ui.horizontal(|ui| {
         for (text, action) in [
             ("screenshot", Action::Screenshot),
@@ -83,12 +85,23 @@ fn power(ui: &mut Ui, value: &mut f64, range: RangeInclusive<f64>) -> bool {
     ui.add(power.range(range)).changed()
 }
 
-fn exposure(ui: &mut Ui, ev100: &mut Option<f64>) {
+fn exposure(ui: &mut Ui, ev100: &mut Option<f64>, min_ev100: &mut Option<f64>) {
     let mut auto = ev100.is_none();
     if ui.checkbox(&mut auto, "automatic exposure").changed() {
         *ev100 = (!auto).then_some(SUNNY_EV100);
     }
+    let slider = |value| Slider::new(value, EV100_RANGE).text("EV100");
     if let Some(ev100) = ev100 {
-        ui.add(Slider::new(ev100, EV100_RANGE).text("EV100"));
+        ui.add(slider(ev100));
+        return;
+    }
+    let mut is_limited = min_ev100.is_some();
+    let hint = "the automatic exposure goes no lower than this exposure value";
+    let limit = ui.checkbox(&mut is_limited, "leave the night dark");
+    if limit.on_hover_text(hint).changed() {
+        *min_ev100 = is_limited.then_some(MOONLIT_EV100);
+    }
+    if let Some(least) = min_ev100 {
+        ui.add(slider(least));
     }
 }

@@ -160,7 +160,12 @@ impl Primitive<'_, '_> {
         let buffers = self.buffers;
         let colours = self.valid("COLOR_0", count, |accessor| {
             has_alpha = accessor.width == 4;
-            buffers.floats::<4>(accessor)
+            // Whole numbers are always meant as fractions; some exporters forget to say so.
+            let accessor = Accessor {
+                normalised: true,
+                ..*accessor
+            };
+            buffers.floats::<4>(&accessor)
         });
         colours.map(|mut colours| {
             for [r, g, b, a] in &mut colours {

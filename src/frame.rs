@@ -24,6 +24,7 @@ use crate::passes::light::probe::{Probe, Reading};
 use crate::passes::occlusion::ssao::Ssao;
 use crate::passes::picture::exposure::Exposure;
 use crate::passes::picture::tone_map::{ToneMap, ToneSettings};
+use crate::passes::sky::air::Air;
 use crate::passes::sky::cube::SkyCube;
 use crate::passes::sky::irradiance::Irradiance;
 use crate::passes::surfaces::gbuffer::Gbuffer;
@@ -58,6 +59,8 @@ pub struct Frame {
     cells: Option<Cells>,
     sky_cube: SkyCube,
     irradiance: Irradiance,
+    /// The air before the eye, if it is drawn.
+    air: Option<Air>,
     gbuffer: Gbuffer,
     ambient: AmbientPasses,
     /// Shadow map and lighting of previews and of frames that the dome does not light.
@@ -126,6 +129,7 @@ impl Frame {
                 cells: settings.cells(device, &tree, &geometry)?,
                 tree,
                 irradiance: Irradiance::new(recorder, settings.irradiance)?,
+                air: settings.air(device, &geometry)?,
                 preview: Lit {
                     shadow: settings.shadow(device, &geometry)?,
                     lighting: joined(lighting)?,
@@ -189,11 +193,14 @@ impl Frame {
         let cells = remade(new.cells_need() != old.cells_need(), || {
             new.cells(device, &self.tree, geometry)
         })?;
+        let is_other_air = new.air_need() != old.air_need();
+        let air = remade(is_other_air, || new.air(device, geometry))?;
         let tone_map = remade(is_resized || new.tone != old.tone, || new.tone_map(device))?;
 
         // From here on nothing fails.
         replace(&mut self.sky_cube, sky_cube);
         replace(&mut self.irradiance, irradiance);
+        replace(&mut self.air, air);
         replace(&mut self.gbuffer, gbuffer);
         replace(&mut self.ambient, ambient);
         replace(&mut self.preview.shadow, shadow);
@@ -234,6 +241,8 @@ impl Frame {
         // None of these passes reads another's images, so without a barrier in between they may overlap.
         rec.prepare(self.gbuffer.surfaces().images().chain(shadow.target()));
         let sky = self.sky_cube.record(rec, daylight);
+        let (air, eye) = (self.air.as_mut(), view.camera.eye.y);
+        let air = air.map(|air| air.record(rec, daylight, eye));
         let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
         let (sun_views, shadow_map) = shadow.record(rec, geometry);
         let surfaces = self.gbuffer.record(rec, geometry, &view);
@@ -274,6 +283,7 @@ impl Frame {
             shadow_map,
             sky_irradiance,
             sky_radiance: sky.radiance,
+            air: air.unwrap_or_default(),
         };
         let materials = geometry.materials();
         let frame = lighting.record(rec, surfaces, materials, ambient, &light, &view);
@@ -410,6 +420,7 @@ impl Frame {
     /// Invalidates sky, irradiance and shadow map, so that the next frame redraws everything. For benchmarks.
     pub fn invalidate(&mut self) {
         self.sky_cube.invalidate();
+        self.air.iter_mut().for_each(Air::invalidate);
         self.preview.shadow.invalidate();
     }
 

@@ -107,7 +107,7 @@
 //! 55° field of view, one linear scale s = 0.025 and γ = 1. Any other option still rules.
 //!
 //! The preset also sets `--ambient ssao --bounces 0`: the picture is then the row "Illumination model" of the map, with A in screen
-//! space, and L_e where surfaces emit, which light no others. Without the preset it is L = L_e + L_sun + L_sky + L_bounces ([the first page](crate)): the same terms of the sun, the sky by its
+//! space, and L_e where surfaces emit, which light no others. Without the preset it is L = T (L_e + L_sun + L_sky + L_bounces) + L_air ([the first page](crate)): the same terms of the sun, the sky by its
 //! true visibility instead of A, and the light that surfaces emit and reflect onto each other. From 16 samples on A is the true visibility with
 //! the preset too, unless `--visibility ssao` is given.
 //!

@@ -9,7 +9,7 @@
 //!         ├─► G-buffer         │               │
 //!         └─► hierarchy ──► cells: irradiance of sky and bounces, in world space
 //!                    │         │               │
-//!                    └──► lighting ◄───────────┘
+//!                    └──► lighting ◄───────────┘ ◄── air between surfaces and eye
 //!                              │
 //!                         background ──► average ──► exposure ──► tone map ──► window | PNG | EXR
 //!                                         ▲   ▲
@@ -20,7 +20,7 @@
 //! [`frame::Frame::record`] draws that picture from top to bottom. While something moves, [`frame::Frame::preview`] leaves the
 //! average out. The picture is
 //!
-//! L = L_e + L_sun + L_sky + L_bounces
+//! L = T (L_e + L_sun + L_sky + L_bounces) + L_air
 //!
 //! | term | value | in a single frame | in an average with `--visibility dome` |
 //! |---|---|---|---|
@@ -28,6 +28,7 @@
 //! | L_sun | (ρ_d/π (n·l) + ρ_s (r·l)^p) V E_sun | V by the shadow map | V by shadow maps of points of the disc |
 //! | L_sky | ρ_d/π ∫ V(ω) L_sky(ω) cos θ dω + ρ_s L_sky(r) | diffuse: cells | diffuse: dome |
 //! | L_bounces | ρ_d/π E_bounces | cells | gathered rays |
+//! | T, L_air | the air between surface and eye: transmittance, scattered light; 1 and 0 in scenes below 200 m, and with `--aerial off` | table of the air | the same, for each sample |
 //!
 //! with E_sun the sun's illuminance at normal incidence, V visibility, L_sky(ω) the sky cube without the sun's disc, and E_bounces the
 //! irradiance of the light that other surfaces emit and reflect. Only diffuse reflection bounces.

@@ -170,6 +170,10 @@ options! {
             /// Whether the brightest stars are drawn, as points of light, where --sky atmosphere is dark enough (of --place and --when).
             #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>(), default_value_t)]
             stars: Switch,
+            /// Whether the air between surfaces and the eye dims them and adds its light: on by default with --sky atmosphere, which alone
+            /// has air to draw. Scenes less than 200 m across have too little of it to see, and are drawn without.
+            #[arg(value_name = "ON|OFF", value_parser = choice::<Switch>())]
+            aerial: Option<Switch>,
             /// Reflectance of the ground below the horizon, 0 to 1; 0 is black.
             #[arg(value_name = "ALBEDO", value_parser = values::ground_albedo, allow_hyphen_values = true,
                   default_value_t = Conditions::default().ground_albedo)]
@@ -413,9 +417,20 @@ impl Options {
         list.retain(|(name, _)| match name.as_str() {
             "exposure" => self.ev100.is_none(),
             "false-colour" => colours,
+            "aerial" => self.has_air(),
             _ => true,
         });
         OptionValues::from(list)
+    }
+
+    /// Whether the sky is one whose air can be drawn.
+    fn has_air(&self) -> bool {
+        self.sky == SkyModel::Atmosphere
+    }
+
+    /// Whether the air between surfaces and the eye is drawn, if the scene is large enough.
+    pub fn draws_air(&self) -> bool {
+        self.has_air() && self.aerial != Some(Switch::Off)
     }
 
     /// The subset of [`Options::values`] that determines a daylight and how its irradiance is integrated.
@@ -429,7 +444,8 @@ impl Options {
 /// `--irradiance-samples` alone sets the number of samples.
 pub(crate) fn decides_light(name: &str) -> bool {
     let mut tables = tables(name).iter();
-    name != "irradiance-error" && tables.any(|table| ["sun", "sky"].contains(table))
+    !["irradiance-error", "aerial"].contains(&name)
+        && tables.any(|table| ["sun", "sky"].contains(table))
 }
 
 /// Identifiers of all options, with the tables of a scene file in which they may appear.

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "air.glsl"
 #include "colour.glsl"
 #include "constants.glsl"
 #include "dome.glsl"
@@ -35,6 +36,9 @@ layout(constant_id = 4) const bool ALBEDO_IMAGE = true;
 // Whether there is light from other surfaces, and whether it is shown.
 layout(constant_id = 5) const bool BOUNCES = false;
 layout(constant_id = 6) const bool SHOW_BOUNCES = false;
+
+// Whether the air dims the surface.
+layout(constant_id = 7) const bool AIR = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform usampler2D normal_material;
@@ -101,6 +105,10 @@ void main() {
         uvec3 own = textureLod(normal_material, uv, 0.0).xyz;
         vec3 reflected = vec3(1.0);
         if (!SHOW_IRRADIANCE) reflected = pixel_albedo(ALBEDO_IMAGE, albedo, materials, own.y, uv).rgb / PI;
+        if (AIR) {
+            vec3 toward = view.world_from_view * view_ray(uv, view.ray_scale, view.ray_offset) * (view.near / d);
+            reflected *= air_transmittance(air_ray(normalize(toward), length(toward) * 1e-3));
+        }
 #ifdef ILLUMINANCE
         illuminance = vec4(0.0, 0.0, 0.0, lit.a);
         gather(uv, d, own, reflected);

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "air.glsl"
 #include "colour.glsl"
 #include "constants.glsl"
 #include "dome.glsl"
@@ -23,6 +24,8 @@ layout(constant_id = 1) const bool FRESNEL = false;
 layout(constant_id = 2) const bool NORMALIZED = false;
 // As in lighting.frag.
 layout(constant_id = 3) const bool ALBEDO_IMAGE = true;
+
+layout(constant_id = 4) const bool AIR = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform usampler2D normal_material;
@@ -51,11 +54,13 @@ void gather(vec2 uv, float d) {
     vec3 n = normal_unpack(own.x);
     vec3 toward = view.world_from_view * (ray * (view.near / d));
     vec3 world = view.eye + toward;
-    toward = normalize(toward);
+    float away = length(toward);
+    toward /= away;
     if (FRESNEL) rho_s = grazing(rho_s, m.a, -dot(toward, n));
     vec3 r = reflect(toward, n);
     reflected.rgb = rho_s * (NORMALIZED ? sky_in_lobe(sky_radiance, r, n, m.a, push.shift)
                                      : textureLod(sky_radiance, r, 0.0).rgb);
+    if (AIR) reflected.rgb *= air_transmittance(air_ray(toward, away * 1e-3));
     vec3 face = view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale);
     float p = clamp(m.a, 1.0, MAX_EXPONENT);
     for (int k = 0; k < DIRECTIONS; ++k) {

@@ -1,5 +1,5 @@
 // Light along a path through the air, as daylight::atmosphere computes it on the CPU; functions have the names they have there. Lengths in km.
-#include "constants.glsl"
+#include "air_rays.glsl"
 
 const int COEFFICIENTS = 10;
 
@@ -194,13 +194,24 @@ vec4 mean_transmittance(vec4 x) {
     return mix((1.0 - exp(-x)) / max(x, 1e-9), 1.0 - x * (0.5 - x / 6.0), lessThan(x, vec4(1e-2)));
 }
 
+/// Light scattered at a point toward a direction, 1/(km sr) over the irradiance of the sun.
+struct Source {
+    vec4 rest;
+    vec4 aerosol; // what the aerosol scatters once, over its phase function
+};
+
+Source source_at(Point point, vec3 density, float sun_sine, float cos_gamma) {
+    vec4 sun = sun_through(point.altitude, sun_sine);
+    float phase = model.rayleigh_phase.x + model.rayleigh_phase.y * cos_gamma * cos_gamma;
+    return Source(model.rayleigh * (density.x * phase) * sun + scattered(point.altitude, sun_sine, point.mu, cos_gamma, density),
+                  model.aerosol_scattering * density.y * sun);
+}
+
 /// Light scattered into a path, over the irradiance of the sun; `transmittance` is that of the path.
 vec4 along(Path path, int cells, float sun_sine, float cos_gamma, out vec4 transmittance) {
     transmittance = vec4(1.0);
     if (path.extent == 0.0) return vec4(0.0);
-    float g = model.asymmetry;
-    float phase_air = model.rayleigh_phase.x + model.rayleigh_phase.y * cos_gamma * cos_gamma;
-    float phase_aerosol = (1.0 - g * g) / (4.0 * PI * pow(1.0 + g * g - 2.0 * g * cos_gamma, 1.5));
+    float phase = henyey_greenstein(model.asymmetry, cos_gamma);
     float width = (path.to - path.from) / float(cells);
     vec4 depth = vec4(0.0);
     vec4 light = vec4(0.0);
@@ -214,10 +225,8 @@ vec4 along(Path path, int cells, float sun_sine, float cos_gamma, out vec4 trans
         vec3 density = densities(point.altitude);
         vec4 own = optical_depth(density) * span;
         float sine = sun_sine_along(path, t, point, sun_sine, cos_gamma);
-        vec4 once = (model.rayleigh * (density.x * phase_air) + model.aerosol_scattering * (density.y * phase_aerosol))
-                  * sun_through(point.altitude, sine);
-        vec4 more = scattered(point.altitude, sine, point.mu, cos_gamma, density);
-        light += exp(-depth) * mean_transmittance(own) * span * (once + more);
+        Source source = source_at(point, density, sine, cos_gamma);
+        light += exp(-depth) * mean_transmittance(own) * span * (source.rest + source.aerosol * phase);
         depth += own;
     }
     transmittance = exp(-depth);

@@ -11,6 +11,14 @@ float luminance(vec3 rgb) {
     return dot(rgb, vec3(0.2126, 0.7152, 0.0722));
 }
 
+/// Clips negative components, which saturated sky colours outside of BT.709 have, preserving luminance.
+vec3 clip_negative(vec3 rgb) {
+    // Without a branch: an early return here crashed a software driver (Mesa 22.3) in the lighting.
+    vec3 clamped = max(rgb, 0.0);
+    float l = luminance(clamped);
+    return clamped * (l > 0.0 ? max(luminance(rgb), 0.0) / l : 0.0);
+}
+
 /// sRGB values to linear ones (IEC 61966-2-1).
 vec3 linear_from_srgb(vec3 c) {
     return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045)));

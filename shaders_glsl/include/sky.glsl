@@ -18,15 +18,6 @@ float angle_between(vec3 a, vec3 b) {
     return 2.0 * atan(length(a - b), length(a + b));
 }
 
-/// Clips negative components, which saturated sky colours outside of BT.709 have, preserving luminance.
-vec3 clip_negative(vec3 rgb) {
-    if (min(rgb.r, min(rgb.g, rgb.b)) >= 0.0) return rgb;
-    vec3 clamped = max(rgb, 0.0);
-    float target = luminance(rgb);
-    float l = luminance(clamped);
-    return target > 0.0 && l > 0.0 ? clamped * (target / l) : vec3(0.0);
-}
-
 /// Radiance of the sky, or of the ground below the horizon, kcd/m^2. `model` is the model's radiance.
 vec4 guarded(vec3 direction, vec3 model) {
     if (direction.y <= 0.0) return vec4(push.ground, 1.0);

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "air.glsl"
 #include "colour.glsl"
 #include "constants.glsl"
 #include "materials.glsl"
@@ -10,7 +11,7 @@
 #include "phong.glsl"
 #include "face.glsl"
 
-// L_e + L_sun + L_sky + L_bounces. With CELLS the irradiances of sky and bounces are those of the cells. Otherwise it is the lecture's
+// T (L_e + L_sun + L_sky + L_bounces) + L_air. With CELLS the irradiances of sky and bounces are those of the cells. Otherwise it is the lecture's
 // slide "Illumination model for skylight":
 //   L_r = rho_d/pi ((n.l) V E_sun + A E_sky(n)) + rho_s ((r.l)^p V E_sun + L_sky(r))
 
@@ -48,6 +49,9 @@ layout(constant_id = 22) const bool BOUNCES = true;
 // L_e of surfaces, from the table of materials; with EMISSION_IMAGE times a factor per pixel.
 layout(constant_id = 23) const bool EMISSION = false;
 layout(constant_id = 24) const bool EMISSION_IMAGE = false;
+// The air dims the surface, and adds the light that it scatters.
+layout(constant_id = 25) const bool AIR = false;
+layout(constant_id = 26) const bool INSCATTER = true;
 // Energy-conserving specular lobe for both sun and sky.
 layout(constant_id = 17) const bool NORMALIZED = false;
 
@@ -143,6 +147,12 @@ void main() {
         if (SUN_SPECULAR) sum += rho_s * (lobe * V) * sun.illuminance;
         if (SKY_SPECULAR && NORMALIZED) sum += rho_s * sky_in_lobe(sky_radiance, r, n, m.a, vec2(0.0));
         else if (SKY_SPECULAR) sum += rho_s * textureLod(sky_radiance, r, 0.0).rgb;
+    }
+    if (AIR) {
+        vec3 toward = normalize(world_ray);
+        AirRay through = air_ray(toward, distance * length(world_ray) * 1e-3);
+        sum *= air_transmittance(through);
+        if (INSCATTER) sum += air_inscatter(through, toward);
     }
     radiance = vec4(min(sum, sun.max_radiance), illuminance);
 }

@@ -192,6 +192,7 @@ impl Job {
         let is_dark = luminance(self.daylight.sky_irradiance_up) < DARK_LUX;
         set.lighting.precision = if is_dark { Precision::Float } else { precision };
         set.lighting.ambient = s.ambient;
+        set.lighting.air = s.draws_air();
         set.lighting.specular_scale = s.specular as f32;
         if s.limb_darkening {
             set.lighting.limb_darkening = LIMB_DARKENING as f32;

@@ -10,8 +10,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
+use super::atmosphere::aerial::AirBefore;
 use super::atmosphere::scattered_sky::ScatteredSky;
-use super::atmosphere::{Atmosphere, sun_share};
+use super::atmosphere::{Aerial, Atmosphere, sun_share};
 use super::cie::{self, SkyCover, StandardSky, daylight_availability};
 use super::clouds::clouded;
 use super::colour;
@@ -213,6 +214,23 @@ impl Daylight {
         let own = colour::luminance(colour::clip_negative(sky.ground_rgb()));
         let here = colour::luminance(self.ground_luminance - added).max(0.0);
         (if own > 1e-9 { here / own } else { 1.0 }, added)
+    }
+
+    /// What clouds and night scatter into an endless ray, linear BT.709 RGB, cd/m²: their luminance at the horizon, which is that of such
+    /// a ray (Koschmieder 1924).
+    pub fn veil(&self) -> DVec3 {
+        self.guard.night + self.guard.clouds / 3.0
+    }
+
+    /// The air before an eye as a picture shows it: [`AirBefore::between`] scaled as the sky is, with the light of clouds and night; not negative.
+    pub fn aerial(&self, before: &AirBefore, dir: DVec3, distance_km: f64) -> Aerial {
+        let own = before.between(dir, distance_km);
+        let transmittance = own.transmittance.max(DVec3::ZERO);
+        let veil = (1.0 - transmittance) * self.veil();
+        Aerial {
+            transmittance,
+            inscatter: colour::clip_negative(own.inscatter) * self.guard.scale + veil,
+        }
     }
 
     /// Radiance of the sky alone, linear BT.709 RGB, cd/m²; black below the horizon.

@@ -206,6 +206,7 @@ impl<'a> Resolve<'a> {
                     frame,
                     sky_irradiance: light.sky_irradiance,
                     sky_radiance: light.sky_radiance,
+                    air: light.air,
                     bounced,
                 };
                 let picture = dome.record(rec, geometry, &gathered, light.daylight, view, index);

@@ -18,6 +18,7 @@ use crate::passes::light::lighting::{
 };
 use crate::passes::occlusion::ssao::SsaoSettings;
 use crate::passes::picture::tone_map::{Scale, ToneMap, ToneSettings};
+use crate::passes::sky::air::{Air, LEAST_SCENE};
 use crate::passes::sky::irradiance::IrradianceSettings;
 use crate::passes::sun_shadow::cascades;
 use crate::passes::sun_shadow::map::Shadow;
@@ -74,6 +75,7 @@ impl Default for FrameSettings {
                 has_albedo: true,
                 emission: EmissionSource::None,
                 occlusion_downscale: ssao.pixels_per_texel(),
+                air: false,
                 fresnel: false,
                 shadows: Shadows::default(),
                 mirrors: Mirrors::default(),
@@ -183,12 +185,25 @@ impl FrameSettings {
         Background::new(context, self.lighting)
     }
 
+    /// Edge of a face of the sky behind the air; `None` if the air is not drawn.
+    pub(super) fn air_need(&self) -> Option<u32> {
+        self.lighting.air.then_some(self.sky_edge)
+    }
+
+    /// The air before the eye, if it is drawn.
+    pub(super) fn air(&self, context: &Arc<Context>, geometry: &Geometry) -> Result<Option<Air>> {
+        let edge = self.air_need();
+        edge.map(|edge| Air::new(context, geometry.bounds(), edge))
+            .transpose()
+    }
+
     /// Tone mapping.
     pub(super) fn tone_map(&self, context: &Arc<Context>) -> Result<ToneMap> {
         ToneMap::new(context, self.size.to_array(), self.tone)
     }
 
-    /// Adjusts the settings to a scene: no specular lookups without ρ_s, no albedo image without textures, no emission without L_e, cascades for large scenes.
+    /// Adjusts the settings to a scene: no specular lookups without ρ_s, no albedo image without textures, no emission without L_e, no air in
+    /// small scenes, cascades for large ones.
     pub(super) fn for_scene(mut self, context: &Context, geometry: &Geometry) -> Self {
         let shadows = &mut self.lighting.shadows;
         if shadows.cascades == 0 {
@@ -198,6 +213,7 @@ impl FrameSettings {
         if !geometry.is_specular() {
             self.lighting.specular_scale = 0.0;
         }
+        self.lighting.air &= geometry.bounds().diagonal() >= LEAST_SCENE;
         self.lighting.has_albedo = geometry.has_albedo();
         self.lighting.emission = geometry.emission_source();
         self

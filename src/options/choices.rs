@@ -171,6 +171,7 @@ choices! {
         Emission = "emission": "L_e, the light that surfaces emit, cd/m²",
         SunSpecular = "sun-specular": "ρ_s (r·l)^p V E_sun, cd/m²",
         SkySpecular = "sky-specular": "ρ_s L_sky(r), cd/m²",
+        Air = "air": "L_air, the light that the air scatters between surfaces and the eye, cd/m²",
         Background = "background": "Sky, ground and the sun's disc where no surface is, cd/m²",
         Visibility = "visibility": "V, 0..1",
         Occlusion = "occlusion": "A, the fraction of the sky's light that is visible, 0..1",
@@ -241,6 +242,6 @@ mod tests {
         check::<ToneCurve>();
         check::<IrradianceMethod>();
         assert_eq!(name(Visibility::Progressive), "dome");
-        assert_eq!(Show::VALUES.len(), 15);
+        assert_eq!(Show::VALUES.len(), 16);
     }
 }

@@ -4,8 +4,8 @@ use clap::parser::ValueSource;
 use glam::{DVec3, Vec3};
 
 use super::{
-    Ambient, OptionValues, Options, OptionsError, Preset, Reflections, SkyModel, Visibility,
-    all_tables, long, name, tables,
+    Ambient, OptionValues, Options, OptionsError, Preset, Reflections, SkyModel, Switch,
+    Visibility, all_tables, long, name, tables,
 };
 use crate::daylight::atmosphere::air::Air;
 use crate::daylight::sky::Conditions;
@@ -97,6 +97,9 @@ impl Options {
         }
         options.complete_air();
         options.check()?;
+        options.aerial = options
+            .has_air()
+            .then(|| options.aerial.unwrap_or_default());
         Ok(options)
     }
 
@@ -118,6 +121,13 @@ impl Options {
             return Err(OptionsError(what.to_owned()));
         }
         self.check_measured()?;
+        if self.aerial == Some(Switch::On) && !self.has_air() {
+            let what = format!(
+                "--aerial on needs --sky atmosphere: --sky {} has no air to draw; choose that sky, or --aerial off",
+                self.sky
+            );
+            return Err(OptionsError(what));
+        }
         // Occlusion in reflections comes from the dome's shadow maps.
         if self.reflections == Reflections::Hidden && self.visibility == Visibility::Ssao {
             let what =

@@ -86,6 +86,9 @@ pub(crate) fn each_set(scene: &Loaded) -> Vec<(String, Options)> {
             if name == "reflections" {
                 user.set("visibility", "dome");
             }
+            if name == "aerial" {
+                user.set("sky", "atmosphere");
+            }
             user.set(&name, &text);
             let options = Options::resolve(&user, scene);
             if let Ok(options) = options

@@ -365,7 +365,7 @@ fn the_addends_of_layers_sum_to_the_picture() {
     let ended = place
         .render(&["-o", "a.exr", "--layers", "--samples", "3"])
         .silently();
-    assert!(ended.stdout.contains("14 layer"), "{}", ended.stdout);
+    assert!(ended.stdout.contains("15 layer"), "{}", ended.stdout);
     let exr = exr(&place.path().join("a.exr"));
     let addends = [
         "sun",
@@ -374,6 +374,7 @@ fn the_addends_of_layers_sum_to_the_picture() {
         "emission",
         "sun-specular",
         "sky-specular",
+        "air",
         "background",
     ];
     let mut names = vec![
@@ -389,7 +390,7 @@ fn the_addends_of_layers_sum_to_the_picture() {
     names.sort();
     let found: Vec<_> = exr.channels.keys().cloned().collect();
     assert_eq!(found, names);
-    let mut seen = [false; 7];
+    let mut seen = [false; 8];
     for c in ["R", "G", "B"] {
         let layers = addends.map(|layer| &exr.channels[&format!("{layer}.{c}")]);
         for (i, whole) in exr.channels[c].iter().enumerate() {
@@ -415,7 +416,7 @@ fn bad_words_end_with_2_and_touch_nothing() {
         "[[mesh]]\nfile = \"m.obj\"\n[[camera]]\nname = \"porch\"\neye = [9, 1, 1]\n",
     );
     let before = place.contents();
-    let cases: [(&[&str], &[&str]); 18] = [
+    let cases: [(&[&str], &[&str]); 20] = [
         (
             &["render", "-o", "old.png", "--size", "0x0"],
             &["0x0", "1 to 32768"],
@@ -437,6 +438,21 @@ fn bad_words_end_with_2_and_touch_nothing() {
             &["the time is missing"],
         ),
         (&["render", "-o", "old.png", "--polish", "3"], &["--polish"]),
+        (
+            &[
+                "render", "-o", "old.png", "--sky", "cie-12", "--aerial", "on",
+            ],
+            &[
+                "--aerial on",
+                "--sky atmosphere",
+                "--sky cie-12",
+                "--aerial off",
+            ],
+        ),
+        (
+            &["render", "-o", "old.png", "--aerial", "half"],
+            &["--aerial", "half", "on, off"],
+        ),
         (
             &["render", "-house.obj", "-o", "old.png"],
             &["-house.obj", "./-house.obj"],

@@ -77,13 +77,43 @@ fn tiles_are_the_picture_that_is_drawn_at_once() {
 }
 
 #[test]
+fn the_air_of_tiles_has_no_seam() {
+    let place = Place::new();
+    // A plain of 80 km with a wall of 3 km across it, 30 km away.
+    let model = place.0.path().join("far.obj");
+    let plain =
+        "v -40000 0 40000\nv 40000 0 40000\nv 40000 0 -40000\nv -40000 0 -40000\nf 1 2 3 4\n";
+    let wall = "v -40000 0 -30000\nv 40000 0 -30000\nv 40000 3000 -34000\nv -40000 3000 -34000\nf 5 6 7 8\n";
+    std::fs::write(&model, format!("{plain}{wall}")).expect("a model");
+    let far = model.to_string_lossy().into_owned();
+    let line =
+        "--sky atmosphere --sun 310,8 --show air --eye 0,300,0 --target 0,900,-9000 --size 317x203";
+    let words: Vec<&str> = [&*far].into_iter().chain(line.split_whitespace()).collect();
+    for samples in ["1", "2"] {
+        let words = [&words[..], &["--samples", samples]].concat();
+        let (whole, _) = place.render("whole.exr", &words);
+        let (tiles, said) = place.render("tiles.exr", &[&words[..], &["--tile", "64"]].concat());
+        assert!(said.contains("tiles"), "{said}");
+        let (whole, tiles) = (read(&whole).expect("whole"), read(&tiles).expect("tiles"));
+        let brightest = whole.rgb.iter().flatten().copied().fold(0.0f32, f32::max);
+        let (largest, more) = differences(&whole, &tiles, 1e-4 * brightest);
+        println!(
+            "brightest {brightest} cd/m2, largest difference {largest}, {:.4} % above 1e-4 of it",
+            more * 100.0
+        );
+        // Edges of the wall snap to other subpixel positions.
+        assert!(brightest > 100.0 && more < 1e-3, "{more}");
+    }
+}
+
+#[test]
 fn layers_of_tiles_are_those_of_the_whole() {
     let place = Place::new();
     let line = "--size 150x100 --layers --sun 215,42 --bounces 0 --ambient ssao";
     let words: Vec<&str> = line.split_whitespace().collect();
     let (whole, _) = place.render("whole.exr", &words);
     let (tiles, said) = place.render("tiles.exr", &[&words[..], &["--tile", "64"]].concat());
-    assert!(said.contains("6 tiles, 14 layer(s)"), "{said}");
+    assert!(said.contains("6 tiles, 15 layer(s)"), "{said}");
     let channels = |path: &Path| {
         let image = exr::prelude::read_all_flat_layers_from_file(path).expect("an EXR");
         let channels = image.layer_data[0].channel_data.list.clone();

@@ -19,7 +19,7 @@ fn conditions(sun_elevation_deg: f64, air: Air) -> Conditions {
 }
 
 /// A full moon in the west of the south.
-fn full_moon(elevation_deg: f64) -> Moon {
+pub fn full_moon(elevation_deg: f64) -> Moon {
     Moon {
         azimuth_deg: 250.0,
         elevation_deg,

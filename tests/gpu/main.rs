@@ -9,6 +9,7 @@ mod room;
 #[path = "../common/truth.rs"]
 mod truth;
 
+mod air;
 mod atmosphere;
 mod bounces;
 mod canary;

@@ -8,7 +8,9 @@
 //!    [`Atmosphere::of`] keeps the tables of the last airs.
 //! 5. [`sky_view`]: table D, the whole view under one sun; [`scattered_sky`]: the sky that is read from it. The moon has such
 //!    a view of its own.
+//! 6. [`aerial`]: table E, the air before an eye.
 
+pub mod aerial;
 pub mod air;
 pub mod colour;
 pub mod columns;
@@ -25,11 +27,12 @@ use std::sync::Arc;
 
 use glam::{DVec3, DVec4};
 
+use self::aerial::Source;
 use self::air::Air;
 use self::columns::{Columns, horizon_cosine};
 use self::field::{Field, scattering_by_degree};
 use self::medium::{GROUND_RADIUS, Medium, densities, rayleigh_phase};
-use self::path::{Path, mean_transmittance};
+use self::path::{Path, Point, mean_transmittance};
 use self::solve::{Effort, Light, solve};
 use super::colour::rgb_from_xyz;
 use super::quadrature::gauss_legendre;
@@ -70,6 +73,17 @@ pub struct Aerial {
     pub transmittance: DVec3,
     /// Light scattered on the way, linear BT.709 RGB, cd/m², not clipped.
     pub inscatter: DVec3,
+}
+
+impl Aerial {
+    /// Of the transmittance of a path and the light scattered into it over the irradiance of the sun, at the four wavelengths.
+    pub fn new(transmittance: DVec4, scattered: DVec4) -> Self {
+        let white = rgb_from_xyz(colour::xyz(DVec4::ONE));
+        Self {
+            transmittance: rgb_from_xyz(colour::xyz(transmittance)) / white,
+            inscatter: rgb_from_xyz(colour::xyz(scattered)),
+        }
+    }
 }
 
 /// A clear sky: the tables of one air.
@@ -153,7 +167,7 @@ impl Atmosphere {
     /// Light along `path`, in `cells` steps.
     pub fn along(&self, path: &Path, sun_sine: f64, cos_gamma: f64, cells: usize) -> AlongPath {
         let medium = &self.medium;
-        let phase = [rayleigh_phase(cos_gamma), medium.aerosol_phase(cos_gamma)];
+        let phase = medium.aerosol_phase(cos_gamma);
         let mut depth = DVec4::ZERO;
         let mut scattered = DVec4::ZERO;
         // The ground at the feet of the observer has no air before it.
@@ -165,19 +179,28 @@ impl Atmosphere {
             let own = medium.optical_depth(density) * cell.length;
             let weight = each(depth, |d| (-d).exp()) * each(own, mean_transmittance) * cell.length;
             let sine = path.sun_sine(cell.t, &point, sun_sine, cos_gamma);
-            let once = (medium.rayleigh * (density.x * phase[0])
-                + medium.aerosol_scattering() * (density.y * phase[1]))
-                * self.sun_through(point.radius, sine);
-            let factors = scattering_by_degree(medium, density.x, density.y);
-            let more = self
-                .field
-                .scattered(point.altitude, sine, point.mu, cos_gamma, &factors);
-            scattered += weight * (once + more);
+            let source = self.source(&point, density, sine, cos_gamma);
+            scattered += weight * (source.rest + source.aerosol * phase);
             depth += own;
         }
         AlongPath {
             scattered,
             transmittance: each(depth, |d| (-d).exp()),
+        }
+    }
+
+    /// Light scattered at a point toward a direction, 1/km/sr over the irradiance of the sun; `rest` is all but the light that the aerosol
+    /// scatters once, `aerosol` that over its phase function.
+    fn source(&self, point: &Point, density: DVec3, sun_sine: f64, cos_gamma: f64) -> Source {
+        let medium = &self.medium;
+        let sun = self.sun_through(point.radius, sun_sine);
+        let factors = scattering_by_degree(medium, density.x, density.y);
+        let more = self
+            .field
+            .scattered(point.altitude, sun_sine, point.mu, cos_gamma, &factors);
+        Source {
+            rest: medium.rayleigh * (density.x * rayleigh_phase(cos_gamma)) * sun + more,
+            aerosol: medium.aerosol_scattering() * density.y * sun,
         }
     }
 
@@ -207,11 +230,7 @@ impl Atmosphere {
         let path = Path::of_length(r, dir.y, distance_km.clamp(0.0, whole));
         let cos_gamma = sun.dot(dir).clamp(-1.0, 1.0);
         let along = self.along(&path, sun.y, cos_gamma, VIEW_CELLS);
-        let white = rgb_from_xyz(colour::xyz(DVec4::ONE));
-        Aerial {
-            transmittance: rgb_from_xyz(colour::xyz(along.transmittance)) / white,
-            inscatter: rgb_from_xyz(colour::xyz(along.scattered)),
-        }
+        Aerial::new(along.transmittance, along.scattered)
     }
 
     /// Illuminance of the sun at normal incidence with its centre at the true elevation of sine `sun_sine`: linear BT.709 RGB, lux, by

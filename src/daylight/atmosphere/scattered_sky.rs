@@ -86,6 +86,27 @@ impl ScatteredSky {
         self
     }
 
+    /// The light of which the air scatters more: the sun or the moon.
+    pub fn brighter(&self) -> &AirLight {
+        let lux = |light: &AirLight| colour::luminance(light.irradiance_up);
+        let moon = self.moon.as_ref();
+        moon.filter(|moon| lux(moon) > lux(&self.sun))
+            .unwrap_or(&self.sun)
+    }
+
+    /// The sky of the same air under the same lights from another altitude, metres.
+    #[must_use]
+    pub fn from_altitude(&self, altitude_m: f64) -> Self {
+        let mut atmosphere = self.atmosphere.clone();
+        atmosphere.air.altitude_m = altitude_m;
+        let seen = |light: &AirLight| AirLight::new(&atmosphere, light.direction, light.share);
+        Self {
+            sun: seen(&self.sun),
+            moon: self.moon.as_ref().map(seen),
+            atmosphere,
+        }
+    }
+
     /// The lights, the sun first.
     fn lights(&self) -> impl Iterator<Item = &AirLight> {
         std::iter::once(&self.sun).chain(&self.moon)

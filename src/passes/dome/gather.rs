@@ -24,6 +24,7 @@ use crate::passes::bounces::cells::Bounces;
 use crate::passes::bounces::gather::HalfSize;
 use crate::passes::dome::specular::SpecularSky;
 use crate::passes::light::lighting::{LightingSettings, Show};
+use crate::passes::sky::air::AirBefore;
 use crate::passes::sun_shadow::fit::ShadowView;
 use crate::passes::sun_shadow::map::{Casters, Tile};
 use crate::passes::sun_shadow::perspective::{Receivers, fit};
@@ -123,6 +124,8 @@ pub struct Gathered<'a> {
     pub sky_irradiance: &'a Image,
     /// Radiance L of sky and ground, kcd/m².
     pub sky_radiance: &'a Image,
+    /// The air before the eye.
+    pub air: AirBefore<'a>,
     /// Irradiance from other surfaces, klx; `None` without bounces.
     pub bounced: Option<HalfSize<'a>>,
 }
@@ -191,7 +194,7 @@ impl Dome {
         Ok(Self {
             settings,
             casters: Casters::new(context, geometry, 0.0)?,
-            gather: gather_pipeline(context, geometry, settings, show, bounces)?,
+            gather: gather_pipeline(context, geometry, settings, lighting, bounces)?,
             resolve: fullscreen(
                 context,
                 "dome: resolve",
@@ -357,7 +360,9 @@ impl Dome {
             .bounced
             .map_or(&surfaces.normal_material, |b| b.image);
         let pass = recorder.pass("dome: gather", &self.gather);
-        let pass = surfaces
+        let pass = surfaces.sampled_by(pass, gathered.materials);
+        let pass = gathered
+            .air
             .sampled_by(pass, gathered.materials)
             .sample("frame", gathered.frame, Sampler::Nearest)
             .sample("previous_sky", old_sky, Sampler::Nearest)
@@ -400,9 +405,12 @@ fn gather_pipeline(
     context: &Arc<Context>,
     geometry: &Geometry,
     settings: DomeSettings,
-    show: Show,
+    lighting: LightingSettings,
     bounces: Bounces,
 ) -> Result<Pipeline> {
+    let show = lighting.show;
+    // What is not light has no air before it.
+    let air = lighting.air && !matches!(show, Show::Irradiance | Show::Occlusion);
     let (shader, targets) = if settings.illuminance {
         (&shaders::DOME_GATHER_FRAG_ILLUMINANCE, 3)
     } else {
@@ -419,6 +427,7 @@ fn gather_pipeline(
             ("SHOW_OCCLUSION", (show == Show::Occlusion).into()),
             ("SKY", shows_sky(show).into()),
             ("DIRECTIONS", settings.directions),
+            ("AIR", air.into()),
             ("ALBEDO_IMAGE", geometry.has_albedo().into()),
             ("BOUNCES", bounces.is_any().into()),
             (

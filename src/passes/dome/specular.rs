@@ -118,8 +118,9 @@ impl SpecularSky {
         self.means.swap(0, 1);
         let [[reflected, lobe], [old_reflected, old_lobe]] = &self.means;
         let pass = recorder.pass("dome: specular", &self.gather);
+        let pass = gathered.surfaces.sampled_by(pass, gathered.materials);
         gathered
-            .surfaces
+            .air
             .sampled_by(pass, gathered.materials)
             .sample("previous_reflected", old_reflected, Sampler::Nearest)
             .sample("previous_lobe", old_lobe, Sampler::Nearest)
@@ -164,6 +165,7 @@ fn gather_pipeline(
         Depth::Off,
         &[
             ("DIRECTIONS", dome.directions),
+            ("AIR", lighting.air.into()),
             ("FRESNEL", lighting.fresnel.into()),
             ("NORMALIZED", normalized.into()),
             ("ALBEDO_IMAGE", lighting.has_albedo.into()),

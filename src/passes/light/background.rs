@@ -113,7 +113,11 @@ impl Background {
         };
         recorder
             .pass("background", pipeline)
-            .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
+            .sample(
+                "sky_radiance",
+                light.air.sky_or(light.sky_radiance),
+                Sampler::Linear,
+            )
             .uniform("view", &view.block())
             .push(&push)
             .color(radiance, Load::Keep)

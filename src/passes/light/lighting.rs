@@ -1,4 +1,4 @@
-//! Lighting: per pixel, the terms L_e + L_sun + L_sky + L_bounces of the illumination model on the crate's first page, one of them, or
+//! Lighting: per pixel, the terms T (L_e + L_sun + L_sky + L_bounces) + L_air of the illumination model on the crate's first page, one of them, or
 //! one of its inputs. The background is L_e where no surface is; in converging frames the dome adds L_bounces and the diffuse part of L_sky.
 //!
 //! With [`Ambient::Cells`] the irradiances of sky and bounces are those of the cells. With [`Ambient::Ssao`] it is the lecture's
@@ -19,6 +19,7 @@ use crate::gpu_struct;
 
 use crate::passes::dome::gather::BIAS_TEXELS;
 use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
+use crate::passes::sky::air::AirBefore;
 pub use crate::passes::sun_shadow::cascades::Shadows;
 use crate::passes::sun_shadow::cascades::{BLEND, MAX_RADIUS, NORMAL_OFFSET_TEXELS, SunViews};
 use crate::passes::surfaces::gbuffer::Surfaces;
@@ -59,6 +60,8 @@ pub enum Show {
     SunSpecular,
     /// ρ_s L_sky(r), cd/m².
     SkySpecular,
+    /// L_air, the light that the air scatters between surface and eye, cd/m².
+    Air,
     /// Sky, ground and the sun's disc in pixels without a surface, cd/m².
     Background,
     /// V, 0..1.
@@ -79,13 +82,14 @@ pub enum Show {
 
 impl Show {
     /// The terms of the picture: they sum to [`Show::Beauty`].
-    pub const ADDENDS: [Self; 7] = [
+    pub const ADDENDS: [Self; 8] = [
         Self::Sun,
         Self::Sky,
         Self::Bounces,
         Self::Emission,
         Self::SunSpecular,
         Self::SkySpecular,
+        Self::Air,
         Self::Background,
     ];
 
@@ -123,7 +127,7 @@ impl Show {
         }
     }
 
-    fn constants(self, specular: bool, emits: bool) -> [(&'static str, u32); 12] {
+    fn constants(self, specular: bool, emits: bool) -> [(&'static str, u32); 13] {
         let whole = matches!(self, Self::Beauty | Self::Luminance);
         let on = |shown: Self| u32::from(self == shown);
         let addend = |shown: Self| u32::from(whole || self == shown);
@@ -140,6 +144,7 @@ impl Show {
                 "SKY_SPECULAR",
                 u32::from(specular) & addend(Self::SkySpecular),
             ),
+            ("INSCATTER", addend(Self::Air)),
             ("SHOW_VISIBILITY", on(Self::Visibility)),
             ("SHOW_OCCLUSION", on(Self::Occlusion)),
             ("SHOW_IRRADIANCE", on(Self::Irradiance)),
@@ -205,6 +210,8 @@ pub struct LightingSettings {
     pub has_albedo: bool,
     /// Where L_e of surfaces is. Set by [`crate::frame::Frame`].
     pub emission: EmissionSource,
+    /// Whether the air between surface and eye is drawn. [`crate::frame::Frame`] clears it for scenes without far surfaces.
+    pub air: bool,
     /// Whether ρ_s grows toward grazing angles (Schlick's approximation of Fresnel's equations).
     pub fresnel: bool,
     /// Settings of the sun's shadow lookup.
@@ -228,6 +235,8 @@ pub struct Light<'a> {
     pub sky_irradiance: &'a Image,
     /// Radiance L of sky and ground, kcd/m².
     pub sky_radiance: &'a Image,
+    /// The air before the eye.
+    pub air: AirBefore<'a>,
 }
 
 /// The lighting pass and its picture.
@@ -282,6 +291,7 @@ impl Lighting {
             constants.push(("SKY_SPECULAR", 0));
         }
         constants.push(("NORMALIZED", (phong == Phong::Normalized).into()));
+        constants.push(("AIR", settings.air.into()));
         constants.push(("FRESNEL", settings.fresnel.into()));
         constants.push(("ALBEDO_IMAGE", settings.has_albedo.into()));
         constants.push(("AMBIENT", (!is_converging).into()));
@@ -321,7 +331,9 @@ impl Lighting {
         view: &View,
     ) -> &Image {
         let pass = recorder.pass("lighting", &self.pipeline);
-        surfaces
+        let pass = surfaces.sampled_by(pass, materials);
+        light
+            .air
             .sampled_by(pass, materials)
             .sample(
                 "emission",
@@ -369,7 +381,7 @@ mod tests {
     #[test]
     fn each_addend_is_in_the_picture_once() {
         let beauty = Show::Beauty.constants(true, true);
-        for (i, addend) in Show::ADDENDS.iter().take(6).enumerate() {
+        for (i, addend) in Show::ADDENDS.iter().take(7).enumerate() {
             let constants = addend.constants(true, true);
             assert_eq!(beauty[i].1, 1);
             assert_eq!(constants[i].1, 1, "{addend:?}");

@@ -35,7 +35,7 @@ gpu_struct! {
 
 gpu_struct! {
     /// The air; see [`crate::daylight::atmosphere::medium::Medium`].
-    pub struct AirModel: model of SKY_VIEW_COMP {
+    pub struct AirModel: model of SKY_VIEW_COMP, AIR_COMP {
         rayleigh: [f32; 4],
         aerosol_scattering: [f32; 4],
         aerosol: [f32; 4],
@@ -143,7 +143,7 @@ impl AtmosphereView {
         };
         recorder
             .pass("sky view", &self.pipeline)
-            .uniform("model", &model(atmosphere))
+            .uniform("model", &air_model(atmosphere))
             .storage("air", &self.tables)
             .push(&push)
             .store("sky_view", view)
@@ -153,6 +153,11 @@ impl AtmosphereView {
     /// Makes the next views new.
     pub fn invalidate(&mut self) {
         self.drawn = [None; 2];
+    }
+
+    /// The tables of the air of the last views.
+    pub fn tables(&self) -> &Buffer {
+        &self.tables
     }
 
     /// The tables of the view under the sun and under the moon, kcd/m².
@@ -174,7 +179,8 @@ fn tables(atmosphere: &Atmosphere) -> Vec<[f32; 4]> {
     depths.chain(field).chain(ground).collect()
 }
 
-fn model(atmosphere: &Atmosphere) -> AirModel {
+/// The air as the shaders know it.
+pub(in crate::passes::sky) fn air_model(atmosphere: &Atmosphere) -> AirModel {
     let (medium, grid) = (&atmosphere.medium, &atmosphere.field.grid);
     let isotropic = rayleigh_phase(0.0);
     let int = |n: usize| n as i32;

@@ -140,13 +140,7 @@ impl Painter {
         views: Option<SkyViews<'_>>,
         target: &Image,
     ) {
-        let mut push = Push {
-            sun_direction: daylight.guard.sun_direction.as_vec3(),
-            scale: daylight.guard.scale as f32,
-            night: kilo(daylight.guard.night),
-            ground: kilo(daylight.ground_luminance),
-            clouds: (daylight.guard.clouds * 1e-3) as f32,
-        };
+        let mut push = push_of(daylight);
         let pipeline = match &daylight.sky {
             Sky::Preetham(_) => &self.preetham,
             Sky::Hosek(_) => &self.hosek,
@@ -172,6 +166,61 @@ impl Painter {
             }
         };
         pipeline.fill(pass.push(&push), &[("sky_radiance", target)]);
+    }
+}
+
+/// An atmosphere as the eye sees it from its own altitude.
+pub(in crate::passes::sky) struct SkyBehind {
+    pipeline: CubePipeline,
+    radiance: Image,
+}
+
+impl SkyBehind {
+    pub fn new(context: &Arc<Context>, edge: u32) -> Result<Self> {
+        let float = Format::R32G32B32A32_SFLOAT;
+        let (route, name) = (CubeRoute::of(context), "sky: behind");
+        // The share of a moon that does not count is 0.
+        let moonlit = [("MOON", 1)];
+        let pipeline = CubePipeline::new(context, route, name, ATMOSPHERE, &[float], &moonlit)?;
+        let radiance = Image::new(context, &ImageDesc::cube("sky behind", float, edge))?;
+        Ok(Self { pipeline, radiance })
+    }
+
+    /// Draws the sky of the daylight from where `sky` is seen; `views` are the tables of its view.
+    pub fn record(
+        &self,
+        recorder: &mut Recorder,
+        daylight: &Daylight,
+        sky: &ScatteredSky,
+        views: SkyViews<'_>,
+    ) {
+        let (ground_scale, added) = daylight.ground_of(sky);
+        let push = Push {
+            ground: kilo(added),
+            ..push_of(daylight)
+        };
+        let pass = self.pipeline.pass(recorder, "sky behind");
+        let pass = pass
+            .uniform("model", &view_model(sky, ground_scale))
+            .sample("sky_view", views.sun, Sampler::Nearest)
+            .sample("moon_view", views.moon, Sampler::Nearest);
+        let target = [("sky_radiance", &self.radiance)];
+        self.pipeline.fill(pass.push(&push), &target);
+    }
+
+    /// The cube, kcd/m².
+    pub fn image(&self) -> &Image {
+        &self.radiance
+    }
+}
+
+fn push_of(daylight: &Daylight) -> Push {
+    Push {
+        sun_direction: daylight.guard.sun_direction.as_vec3(),
+        scale: daylight.guard.scale as f32,
+        night: kilo(daylight.guard.night),
+        ground: kilo(daylight.ground_luminance),
+        clouds: (daylight.guard.clouds * 1e-3) as f32,
     }
 }
 

@@ -1,5 +1,6 @@
 //! The sky and its irradiance as cubes.
 
+pub mod air;
 pub mod atmosphere;
 pub mod cube;
 pub mod irradiance;

@@ -75,6 +75,8 @@ fn atmosphere(ui: &mut Ui, settings: &mut Options) {
     }
     ui.add(Slider::new(&mut settings.ozone, OZONE_RANGE_DU).text("ozone, DU"));
     ui.add(Slider::new(&mut settings.altitude, ALTITUDE_RANGE_M).text("altitude, m"));
+    let aerial = settings.aerial.get_or_insert_default();
+    choice(ui, "air before surfaces", aerial);
 }
 
 /// Illuminances of a horizontal plane by sun (or moon) and sky, lux.

@@ -17,10 +17,13 @@ const MAX_SUFFIX: usize = 4;
 /// its last components alone, for absolute paths from another machine.
 pub fn spellings(name: &str, is_uri: bool) -> Vec<String> {
     let decoded = percent_decode_str(name).decode_utf8_lossy();
-    let plain: [Cow<str>; 2] = if is_uri {
-        [decoded, name.into()]
+    // What a server would be asked for is no part of a file's name.
+    let asked = name.find(['?', '#']).filter(|_| is_uri);
+    let path = percent_decode_str(&name[..asked.unwrap_or(name.len())]).decode_utf8_lossy();
+    let plain: [Cow<str>; 3] = if is_uri {
+        [decoded, path, name.into()]
     } else {
-        [name.into(), decoded]
+        [name.into(), decoded, path]
     };
     let mut all: Vec<String> = Vec::new();
     let mut add = |name: String| {
@@ -123,6 +126,7 @@ mod tests {
         assert_eq!(spellings("a.png", true), ["a.png"]);
         assert_eq!(spellings("a%20b.png", true), ["a b.png", "a%20b.png"]);
         assert_eq!(spellings("a%20b.png", false), ["a%20b.png", "a b.png"]);
+        assert_eq!(spellings("a.png?v=2", true), ["a.png?v=2", "a.png"]);
         let windows = spellings("C:\\x\\tex\\a.png", false);
         assert_eq!(
             windows[1..],

@@ -650,6 +650,11 @@ fn missing_helpers_are_warnings_that_no_warnings_silences() {
     place
         .render(&[&hazy[..], &["--strict"]].concat())
         .failed(1, &["turbidity", "--strict"]);
+    let sky = ["sky", "--sky", "preetham", "--turbidity", "90"];
+    place.run(&sky).succeeded();
+    place
+        .run(&[&sky[..], &["--strict"]].concat())
+        .failed(1, &["turbidity", "--strict"]);
 }
 
 #[test]

@@ -472,6 +472,7 @@ fn what_is_not_drawn_of_an_obj_does_not_matter() {
             "a comment behind a face",
             with("3/3/1\n", "3/3/1 # the wall of 1 2 3\n"),
         ),
+        ("commas between corners", with("f 1 2 5", "f 1, 2, 5;")),
         (
             "a comment behind a vertex",
             with("v 1.5 0 0\n", "v 1.5 0 0 # 7 8 9\n"),

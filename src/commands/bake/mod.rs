@@ -83,11 +83,7 @@ pub fn run(args: &BakeArgs, mut options: OptionValues) -> Result<()> {
     for path in names(args).iter().flatten().chain([&sidecar]) {
         check_writable(path)?;
     }
-    if !light.settings.quiet {
-        for warning in &light.daylight.warnings {
-            eprintln!("warning: {warning}");
-        }
-    }
+    super::tell(&light.settings, light.daylight.warnings.iter())?;
     let files = match Container::of(&args.output) {
         Container::Ktx2 => vec![cube_file(args, &light)?],
         Container::Exr | Container::Hdr => pictures(args, &light)?,

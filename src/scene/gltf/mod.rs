@@ -4,9 +4,12 @@
 //! not valid costs that part, with a warning that counts such parts and names the first. Skins and morph targets are drawn in
 //! their rest pose, and blended materials become cut-outs with an alpha threshold of 0.5.
 
+mod accessor;
 mod buffers;
 mod camera;
 mod extensions;
+mod faces;
+mod instances;
 mod item;
 mod json;
 mod material;
@@ -19,15 +22,16 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::rc::Rc;
 
-use glam::{DAffine3, DQuat, DVec3};
+use glam::{DAffine3, DVec3};
 
 use crate::scene::builder::Builder;
 use crate::scene::error::SceneError;
 use crate::scene::gltf::buffers::Buffers;
 use crate::scene::gltf::extensions::Told;
+use crate::scene::gltf::faces::Faces;
 use crate::scene::gltf::item::Item;
 use crate::scene::gltf::material::{Materials, Source, Surface};
-use crate::scene::gltf::mesh::{Faces, Primitive};
+use crate::scene::gltf::mesh::Primitive;
 use crate::scene::gltf::nodes::Graph;
 use crate::scene::gltf::skin::Skin;
 use crate::scene::losses::shortened;
@@ -176,9 +180,12 @@ impl Model<'_> {
             }
             self.cameras.extend(camera);
         }
-        let Some(mesh) = node.get("mesh").index() else {
+        let mesh = node.get("mesh");
+        if !mesh.exists() {
             return Ok(());
-        };
+        }
+        // No list is as long: it is told of as a mesh that does not exist.
+        let mesh = mesh.index().unwrap_or(usize::MAX);
         if let Some(skin) = node.get("skin").index() {
             match Skin::read(root, skin, self.graph, self.buffers) {
                 Ok(skin) => return self.append_posed(builder, node, mesh, &skin),
@@ -277,7 +284,7 @@ impl Model<'_> {
         if !attributes.is_object() {
             return vec![world_from_node];
         }
-        match instance_transforms(self.buffers, attributes, builder.corners_left()) {
+        match instances::transforms(self.buffers, attributes, builder.corners_left()) {
             Ok(list) => list.into_iter().map(|t| world_from_node * t).collect(),
             Err(why) => {
                 let what = "nodes with instances that are not valid drawn once";
@@ -306,6 +313,10 @@ impl Model<'_> {
                 .add("meshes that do not exist not drawn", place);
         }
         self.told.see(mesh);
+        if mesh.exists() && mesh.get("primitives").items().len() == 0 {
+            let place = || format!("meshes[{number}]");
+            self.report.losses.add("meshes without primitives", place);
+        }
         let mut meshes = Vec::new();
         for (i, item) in mesh.get("primitives").items().enumerate() {
             let place = format!("meshes[{number}].primitives[{i}]");
@@ -372,55 +383,4 @@ impl Model<'_> {
         self.report.dropped.add(dropped);
         Some(mesh)
     }
-}
-
-/// The transforms of EXT_mesh_gpu_instancing, at most `limit`.
-fn instance_transforms(
-    buffers: &Buffers<'_>,
-    attributes: Item<'_>,
-    limit: usize,
-) -> Result<Vec<DAffine3>, String> {
-    fn column<const N: usize>(
-        buffers: &Buffers<'_>,
-        item: Item<'_>,
-        limit: usize,
-    ) -> Result<Option<Vec<[f64; N]>>, String> {
-        if !item.exists() {
-            return Ok(None);
-        }
-        let accessor = buffers.accessor(item.index().ok_or("no accessor")?, limit)?;
-        let values = buffers.floats::<N>(&accessor)?;
-        Ok(Some(values.into_iter().map(|v| v.map(f64::from)).collect()))
-    }
-    let translations = column::<3>(buffers, attributes.get("TRANSLATION"), limit)?;
-    let rotations = column::<4>(buffers, attributes.get("ROTATION"), limit)?;
-    let scales = column::<3>(buffers, attributes.get("SCALE"), limit)?;
-    let counts = [
-        translations.as_ref().map(Vec::len),
-        rotations.as_ref().map(Vec::len),
-        scales.as_ref().map(Vec::len),
-    ];
-    let mut given = counts.into_iter().flatten();
-    let count = given.next().ok_or("no attribute is known")?;
-    if given.any(|other| other != count) {
-        return Err("its attributes differ in length".to_owned());
-    }
-    let of = |i: usize| {
-        let rotation = rotations
-            .as_ref()
-            .map_or(DQuat::IDENTITY, |r| DQuat::from_array(r[i]));
-        let is_unit = rotation.length() > 1e-6;
-        DAffine3::from_scale_rotation_translation(
-            scales.as_ref().map_or(DVec3::ONE, |s| DVec3::from(s[i])),
-            if is_unit {
-                rotation.normalize()
-            } else {
-                DQuat::IDENTITY
-            },
-            translations
-                .as_ref()
-                .map_or(DVec3::ZERO, |t| DVec3::from(t[i])),
-        )
-    };
-    Ok((0..count).map(of).collect())
 }

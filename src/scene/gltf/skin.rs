@@ -3,8 +3,9 @@
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
 use crate::scene::gltf::buffers::Buffers;
+use crate::scene::gltf::faces::Faces;
 use crate::scene::gltf::item::Item;
-use crate::scene::gltf::mesh::{Faces, Primitive};
+use crate::scene::gltf::mesh::Primitive;
 use crate::scene::gltf::nodes::Graph;
 
 /// Inverse bind matrices that are read.

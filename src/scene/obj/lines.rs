@@ -190,7 +190,7 @@ impl LineReader {
             .split_ascii_whitespace()
             .take_while(|word| !word.starts_with('#'));
         for word in words {
-            match self.corner(word) {
+            match self.corner(word.trim_end_matches([',', ';'])) {
                 Ok(corner) => corners.push(corner),
                 Err(why) => {
                     result = Err(why);

@@ -8,7 +8,7 @@ mod text;
 
 use std::path::Path;
 
-use glam::Affine2;
+use glam::{Affine2, DAffine3, DVec3};
 
 use crate::scene::builder::Builder;
 use crate::scene::error::SceneError;
@@ -39,15 +39,8 @@ pub fn append_obj(
     builder.progress.at(0.0, "reading");
     let text = builder.files.read_text(path)?;
     builder.progress.at(0.1, "parsing");
-    let mut points = text::sample(&text);
-    points.retain(|point| point.is_finite());
-    let origin = origin::middle(&mut points).origin();
     let world_from_mesh = placement.world_from_mesh;
-    let mut points: Vec<_> = points
-        .iter()
-        .map(|p| world_from_mesh.transform_point3(*p))
-        .collect();
-    builder.choose_origin(path, &mut points);
+    let origin = choose_origin(builder, path, &text, world_from_mesh);
     let parsed = text::read(&text, builder.threads, origin);
     drop(text);
     builder.progress.at(0.5, "reading materials");
@@ -91,6 +84,22 @@ pub fn append_obj(
         placement.smooth_deg,
     );
     Ok(())
+}
+
+/// The point that the positions of a file are read relative to, in the file's coordinates.
+fn choose_origin(
+    builder: &mut Builder,
+    path: &Path,
+    text: &str,
+    world_from_mesh: DAffine3,
+) -> DVec3 {
+    let mut points = text::sample(text);
+    points.retain(|point| point.is_finite());
+    let origin = origin::middle(&mut points).origin();
+    let place = |point: &DVec3| world_from_mesh.transform_point3(*point);
+    let mut points: Vec<DVec3> = points.iter().map(place).collect();
+    builder.choose_origin(path, &mut points);
+    origin
 }
 
 /// Counts of elements that are not drawn, or not drawn as specified in the file.

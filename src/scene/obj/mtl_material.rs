@@ -94,11 +94,25 @@ impl Map {
 
     /// Path of the image, which may not exist; `None` (with a warning) if it is outside the model's folder.
     fn path(&self, builder: &mut Builder, owner: &Path) -> Option<PathBuf> {
-        let mut found = builder.files.find(&self.folder, &self.name);
-        // A comment may follow the name.
-        if let (Lookup::Missing(_), Some((name, _))) = (&found, self.name.split_once(" #")) {
-            found = builder.files.find(&self.folder, name.trim());
-        }
+        // A comment may follow the name, and some programs mean the folder of the model.
+        let plain = self
+            .name
+            .split_once(" #")
+            .map_or("", |(name, _)| name.trim());
+        let model = owner.parent().unwrap_or(Path::new(""));
+        let places = [&self.folder, model].map(|folder| [(folder, &*self.name), (folder, plain)]);
+        let places = places.into_iter().flatten();
+        let lookups = places.filter(|(_, name)| !name.is_empty());
+        let mut lookups = lookups.map(|(folder, name)| builder.files.find(folder, name));
+        let first = lookups
+            .next()
+            .unwrap_or_else(|| Lookup::Missing(self.folder.clone()));
+        let found = match first {
+            Lookup::Missing(_) => lookups
+                .find(|l| !matches!(l, Lookup::Missing(_)))
+                .unwrap_or(first),
+            found => found,
+        };
         match found {
             Lookup::Found(path) | Lookup::Missing(path) => Some(path),
             Lookup::Outside(path) => {

@@ -190,10 +190,6 @@ fn what_is_not_drawn_is_told_of() {
             "geocentric (ECEF)",
         ),
         (
-            "models/17_transmission_glass/glass_transmission.gltf",
-            "KHR_materials_transmission is not drawn",
-        ),
-        (
             "models/26_one_face_with_a_missing_vertex/house.obj",
             "line 43: \"178213\"",
         ),

@@ -14,7 +14,7 @@ use crate::gpu::record::draws::{Draws, Faces};
 use crate::gpu::record::recorder::Recorder;
 use crate::gpu::record::work::{Traffic, texels};
 
-const MAX_BINDINGS: usize = 16;
+const MAX_BINDINGS: usize = 24;
 const MAX_COLORS: usize = 8;
 /// Size of push constants supported by every device, bytes.
 const MAX_PUSH: usize = 128;

@@ -254,7 +254,7 @@ impl Context {
         }
     }
 
-    /// Whether a pipeline may [add](crate::gpu::PipelineDesc::adds) to images of `format`.
+    /// Whether a pipeline may combine fragments with images of `format`, see [`crate::gpu::Blend`].
     pub fn can_blend(&self, format: vk::Format) -> bool {
         self.can(format, vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND)
     }

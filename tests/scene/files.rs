@@ -392,7 +392,10 @@ fn the_island_is_valid() {
         list.iter().map(|named| named.name.clone()).collect()
     };
     assert_eq!(names(&island.cameras), ["bay", "temple", "veranda"]);
-    assert_eq!(names(&island.moments), ["morning", "noon", "evening"]);
+    assert_eq!(
+        names(&island.moments),
+        ["morning", "noon", "evening", "dusk", "moonlight"]
+    );
     let sea = island
         .scene
         .casting()

@@ -20,6 +20,7 @@ use crate::passes::bounces::cells::{Cells, Surroundings, Work};
 use crate::passes::bounces::tree::Tree;
 use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{Light, Show};
+use crate::passes::light::panes::{BeforePicture, Panes};
 use crate::passes::light::probe::{Probe, Reading};
 use crate::passes::occlusion::ssao::Ssao;
 use crate::passes::picture::exposure::Exposure;
@@ -29,7 +30,6 @@ use crate::passes::sky::cube::SkyCube;
 use crate::passes::sky::irradiance::Irradiance;
 use crate::passes::surfaces::gbuffer::Gbuffer;
 use crate::passes::surfaces::geometry::Geometry;
-use crate::passes::surfaces::panes::{BeforePicture, Panes};
 use crate::passes::view::{View, Window};
 use crate::scene::{Camera, Scene};
 
@@ -250,8 +250,8 @@ impl Frame {
         // None of these passes reads another's images, so without a barrier in between they may overlap.
         rec.prepare(self.gbuffer.surfaces().images().chain(shadow.target()));
         let sky = self.sky_cube.record(rec, daylight);
-        let (air, eye) = (self.air.as_mut(), view.camera.eye.y);
-        let air = air.map(|air| air.record(rec, daylight, eye));
+        let air = self.air.as_mut();
+        let air = air.map(|air| air.record(rec, daylight, view.camera.eye.y));
         let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
         let (sun_views, shadow_map, sun_glass) = shadow.record(rec, geometry);
         let surfaces = self.gbuffer.record(rec, geometry, &view);
@@ -264,8 +264,8 @@ impl Frame {
                 daylight,
                 sky_radiance: sky.radiance,
             };
-            let is_new = index == Some(0) && self.drawn.is_none_or(|drawn| drawn.index.is_some());
-            let work = cell_work(index, is_new, settings.refine);
+            let follows_average = self.drawn.is_none_or(|drawn| drawn.index.is_some());
+            let work = cell_work(index, index == Some(0) && follows_average, settings.refine);
             cells.record(rec, &around, settings.cell_bounces(is_dome), work);
         }
         let ambient = if is_dome {
@@ -294,10 +294,10 @@ impl Frame {
             sun_glass,
         };
         if let Some(panes) = &self.panes {
-            panes.record(rec, (geometry, &self.tree), &surfaces.depth, &light, &view);
+            let (scene, around) = ((geometry, &self.tree), light.surroundings());
+            panes.record(rec, scene, &surfaces.depth, &around, &view);
         }
-        let materials = geometry.materials();
-        let frame = lighting.record(rec, surfaces, materials, ambient, &light, &view);
+        let frame = lighting.record(rec, surfaces, geometry.materials(), ambient, &light, &view);
         self.background
             .record(rec, &surfaces.depth, &light, &view, frame);
         let scene = (geometry, &self.tree, self.cells.as_ref());

@@ -1,4 +1,4 @@
-// Panes of glass before the picture: transmittance, and what they mirror, see surfaces::panes.
+// Panes of glass before the picture: transmittance, and what they mirror, see light::panes.
 
 // Whether the scene has panes, set by every pipeline that shows radiance; otherwise any images are bound.
 layout(constant_id = 41) const bool PANES = false;

@@ -16,6 +16,7 @@ use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{
     Ambient, EmissionSource, Lighting, LightingSettings, Precision, Shadows, Show,
 };
+use crate::passes::light::panes::Panes;
 use crate::passes::occlusion::ssao::SsaoSettings;
 use crate::passes::picture::tone_map::{Scale, ToneMap, ToneSettings};
 use crate::passes::sky::air::{Air, LEAST_SCENE};
@@ -24,7 +25,6 @@ use crate::passes::sun_shadow::cascades;
 use crate::passes::sun_shadow::map::Shadow;
 use crate::passes::surfaces::gbuffer::Gbuffer;
 use crate::passes::surfaces::geometry::Geometry;
-use crate::passes::surfaces::panes::Panes;
 
 /// Settings that stay the same from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq)]

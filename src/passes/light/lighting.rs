@@ -19,12 +19,12 @@ use crate::gpu_struct;
 
 use crate::passes::dome::gather::BIAS_TEXELS;
 use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
+use crate::passes::light::panes::{self, BeforePicture};
 use crate::passes::sky::air::AirBefore;
 pub use crate::passes::sun_shadow::cascades::Shadows;
 use crate::passes::sun_shadow::cascades::{BLEND, MAX_RADIUS, NORMAL_OFFSET_TEXELS, SunViews};
 use crate::passes::surfaces::gbuffer::Surfaces;
 pub use crate::passes::surfaces::geometry::EmissionSource;
-use crate::passes::surfaces::panes::BeforePicture;
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
 use crate::passes::{fullscreen_at, kilo};
@@ -249,6 +249,18 @@ pub struct Light<'a> {
     pub sun_glass: Option<&'a Image>,
     /// The air before the eye.
     pub air: AirBefore<'a>,
+}
+
+impl<'a> Light<'a> {
+    /// What panes of glass mirror.
+    pub fn surroundings(&self) -> panes::Surroundings<'a> {
+        panes::Surroundings {
+            sun_direction: self.sun_direction,
+            sun_illuminance: self.daylight.direct_light().illuminance,
+            sky_irradiance: self.sky_irradiance,
+            sky_radiance: self.sky_radiance,
+        }
+    }
 }
 
 /// The lighting pass and its picture.

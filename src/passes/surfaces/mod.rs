@@ -3,5 +3,4 @@
 pub mod culling;
 pub mod gbuffer;
 pub mod geometry;
-pub mod panes;
 pub(in crate::passes) mod upload;

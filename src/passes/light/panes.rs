@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use crate::gpu::{
     Blend, Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, PipelineDesc, Recorder,
@@ -13,7 +13,6 @@ use crate::gpu_struct;
 
 use crate::passes::bounces::tree::Tree;
 use crate::passes::kilo;
-use crate::passes::light::lighting::Light;
 use crate::passes::surfaces::culling::Cull;
 use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::view::View;
@@ -47,6 +46,19 @@ const VERTEX: [Format; 2] = [Format::R32G32B32_SFLOAT; 2];
 
 /// Half floats: they can be combined on every device, and what is mirrored is a small part of the sky.
 const FORMAT: Format = Format::R16G16B16A16_SFLOAT;
+
+/// What panes mirror.
+#[derive(Clone, Copy)]
+pub struct Surroundings<'a> {
+    /// Unit vector toward the point of the sun's disc that this frame samples.
+    pub sun_direction: Vec3,
+    /// Illuminance of the directional light at normal incidence, linear BT.709 RGB, lux.
+    pub sun_illuminance: DVec3,
+    /// Irradiance E of sky and ground, klx.
+    pub sky_irradiance: &'a Image,
+    /// Radiance L of sky and ground, kcd/m².
+    pub sky_radiance: &'a Image,
+}
 
 /// The passes that draw panes, and their images.
 pub struct Panes {
@@ -99,7 +111,7 @@ impl Panes {
         recorder: &mut Recorder,
         (geometry, tree): (&Geometry, &Tree),
         depth: &Image,
-        light: &Light<'_>,
+        around: &Surroundings<'_>,
         view: &View,
     ) {
         let cull = Cull::camera(view);
@@ -119,19 +131,18 @@ impl Panes {
             .draws(|draws| {
                 geometry.draw_panes(draws, &cull, |draws, glass| draws.push(&push(glass)));
             });
-        let direct = light.daylight.direct_light();
         let pass = recorder.pass("panes: mirrored", &self.mirror);
         tree.bound_to(pass)
             .uniform("camera", &camera)
             .uniform(
                 "sun",
                 &MirroredSun {
-                    direction: light.sun_direction,
-                    illuminance: kilo(direct.illuminance),
+                    direction: around.sun_direction,
+                    illuminance: kilo(around.sun_illuminance),
                 },
             )
-            .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
-            .sample("sky_irradiance", light.sky_irradiance, Sampler::Linear)
+            .sample("sky_radiance", around.sky_radiance, Sampler::Linear)
+            .sample("sky_irradiance", around.sky_irradiance, Sampler::Linear)
             .color(&self.mirrored, Load::Clear([0.0; 4]))
             .depth_test(depth)
             .draws(|draws| {

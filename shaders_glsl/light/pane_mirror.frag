@@ -27,7 +27,7 @@ vec3 seen(vec3 origin, vec3 toward) {
     Surface surface = surface_of(hit, origin, toward);
     vec3 irradiance = textureLod(sky_irradiance, surface.normal, 0.0).rgb;
     float cosine = dot(surface.normal, sun.direction);
-    bool is_lit = cosine > 0.0 && sun.illuminance != vec3(0.0) && !any_hit(surface.position, sun.direction, FAR);
+    bool is_lit = cosine > 0.0 && sun.illuminance != vec3(0.0) && traced(surface.position, sun.direction, FAR, true, PANES_ARE_OPEN).distance == FAR;
     if (is_lit) irradiance += cosine * sun.illuminance;
     return surface.albedo / PI * irradiance + surface.emission;
 }

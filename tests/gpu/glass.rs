@@ -93,6 +93,33 @@ fn a_uniform_sky_passes_a_pane_from_cells_and_from_shadow_maps() {
     }
 }
 
+/// The pane's triangles lie between those of two bodies in the index buffer, and must not be drawn with them.
+#[test]
+fn a_pane_between_two_bodies_is_no_wall() {
+    let mut device = Device::new();
+    let day = constant_sky(1000.0);
+    let scene = |pane: Option<&Material>| {
+        let model =
+            Model::default()
+                .ground(3.0, &matt(0.5))
+                .cube([40.0, 0.5, 0.0], 0.5, &matt(0.5));
+        let model = match pane {
+            Some(pane) => model.square([0.0, 2.0, 0.0], 400.0, pane),
+            None => model,
+        };
+        model.cube([-40.0, 0.5, 0.0], 0.5, &matt(0.5)).build()
+    };
+    let expected = hemispherical(internal_transmittance(0.8));
+    for (name, set) in both() {
+        let set = showing(Show::Sky, set);
+        let mut lit = |scene: &Scene| mean(&device.picture(scene, set, &day, &below()));
+        let ratio = lit(&scene(Some(&glass([0.8; 3])))) / lit(&scene(None));
+        println!("{name}: {ratio:.4} of {expected:.4}");
+        let bound = if name == "single" { 0.05 } else { 0.01 };
+        assert!((ratio / expected - 1.0).abs() < bound, "{name}: {ratio}");
+    }
+}
+
 /// Up through the pane: the sky dimmed by angle, and below it what the pane mirrors of a black floor: nothing.
 #[test]
 fn the_view_through_a_pane_is_dimmed_and_mirrors_what_is_there() {

@@ -132,7 +132,7 @@ pub struct Geometry {
     parts: Vec<Part>,
     /// Panes of glass.
     panes: Vec<Part>,
-    /// Cluster ranges of opaque casters, in index order.
+    /// Cluster ranges of opaque casters, in index order; no two touch.
     casting: Vec<Range<usize>>,
     surfaces: Vec<Surface>,
     textures: Vec<(Image, Sampler)>,
@@ -266,10 +266,11 @@ impl Geometry {
             return;
         }
         draws.geometry(&[&self.positions], &self.indices);
-        let casting = self.casting.iter();
-        let clusters = casting.flat_map(|range| &self.clusters[range.clone()]);
-        for run in Runs::new(clusters, cull) {
-            run.draw(draws);
+        // A run may go on over culled clusters, so each range has its own: between them are panes and cut-outs.
+        for range in &self.casting {
+            for run in Runs::new(&self.clusters[range.clone()], cull) {
+                run.draw(draws);
+            }
         }
     }
 
@@ -459,11 +460,18 @@ fn internal(transmittance: [f32; 3]) -> Vec3 {
     Vec3::from(transmittance.map(one))
 }
 
-/// Cluster ranges of opaque casters, in index order, so that runs continue from part to part.
+/// Cluster ranges of opaque casters, in index order; those that touch are one, so that runs continue from part to part.
 fn casting(parts: &[Part]) -> Vec<Range<usize>> {
     let solid = parts.iter().filter(|p| p.casts && !p.kind.cut_out);
     let mut ranges: Vec<Range<usize>> = solid.map(|p| p.clusters.clone()).collect();
     ranges.sort_by_key(|range| range.start);
+    ranges.dedup_by(|next, before| {
+        let touches = before.end == next.start;
+        if touches {
+            before.end = next.end;
+        }
+        touches
+    });
     ranges
 }
 

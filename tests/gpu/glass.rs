@@ -102,12 +102,12 @@ fn a_pane_between_two_bodies_is_no_wall() {
         let model =
             Model::default()
                 .ground(3.0, &matt(0.5))
-                .cube([40.0, 0.5, 0.0], 0.5, &matt(0.5));
+                .cube([1.2, 0.05, 0.0], 0.05, &matt(0.5));
         let model = match pane {
             Some(pane) => model.square([0.0, 2.0, 0.0], 400.0, pane),
             None => model,
         };
-        model.cube([-40.0, 0.5, 0.0], 0.5, &matt(0.5)).build()
+        model.cube([-1.2, 0.05, 0.0], 0.05, &matt(0.5)).build()
     };
     let expected = hemispherical(internal_transmittance(0.8));
     for (name, set) in both() {

@@ -18,7 +18,10 @@ use skylight::scene::{Camera, Scene};
 #[path = "model.rs"]
 mod model;
 
-pub use model::{Model, clear_day, closed_box, constant_sky, glowing, matt, polygon_irradiance};
+pub use model::{
+    Model, clear_day, closed_box, constant_sky, glass, glowing, hemispherical_transmittance, matt,
+    polygon_irradiance,
+};
 
 /// Relative step of 16-bit floats. Vulkan lets a device round to either neighbour (lavapipe truncates), so the error of a
 /// stored value is a whole step, not half of one.

@@ -2,6 +2,7 @@
 #![allow(dead_code)]
 
 use glam::{DVec3, Quat, Vec3};
+use skylight::daylight::glass::{internal_transmittance, pane};
 use skylight::daylight::sky::{Conditions, Daylight, SkyModel};
 use skylight::scene::{Bounds, Material, Part, Scene};
 
@@ -41,6 +42,23 @@ pub fn glowing(diffuse: f32, emission: f32) -> Material {
         emission: [emission; 3],
         ..matt(diffuse)
     }
+}
+
+/// A pane of clear glass with this transmittance at normal incidence.
+pub fn glass(transmittance: [f32; 3]) -> Material {
+    Material {
+        glass: Some(transmittance),
+        ..matt(0.0)
+    }
+}
+
+/// The part of a uniform sky's light that a pane of this transmittance at normal incidence lets through: 2 times the integral of
+/// T sin cos, by quadrature.
+pub fn hemispherical_transmittance(normal: f64) -> f64 {
+    let (n, internal) = (4000, internal_transmittance(normal));
+    let angle = |i: usize| (i as f64 + 0.5) / n as f64 * std::f64::consts::FRAC_PI_2;
+    let share = |a: f64| 2.0 * pane(internal, a.cos())[0] * a.sin() * a.cos();
+    (0..n).map(|i| share(angle(i))).sum::<f64>() * std::f64::consts::FRAC_PI_2 / n as f64
 }
 
 /// A closed box around the origin; every surface has this material.

@@ -1,21 +1,12 @@
 //! Sensors behind panes of glass, against closed forms and reference values.
 
-use std::f64::consts::PI;
-
 use glam::{DVec3, Vec3};
 use skylight::daylight::Daylight;
 use skylight::daylight::glass::{internal_transmittance, pane};
 use skylight::scene::{Material, Scene};
 
 use crate::bounces::{facing, mean, readings};
-use crate::model::{Model, clear_day, constant_sky, matt};
-
-fn glass(transmittance: [f32; 3]) -> Material {
-    Material {
-        glass: Some(transmittance),
-        ..matt(0.0)
-    }
-}
+use crate::model::{Model, clear_day, constant_sky, glass, hemispherical_transmittance, matt};
 
 /// A wide pane 1 m above the sensor.
 fn sheets(material: &Material, count: u32) -> Scene {
@@ -59,14 +50,6 @@ fn the_sun_passes_a_pane_by_its_angle_and_two_sheets_twice() {
     }
 }
 
-/// The hemispherical transmittance, 2 times the integral of T sin cos, by quadrature.
-fn hemispherical(internal: f64) -> f64 {
-    let n = 4000;
-    let angle = |i: usize| (i as f64 + 0.5) / n as f64 * PI / 2.0;
-    let share = |a: f64| 2.0 * pane(internal, a.cos())[0] * a.sin() * a.cos();
-    (0..n).map(|i| share(angle(i))).sum::<f64>() * PI / 2.0 / n as f64
-}
-
 #[test]
 fn a_uniform_sky_passes_with_the_hemispherical_transmittance() {
     let day = constant_sky(100.0);
@@ -74,7 +57,7 @@ fn a_uniform_sky_passes_with_the_hemispherical_transmittance() {
     for transmittance in [0.9, 0.6] {
         let scene = sheets(&glass([transmittance; 3]), 1);
         let found = below(&scene, &day) / open;
-        let expected = hemispherical(internal_transmittance(transmittance.into()));
+        let expected = hemispherical_transmittance(transmittance.into());
         println!("{transmittance}: {found:.4} of {expected:.4}");
         assert!(
             (found / expected - 1.0).abs() < 0.005,

@@ -1,7 +1,5 @@
 //! Panes of glass in pictures: the light of sun and sky through them, the view through them, what they mirror; against the formulas.
 
-use std::f64::consts::PI;
-
 use glam::{DVec3, Vec3};
 use skylight::daylight::colour::luminance;
 use skylight::daylight::glass::{internal_transmittance, pane};
@@ -11,17 +9,13 @@ use skylight::passes::light::lighting::Show;
 use skylight::scene::{Camera, Material, Scene};
 
 use crate::bounces::{converged, mean, single, with_bounces};
-use crate::gpu::{Device, Model, camera, clear_day, constant_sky, matt, showing};
+use crate::gpu::{
+    Device, Model, camera, clear_day, constant_sky, glass, hemispherical_transmittance, matt,
+    showing,
+};
 
 /// Transmittance at normal incidence of the panes: the luminance is 0.5.
 const TINT: [f32; 3] = [0.4, 0.52, 0.596];
-
-fn glass(transmittance: [f32; 3]) -> Material {
-    Material {
-        glass: Some(transmittance),
-        ..matt(0.0)
-    }
-}
 
 /// A wide pane 2 m above a floor, if there is one.
 fn roofed(material: Option<&Material>) -> Scene {
@@ -69,20 +63,12 @@ fn the_sun_passes_a_pane_by_its_angle_and_colour() {
     }
 }
 
-/// The hemispherical transmittance, 2 times the integral of T sin cos, by quadrature.
-fn hemispherical(internal: f64) -> f64 {
-    let n = 4000;
-    let angle = |i: usize| (i as f64 + 0.5) / n as f64 * PI / 2.0;
-    let share = |a: f64| 2.0 * pane(internal, a.cos())[0] * a.sin() * a.cos();
-    (0..n).map(|i| share(angle(i))).sum::<f64>() * PI / 2.0 / n as f64
-}
-
 #[test]
 fn a_uniform_sky_passes_a_pane_from_cells_and_from_shadow_maps() {
     let mut device = Device::new();
     let day = constant_sky(1000.0);
     let scene = roofed(Some(&glass([0.7; 3])));
-    let expected = 0.5 * hemispherical(internal_transmittance(0.7));
+    let expected = 0.5 * hemispherical_transmittance(0.7);
     for (name, set) in both() {
         let set = showing(Show::Sky, set);
         let found = mean(&device.picture(&scene, set, &day, &below()));
@@ -109,7 +95,7 @@ fn a_pane_between_two_bodies_is_no_wall() {
         };
         model.cube([-1.2, 0.05, 0.0], 0.05, &matt(0.5)).build()
     };
-    let expected = hemispherical(internal_transmittance(0.8));
+    let expected = hemispherical_transmittance(0.8);
     for (name, set) in both() {
         let set = showing(Show::Sky, set);
         let mut lit = |scene: &Scene| mean(&device.picture(scene, set, &day, &below()));

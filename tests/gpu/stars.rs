@@ -39,16 +39,19 @@ fn brightest(day: &Daylight) -> PointLight {
         .expect("stars")
 }
 
+/// A night with stars, and the same without.
+fn nights() -> [Daylight; 2] {
+    let black = Daylight {
+        stars: None,
+        ..night()
+    };
+    [night(), black]
+}
+
 #[test]
 fn a_star_keeps_its_place_and_its_flux_at_every_size_and_angle() {
     let mut device = Device::new();
-    let (day, black) = (
-        night(),
-        Daylight {
-            stars: None,
-            ..night()
-        },
-    );
+    let [day, black] = nights();
     let sirius = brightest(&day);
     let mut flux = Worst::new("flux of Sirius in the picture", 0.01);
     let mut place = Worst::new("centre of its light, pixels", 0.05);
@@ -98,13 +101,7 @@ fn a_star_keeps_its_place_and_its_flux_at_every_size_and_angle() {
 #[test]
 fn all_stars_in_view_are_drawn_once_and_none_before_a_surface() {
     let mut device = Device::new();
-    let (day, black) = (
-        night(),
-        Daylight {
-            stars: None,
-            ..night()
-        },
-    );
+    let [day, black] = nights();
     let mut view = toward(brightest(&day).direction + DVec3::Y * 0.2);
     view.fov_deg = 45.0;
     let set = dark(320, 200);

@@ -1,5 +1,6 @@
 //! Sensors in rooms against a path tracer: `skylight daylight`, all bounces.
 
+use std::path::Path;
 use std::process::Command;
 
 use crate::common;
@@ -9,6 +10,23 @@ fn rows(text: &str) -> Vec<Vec<f64>> {
     let lines = text.lines().skip(1).filter(|line| !line.is_empty());
     let cells = lines.map(|line| line.split(',').map(|cell| cell.parse().expect("a number")));
     cells.map(Iterator::collect).collect()
+}
+
+/// Runs `skylight daylight` for a model and its sensors, with this relative error; its CSV.
+fn ran(model: &Path, grid: &Path, error: &str, light: &[&str]) -> Vec<Vec<f64>> {
+    let output = Command::new(env!("CARGO_BIN_EXE_skylight"))
+        .arg("daylight")
+        .arg(model)
+        .arg("--grid")
+        .arg(grid)
+        .args(light)
+        .args(["--ground-albedo", "0", "--error", error])
+        .args(["--csv", "--quiet"])
+        .output()
+        .expect("it runs");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{errors}");
+    rows(&String::from_utf8_lossy(&output.stdout))
 }
 
 /// Runs `skylight daylight` for the sensors of a room; its CSV.
@@ -21,25 +39,8 @@ fn measured(room: &str, sensors: &[Vec<f64>], light: &[&str]) -> Vec<Vec<f64>> {
         .map(|s| format!("{},{},{}", s[0], s[1], s[2]))
         .collect();
     std::fs::write(&grid, lines.join("\n")).expect("written");
-    let output = Command::new(env!("CARGO_BIN_EXE_skylight"))
-        .arg("daylight")
-        .arg(shared.join(format!("gi/{room}/{room}.obj")))
-        .arg("--grid")
-        .arg(&grid)
-        .args(light)
-        .args([
-            "--ground-albedo",
-            "0",
-            "--error",
-            "0.02",
-            "--csv",
-            "--quiet",
-        ])
-        .output()
-        .expect("it runs");
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{errors}");
-    rows(&String::from_utf8_lossy(&output.stdout))
+    let model = shared.join(format!("gi/{room}/{room}.obj"));
+    ran(&model, &grid, "0.02", light)
 }
 
 /// Sensors of a room under a light against the path tracer's: the mean of all within 1 %, of each row of six within 3 %, and errors
@@ -134,26 +135,16 @@ fn an_office_behind_glass_meets_the_path_tracer() {
     let header: Vec<&str> = table.lines().next().expect("a header").split(',').collect();
     let truth = rows(&table);
     for (moment, sun, [dni, dhi, dew_point]) in MOMENTS {
-        let output = Command::new(env!("CARGO_BIN_EXE_skylight"))
-            .arg("daylight")
-            .arg(folder.join("models/office_glass.obj"))
-            .arg("--grid")
-            .arg(folder.join("models/office.pts"))
-            .args(["--sun", sun, "--sky", "perez", "--dni", dni, "--dhi", dhi])
-            .arg(format!("--dew-point={dew_point}"))
-            .args([
-                "--ground-albedo",
-                "0",
-                "--error",
-                "0.03",
-                "--csv",
-                "--quiet",
-            ])
-            .output()
-            .expect("it runs");
-        let errors = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{errors}");
-        let ours = rows(&String::from_utf8_lossy(&output.stdout));
+        let dew_point = format!("--dew-point={dew_point}");
+        let light = [
+            "--sun", sun, "--sky", "perez", "--dni", dni, "--dhi", dhi, &dew_point,
+        ];
+        let ours = ran(
+            &folder.join("models/office_glass.obj"),
+            &folder.join("models/office.pts"),
+            "0.03",
+            &light,
+        );
         assert_eq!(ours.len(), truth.len());
         let sum = |names: &[&str]| -> f64 {
             let names = names.iter().map(|name| format!("m{moment}_{name}"));

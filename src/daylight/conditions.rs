@@ -1,6 +1,5 @@
 //! What decides a daylight: the model of the sky and its inputs, and their ranges.
 
-use super::atmosphere::Atmosphere;
 use super::atmosphere::air::Air;
 use super::cie::{self, SkyCover, StandardSky, standard_sky};
 use super::moon::Moon;
@@ -159,13 +158,6 @@ impl Conditions {
             ground_albedo: self.ground_albedo,
             ..self.air
         }
-    }
-
-    /// The air that [`super::sky::Daylight::new`] would have to solve first, which takes the time of some ten frames.
-    pub fn unsolved_air(&self) -> Option<Air> {
-        let air = self.air_over_ground();
-        let is_needed = self.model == SkyModel::Atmosphere && !Atmosphere::is_solved(&air);
-        is_needed.then_some(air)
     }
 
     /// These conditions with every value within its range; `warnings` takes a sentence for each one that was not.

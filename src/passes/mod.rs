@@ -16,11 +16,17 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 
+use crate::daylight::glass;
 use crate::gpu::{Blend, Context, Depth, Format, Pipeline, PipelineDesc, Result, Shader, shaders};
 
 /// cd/m² to kcd/m², lux to klx.
 fn kilo(rgb: DVec3) -> Vec3 {
     (rgb * 1e-3).as_vec3()
+}
+
+/// The index of refraction for `include/glass.glsl`.
+fn glass_index() -> (&'static str, u32) {
+    ("GLASS_INDEX", (glass::INDEX as f32).to_bits())
 }
 
 /// A compute pipeline.

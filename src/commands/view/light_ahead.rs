@@ -3,7 +3,7 @@
 use std::thread::{self, JoinHandle};
 
 use crate::commands::job::Job;
-use crate::commands::light::{conditions, sun_position};
+use crate::commands::light::{sun_position, unsolved_air};
 use crate::daylight::atmosphere::Atmosphere;
 use crate::error::Result;
 use crate::options::Options;
@@ -44,10 +44,11 @@ impl LightAhead {
         if job.settings.light() == self.lit.light() {
             return Ok(());
         }
-        let wanted = conditions(&job.settings, &sun_position(&job.settings)?);
-        match wanted.unsolved_air() {
+        match unsolved_air(&job.settings) {
             None => self.relight(job, job.settings.clone()),
             Some(air) => {
+                // A moment that the ephemeris does not cover is refused now, not after the wait.
+                sun_position(&job.settings)?;
                 let thread = thread::spawn(move || drop(Atmosphere::of(&air)));
                 self.solving = Some((job.settings.clone(), thread));
                 Ok(())

@@ -10,7 +10,7 @@ use crate::daylight::glass;
 use crate::gpu::{Format, Image, ImageDesc, Pass, Recorder, Result, Sampler, upload_texture};
 use crate::passes::bounces::shared_exponent;
 use crate::passes::bounces::wide::{Wide, WideNode};
-use crate::passes::kilo;
+use crate::passes::{glass_index, kilo};
 use crate::scene::{Emitter, Emitters, Mean, Reflectances, Scene, Triangle};
 
 /// Nodes and triangles in a row of their images; the rows are longer if there would be too many.
@@ -85,7 +85,7 @@ impl Tree {
     /// Constants of pipelines that trace rays.
     pub fn constants(&self) -> [(&'static str, u32); 4] {
         [
-            ("GLASS_INDEX", (glass::INDEX as f32).to_bits()),
+            glass_index(),
             ("NODE_COLUMNS", self.node_columns),
             ("TRIANGLE_COLUMNS", self.triangle_columns),
             ("MOST_STEPS", self.most_steps),

@@ -15,7 +15,7 @@ use crate::gpu::{
 use crate::gpu_struct;
 
 use crate::passes::dome::gather::{DomeBlock, DomeSettings, Gathered};
-use crate::passes::light::lighting::{LightingSettings, Show};
+use crate::passes::light::lighting::LightingSettings;
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
 use crate::passes::{fullscreen, fullscreen_at};
@@ -78,10 +78,7 @@ impl SpecularSky {
         dome: DomeSettings,
         lighting: LightingSettings,
     ) -> Result<Option<Self>> {
-        let is_shown = matches!(
-            lighting.show,
-            Show::Beauty | Show::Luminance | Show::SkySpecular
-        );
+        let is_shown = lighting.show.is_mirrored();
         let hidden = lighting.mirrors.reflections == Reflections::Hidden;
         if !(is_shown && hidden && lighting.specular_scale > 0.0) {
             return Ok(None);

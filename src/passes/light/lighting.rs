@@ -128,8 +128,8 @@ impl Show {
         }
     }
 
-    /// Whether what panes of glass mirror is part of it.
-    pub(super) fn is_mirrored(self) -> bool {
+    /// Whether what surfaces and panes of glass mirror of the sky is part of it.
+    pub(in crate::passes) fn is_mirrored(self) -> bool {
         matches!(self, Self::Beauty | Self::Luminance | Self::SkySpecular)
     }
 

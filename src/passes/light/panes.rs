@@ -12,10 +12,10 @@ use crate::gpu::{
 use crate::gpu_struct;
 
 use crate::passes::bounces::tree::Tree;
-use crate::passes::kilo;
 use crate::passes::surfaces::culling::Cull;
 use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::view::View;
+use crate::passes::{glass_index, kilo};
 
 gpu_struct! {
     /// The camera.
@@ -78,10 +78,7 @@ impl Panes {
     /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, tree: &Tree, size: [u32; 2], scale: f32) -> Result<Self> {
         let image = |name| Image::new(context, &ImageDesc::flat(name, FORMAT, size));
-        let pipeline = |name, fragment: &'static Shader, blend| {
-            let all = tree.constants();
-            let declared = |name: &str| fragment.constants.iter().any(|c| c.0 == name);
-            let constants: Vec<(&str, u32)> = all.into_iter().filter(|c| declared(c.0)).collect();
+        let pipeline = |name, fragment: &'static Shader, blend, constants: &[(&str, u32)]| {
             Pipeline::new(
                 context,
                 &PipelineDesc {
@@ -91,14 +88,14 @@ impl Panes {
                     colors: &[FORMAT],
                     depth: Depth::Test(Format::D32_SFLOAT),
                     blend,
-                    constants: &constants,
+                    constants,
                 },
             )
         };
         let (through, mirror) = (&shaders::PANE_THROUGH_FRAG, &shaders::PANE_MIRROR_FRAG);
         Ok(Self {
-            through: pipeline("panes: through", through, Blend::Multiply)?,
-            mirror: pipeline("panes: mirrored", mirror, Blend::Add)?,
+            through: pipeline("panes: through", through, Blend::Multiply, &[glass_index()])?,
+            mirror: pipeline("panes: mirrored", mirror, Blend::Add, &tree.constants())?,
             transmittance: image("panes: transmittance")?,
             mirrored: image("panes: mirrored")?,
             scale,
@@ -119,20 +116,24 @@ impl Panes {
             clip_from_world: view.clip_from_world().to_cols_array_2d(),
             eye: view.camera.eye,
         };
-        let push = |internal| Push {
-            internal,
-            scale: self.scale,
-        };
-        recorder
-            .pass("panes: through", &self.through)
-            .uniform("camera", &camera)
-            .color(&self.transmittance, Load::Clear([1.0; 4]))
-            .depth_test(depth)
-            .draws(|draws| {
-                geometry.draw_panes(draws, &cull, |draws, glass| draws.push(&push(glass)));
+        let draw = |pass: Pass<'_>| {
+            pass.depth_test(depth).draws(|draws| {
+                geometry.draw_panes(draws, &cull, |draws, internal| {
+                    draws.push(&Push {
+                        internal,
+                        scale: self.scale,
+                    });
+                });
             });
+        };
+        let pass = recorder.pass("panes: through", &self.through);
+        draw(
+            pass.uniform("camera", &camera)
+                .color(&self.transmittance, Load::Clear([1.0; 4])),
+        );
         let pass = recorder.pass("panes: mirrored", &self.mirror);
-        tree.bound_to(pass)
+        let pass = tree
+            .bound_to(pass)
             .uniform("camera", &camera)
             .uniform(
                 "sun",
@@ -143,11 +144,8 @@ impl Panes {
             )
             .sample("sky_radiance", around.sky_radiance, Sampler::Linear)
             .sample("sky_irradiance", around.sky_irradiance, Sampler::Linear)
-            .color(&self.mirrored, Load::Clear([0.0; 4]))
-            .depth_test(depth)
-            .draws(|draws| {
-                geometry.draw_panes(draws, &cull, |draws, glass| draws.push(&push(glass)));
-            });
+            .color(&self.mirrored, Load::Clear([0.0; 4]));
+        draw(pass);
     }
 }
 

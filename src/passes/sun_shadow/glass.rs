@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::daylight::glass::INDEX;
 use crate::gpu::{
     Blend, Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, PipelineDesc, Recorder,
     Result, shaders,
 };
 use crate::gpu_struct;
 
+use crate::passes::glass_index;
 use crate::passes::sun_shadow::map::{Tile, around};
 use crate::passes::surfaces::geometry::Geometry;
 
@@ -46,7 +46,7 @@ pub(super) fn by_chance(context: &Arc<Context>) -> Result<Pipeline> {
                 slope_bias: 0.0,
             },
             blend: Blend::Off,
-            constants: &[("GLASS_INDEX", (INDEX as f32).to_bits())],
+            constants: &[glass_index()],
         },
     )
 }
@@ -96,7 +96,7 @@ impl SunGlass {
                 colors: &[FORMAT],
                 depth: Depth::Off,
                 blend: Blend::MultiplyAndMost,
-                constants: &[("GLASS_INDEX", (INDEX as f32).to_bits())],
+                constants: &[glass_index()],
             },
         )?;
         let desc = ImageDesc::flat("sun through glass", FORMAT, size);

@@ -21,53 +21,46 @@ except ImportError as error:
 mi.set_variant("scalar_rgb")
 
 
+def sampled(meter, **more):
+    """A meter of one pixel."""
+    return {
+        "type": meter,
+        "sampler": {"type": "multijitter", "sample_count": 1 << 18},
+        "film": {"type": "hdrfilm", "width": 1, "height": 1, "pixel_format": "rgb",
+                 "rfilter": {"type": "box"}, "component_format": "float32"},
+        **more,
+    }
+
+
+def plane(normal, reflectance, **more):
+    """A small rectangle that faces `normal`."""
+    up = [0, 0, 1] if abs(normal[2]) < 0.9 else [1, 0, 0]
+    return {
+        "type": "rectangle",
+        "to_world": mi.ScalarTransform4f().look_at([0, 0, 0], normal, up),
+        "bsdf": {"type": "diffuse", "reflectance": reflectance},
+        **more,
+    }
+
+
+def measured(path, **parts):
+    """What the meter among the parts of a scene under the sky measures, linear RGB."""
+    sky = {"type": "envmap", "filename": path}
+    pixel = mi.render(mi.load_dict({"type": "scene", "integrator": {"type": "direct"}, "sky": sky, **parts}))
+    return [float(pixel.array[c]) for c in range(3)]
+
+
 def irradiance(path, normal):
     """Irradiance (linear RGB) of a plane that faces `normal`, by an irradiance meter on a small rectangle."""
-    up = [0, 0, 1] if abs(normal[2]) < 0.9 else [1, 0, 0]
-    scene = mi.load_dict({
-        "type": "scene",
-        "integrator": {"type": "direct"},
-        "sky": {"type": "envmap", "filename": path},
-        "plane": {
-            "type": "rectangle",
-            "to_world": mi.ScalarTransform4f().look_at([0, 0, 0], normal, up),
-            "bsdf": {"type": "diffuse", "reflectance": 0.0},
-            "meter": {
-                "type": "irradiancemeter",
-                "sampler": {"type": "multijitter", "sample_count": 1 << 18},
-                "film": {"type": "hdrfilm", "width": 1, "height": 1, "pixel_format": "rgb",
-                         "rfilter": {"type": "box"}, "component_format": "float32"},
-            },
-        },
-    })
-    pixel = mi.render(scene)
-    return [float(pixel.array[c]) for c in range(3)]
+    return measured(path, plane=plane(normal, 0.0, meter=sampled("irradiancemeter")))
 
 
 def illuminated(path, lights):
     """Irradiance (linear RGB) of a plane that faces up, from the light that a white matt plane reflects: an irradiance meter does not
     meet the light of a direction."""
-    scene = mi.load_dict({
-        "type": "scene",
-        "integrator": {"type": "direct"},
-        "sky": {"type": "envmap", "filename": path},
-        **lights,
-        "plane": {
-            "type": "rectangle",
-            "to_world": mi.ScalarTransform4f().look_at([0, 0, 0], [0, 1, 0], [0, 0, 1]),
-            "bsdf": {"type": "diffuse", "reflectance": 1.0},
-        },
-        "meter": {
-            "type": "radiancemeter",
-            "origin": [0.1, 1, 0.2],
-            "direction": [0, -1, 0],
-            "sampler": {"type": "multijitter", "sample_count": 1 << 18},
-            "film": {"type": "hdrfilm", "width": 1, "height": 1, "pixel_format": "rgb",
-                     "rfilter": {"type": "box"}, "component_format": "float32"},
-        },
-    })
-    pixel = mi.render(scene)
-    return [3.141592653589793 * float(pixel.array[c]) for c in range(3)]
+    meter = sampled("radiancemeter", origin=[0.1, 1, 0.2], direction=[0, -1, 0])
+    radiance = measured(path, **lights, plane=plane([0, 1, 0], 1.0), meter=meter)
+    return [3.141592653589793 * value for value in radiance]
 
 
 def brightest_azimuth(path, elevation):

@@ -170,7 +170,7 @@ choices! {
         Bounces = "bounces": "ρ_d/π E_bounces, the light of other surfaces, cd/m²",
         Emission = "emission": "L_e, the light that surfaces emit, cd/m²",
         SunSpecular = "sun-specular": "ρ_s (r·l)^p V E_sun, cd/m²",
-        SkySpecular = "sky-specular": "ρ_s L_sky(r), cd/m²",
+        SkySpecular = "sky-specular": "ρ_s L_sky(r), and what panes of glass mirror, cd/m²",
         Air = "air": "L_air, the light that the air scatters between surfaces and the eye, cd/m²",
         Background = "background": "Sky, ground and the sun's disc where no surface is, cd/m²",
         Visibility = "visibility": "V, 0..1",

@@ -64,15 +64,16 @@ fn a_constant_sky_stays_what_it_is() {
     let mut device = Device::new();
     let mut worst = Worst::new("L = 1 kcd/m² prefiltered", 1e-3);
     let specular = filtered(&mut device, &constant_sky(1000.0), ROUTES[0]);
-    for level in 0..ggx::levels(EDGE) as usize {
-        let cube = device.read_cube(specular.level(level).expect("a level"));
-        for (_, found, texel) in cube.iter() {
-            worst.see(
-                (found - 1.0).abs().max_element(),
-                format!("{level} {texel}"),
-            );
+    let mut see = |device: &mut Device, specular: &SpecularCube, what: &str| {
+        for level in 0..ggx::levels(EDGE) as usize {
+            let cube = device.read_cube(specular.level(level).expect("a level"));
+            for (_, found, texel) in cube.iter() {
+                let error = (found - 1.0).abs().max_element();
+                worst.see(error, format!("{what} {level} {texel}"));
+            }
         }
-    }
+    };
+    see(&mut device, &specular, "of the sky");
     // Filtered again, from the assembled levels: each of them was written.
     let mut specular = specular;
     let mut again = device.run(|rec| SpecularCube::new(rec, SAMPLES, None).expect("a cube"));
@@ -82,14 +83,6 @@ fn a_constant_sky_stays_what_it_is() {
         let smooth = specular.record(rec, &images);
         again.record(rec, &SkyImages { smooth, ..images });
     });
-    for level in 0..ggx::levels(EDGE) as usize {
-        let cube = device.read_cube(again.level(level).expect("a level"));
-        for (_, found, texel) in cube.iter() {
-            worst.see(
-                (found - 1.0).abs().max_element(),
-                format!("again {level} {texel}"),
-            );
-        }
-    }
+    see(&mut device, &again, "again");
     worst.finish();
 }

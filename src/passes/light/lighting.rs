@@ -59,7 +59,7 @@ pub enum Show {
     Emission,
     /// ρ_s (r·l)^p V E_sun, cd/m².
     SunSpecular,
-    /// ρ_s L_sky(r), cd/m².
+    /// ρ_s L_sky(r), and what panes of glass mirror, cd/m².
     SkySpecular,
     /// L_air, the light that the air scatters between surface and eye, cd/m².
     Air,

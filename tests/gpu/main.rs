@@ -31,7 +31,6 @@ mod rays;
 mod reflections;
 mod shadow;
 mod sky;
-mod specular;
 mod ssao;
 mod stars;
 mod steady_frame;

@@ -5,4 +5,3 @@ pub mod atmosphere;
 pub mod cube;
 pub mod irradiance;
 pub mod route;
-pub mod specular;

@@ -1,12 +1,11 @@
 //! Resolves options into a sun position and a daylight. `sky` and `bake` need nothing else.
 
-use crate::daylight::atmosphere::Atmosphere;
 use crate::daylight::atmosphere::air::{
     Air, aod_of_turbidity, aod_of_visibility, turbidity_of_aod,
 };
 use crate::daylight::moon::Moon;
 use crate::daylight::perez::Measured;
-use crate::daylight::sky::{Conditions, Daylight, SkyModel};
+use crate::daylight::sky::{Conditions, Daylight};
 use crate::daylight::stars::StarrySky;
 use crate::daylight::sun_position::{SunPosition, lecture};
 use crate::error::Result;
@@ -137,13 +136,6 @@ pub fn turbidity(settings: &Options) -> f64 {
     let of_air = || is_air_given.then(|| turbidity_of_aod(air(settings).aod));
     let default = Conditions::default().turbidity;
     given.or_else(of_air).unwrap_or(default)
-}
-
-/// The air that a daylight of the options would have to solve first, which takes the time of some ten frames.
-pub fn unsolved_air(settings: &Options) -> Option<Air> {
-    let air = air(settings);
-    let is_needed = settings.sky == SkyModel::Atmosphere && !Atmosphere::is_solved(&air);
-    is_needed.then_some(air)
 }
 
 /// The air of the options, over their ground.

@@ -3,8 +3,10 @@
 use std::thread::{self, JoinHandle};
 
 use crate::commands::job::Job;
-use crate::commands::light::{sun_position, unsolved_air};
+use crate::commands::light::{air, sun_position};
 use crate::daylight::atmosphere::Atmosphere;
+use crate::daylight::atmosphere::air::Air;
+use crate::daylight::sky::SkyModel;
 use crate::error::Result;
 use crate::options::Options;
 
@@ -70,4 +72,11 @@ impl LightAhead {
         self.lit = options;
         Ok(())
     }
+}
+
+/// The air that a daylight of the options would have to solve first, which takes the time of some ten frames.
+fn unsolved_air(settings: &Options) -> Option<Air> {
+    let air = air(settings);
+    let is_needed = settings.sky == SkyModel::Atmosphere && !Atmosphere::is_solved(&air);
+    is_needed.then_some(air)
 }

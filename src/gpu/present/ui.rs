@@ -125,9 +125,9 @@ impl Overlay {
 
 impl Drop for Overlay {
     fn drop(&mut self) {
+        self.context.settle();
         // SAFETY: the device is idle, so nothing of the pool or the renderer is in use.
         unsafe {
-            let _ = self.context.raw().device_wait_idle();
             self.context
                 .raw()
                 .destroy_command_pool(self.command_pool, None);

@@ -1,6 +1,7 @@
-// A Vulkan layer that pretends another device: the one of PRETENCE (a source file, macro), and three more words of FAKE.
+// A Vulkan layer that pretends another device: the one of PRETENCE (a source file, macro), and more words of FAKE.
 //   apple   answers also for the extension VK_KHR_portability_subset: no features, strides of 4 bytes; wide: of 16
 //   apart   a family of queues that draws but does not compute stands before the device's own
+//   less    has less than Vulkan guarantees: 4 bytes of push constants, one sampled image a stage
 //   hang    waits for fences end with a timeout; a wait for the whole device after that is told on stderr
 #define vkNegotiateLoaderLayerInterfaceVersion negotiate_pretence
 #include PRETENCE
@@ -19,8 +20,20 @@ static void VKAPI_CALL features2(VkPhysicalDevice device, VkPhysicalDeviceFeatur
     if (subset) memset(subset + 1, 0, 15 * sizeof(VkBool32));
 }
 
+static void lessen(VkPhysicalDeviceLimits *limits) {
+    if (!on("less")) return;
+    limits->maxPushConstantsSize = 4;
+    limits->maxPerStageDescriptorSampledImages = 1;
+}
+
+static void VKAPI_CALL properties(VkPhysicalDevice device, VkPhysicalDeviceProperties *properties) {
+    Props(device, properties);
+    lessen(&properties->limits);
+}
+
 static void VKAPI_CALL properties2(VkPhysicalDevice device, VkPhysicalDeviceProperties2 *properties) {
     Props2(device, properties);
+    lessen(&properties->properties.limits);
     VkBaseOutStructure *subset = in_chain(properties->pNext, (VkStructureType)1000163001);
     if (subset) *(uint32_t *)(subset + 1) = on("wide") ? 16 : 4;
 }
@@ -43,6 +56,36 @@ static void VKAPI_CALL families2(VkPhysicalDevice device, uint32_t *count, VkQue
         list[0].queueFamilyProperties.queueFlags = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_TRANSFER_BIT;
     }
     *count = own + more;
+}
+
+// The functions that the pretence calls, of the next layer or the driver. They are asked for while the instance is created: later the
+// last layer gets those of the first one from older loaders.
+static struct {
+    const char *name;
+    PFN_vkVoidFunction function;
+} next[] = {
+    {"vkGetPhysicalDeviceProperties"}, {"vkGetPhysicalDeviceProperties2"},
+    {"vkGetPhysicalDeviceFeatures"}, {"vkGetPhysicalDeviceFeatures2"},
+    {"vkGetPhysicalDeviceFormatProperties"}, {"vkGetPhysicalDeviceFormatProperties2"},
+    {"vkGetPhysicalDeviceImageFormatProperties"}, {"vkGetPhysicalDeviceImageFormatProperties2"},
+    {"vkGetPhysicalDeviceQueueFamilyProperties"}, {"vkGetPhysicalDeviceQueueFamilyProperties2"},
+    {"vkGetPhysicalDeviceMemoryProperties"}, {"vkGetPhysicalDeviceMemoryProperties2"},
+    {"vkGetPhysicalDeviceSurfaceSupportKHR"}, {"vkEnumerateDeviceExtensionProperties"},
+};
+enum { NEXT = sizeof next / sizeof *next };
+static PFN_vkGetInstanceProcAddr next_of_instances;
+
+static PFN_vkVoidFunction VKAPI_CALL next_function(VkInstance instance, const char *name) {
+    for (int i = 0; i < NEXT; ++i) if (next[i].function && !strcmp(name, next[i].name)) return next[i].function;
+    return next_of_instances(instance, name);
+}
+
+static VkResult VKAPI_CALL create_instance(const VkInstanceCreateInfo *info, const VkAllocationCallbacks *allocator, VkInstance *instance) {
+    VkResult result = CI(info, allocator, instance);
+    next_of_instances = gipa;
+    if (result == VK_SUCCESS) for (int i = 0; i < NEXT; ++i) next[i].function = gipa(*instance, next[i].name);
+    gipa = next_function;
+    return result;
 }
 
 static VkResult VKAPI_CALL create_device(VkPhysicalDevice physical, const VkDeviceCreateInfo *info, const VkAllocationCallbacks *allocator, VkDevice *device) {
@@ -98,7 +141,9 @@ static PFN_vkVoidFunction VKAPI_CALL device_function(VkDevice device, const char
 static PFN_vkVoidFunction VKAPI_CALL instance_function(VkInstance instance, const char *name) {
     INSTEAD("vkGetInstanceProcAddr", instance_function)
     INSTEAD("vkGetDeviceProcAddr", device_function)
+    INSTEAD("vkCreateInstance", create_instance)
     INSTEAD("vkCreateDevice", create_device)
+    INSTEAD("vkGetPhysicalDeviceProperties", properties)
     INSTEAD("vkGetPhysicalDeviceFeatures2", features2)
     INSTEAD("vkGetPhysicalDeviceFeatures2KHR", features2)
     INSTEAD("vkGetPhysicalDeviceProperties2", properties2)

@@ -13,6 +13,9 @@ use crate::common::shared;
 const MANIFEST: &str = r#"{"file_format_version": "1.2.0", "layer": {"name": "VK_LAYER_FAKE_device", "type": "GLOBAL",
 "library_path": "./libpretence.so", "api_version": "1.3.0", "implementation_version": "1", "description": "pretended limits"}}"#;
 
+/// Where systems keep layers.
+const SYSTEM: &str = "/usr/local/share/vulkan/explicit_layer.d:/usr/share/vulkan/explicit_layer.d:/etc/vulkan/explicit_layer.d";
+
 /// The built layer.
 pub struct Layer {
     folder: tempfile::TempDir,
@@ -49,8 +52,12 @@ impl Layer {
     /// The environment of a program that sees the device of these words, see `shared/gpu/fake_device` and `pretended.c`.
     pub fn variables(&self, words: &str) -> [(&'static str, OsString); 3] {
         let layers = "VK_LAYER_KHRONOS_validation:VK_LAYER_FAKE_device";
+        // Older loaders order layers by the folders, the application's side first; newer ones by the list.
+        let mut folders = std::env::var_os("VK_LAYER_PATH").unwrap_or_else(|| SYSTEM.into());
+        folders.push(":");
+        folders.push(self.folder.path());
         [
-            ("VK_ADD_LAYER_PATH", self.folder.path().into()),
+            ("VK_LAYER_PATH", folders),
             ("VK_INSTANCE_LAYERS", layers.into()),
             ("FAKE", words.into()),
         ]

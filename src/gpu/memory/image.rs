@@ -388,16 +388,15 @@ impl Image {
 
 impl Drop for Image {
     fn drop(&mut self) {
+        let Some(raw) = self.context.freeing() else {
+            return;
+        };
         // SAFETY: recorders wait for their work before they release resources; null views are ignored.
         unsafe {
-            self.context
-                .raw()
-                .destroy_image_view(self.sampled_view, None);
-            self.context
-                .raw()
-                .destroy_image_view(self.attachment_view, None);
+            raw.destroy_image_view(self.sampled_view, None);
+            raw.destroy_image_view(self.attachment_view, None);
             if !self.is_borrowed {
-                self.context.raw().destroy_image(self.raw, None);
+                raw.destroy_image(self.raw, None);
             }
         }
         if let Some(allocation) = self.allocation.take() {

@@ -340,15 +340,14 @@ impl Pipeline {
 
 impl Drop for Pipeline {
     fn drop(&mut self) {
+        let Some(raw) = self.context.freeing() else {
+            return;
+        };
         // SAFETY: recorders wait for their work before pipelines are dropped; null handles are ignored.
         unsafe {
-            self.context.raw().destroy_pipeline(self.raw, None);
-            self.context
-                .raw()
-                .destroy_pipeline_layout(self.layout, None);
-            self.context
-                .raw()
-                .destroy_descriptor_set_layout(self.set_layout, None);
+            raw.destroy_pipeline(self.raw, None);
+            raw.destroy_pipeline_layout(self.layout, None);
+            raw.destroy_descriptor_set_layout(self.set_layout, None);
         }
     }
 }

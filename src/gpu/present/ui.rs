@@ -126,11 +126,9 @@ impl Overlay {
 impl Drop for Overlay {
     fn drop(&mut self) {
         self.context.settle();
-        // SAFETY: the device is idle, so nothing of the pool or the renderer is in use.
-        unsafe {
-            self.context
-                .raw()
-                .destroy_command_pool(self.command_pool, None);
+        if let Some(raw) = self.context.freeing() {
+            // SAFETY: the device is idle, so nothing of the pool or the renderer is in use.
+            unsafe { raw.destroy_command_pool(self.command_pool, None) };
         }
     }
 }

@@ -348,7 +348,9 @@ impl Recorder {
 impl Drop for Recorder {
     fn drop(&mut self) {
         self.context.settle();
-        let raw = self.context.raw();
+        let Some(raw) = self.context.freeing() else {
+            return;
+        };
         // SAFETY: the device is idle or lost; null handles are ignored.
         unsafe {
             raw.destroy_fence(self.fence, None);

@@ -181,8 +181,10 @@ impl Queries {
 
 impl Drop for Queries {
     fn drop(&mut self) {
-        // SAFETY: the recorder that owns this has waited for its work.
-        unsafe { self.context.raw().destroy_query_pool(self.pool, None) };
+        if let Some(raw) = self.context.freeing() {
+            // SAFETY: the recorder that owns this has waited for its work.
+            unsafe { raw.destroy_query_pool(self.pool, None) };
+        }
     }
 }
 

@@ -5,28 +5,27 @@
 
 layout(constant_id = 50) const bool FILTERED = true; // whether samplers do; if not, they are nearest ones
 
-/// Texel of a level of a cube, seamless: up to one texel beyond the edge of a face it is that of the next face, and it has no weight
-/// beyond a corner.
-vec4 cube_tap(samplerCube map, int face, vec2 texel, float edge, int level, float weight) {
+/// Texel of a level of a cube, seamless: up to one texel beyond the edge of a face it is that of the next face. Alpha is 1, but 0 beyond
+/// a corner, where there is none.
+vec4 cube_tap(samplerCube map, int face, vec2 texel, float edge, int level) {
     vec2 c = (texel + 0.5) / edge * 2.0 - 1.0;
     bvec2 outside = greaterThan(abs(c), vec2(1.0));
     if (all(outside)) return vec4(0.0);
     // Beyond the edge the axes of the face shrink by as much as the texel is beyond it.
     if (any(outside)) c *= mix(vec2(1.0 + 1.0 / edge), vec2(1.0), outside);
-    return weight * vec4(textureLod(map, cube_direction(face, c * 0.5 + 0.5), float(level)).rgb, 1.0);
+    return vec4(textureLod(map, cube_direction(face, c * 0.5 + 0.5), float(level)).rgb, 1.0);
 }
 
 vec3 cube_level(samplerCube map, vec3 direction, int level) {
     vec2 st;
     int face = cube_face(direction, st);
     float edge = float(textureSize(map, level).x);
-    vec2 at = st * edge - 0.5, f = fract(at);
-    vec2 low = floor(at);
-    vec4 sum = cube_tap(map, face, low, edge, level, (1.0 - f.x) * (1.0 - f.y));
-    sum += cube_tap(map, face, low + vec2(1.0, 0.0), edge, level, f.x * (1.0 - f.y));
-    sum += cube_tap(map, face, low + vec2(0.0, 1.0), edge, level, (1.0 - f.x) * f.y);
-    sum += cube_tap(map, face, low + vec2(1.0), edge, level, f.x * f.y);
-    return sum.rgb / sum.a;
+    vec2 at = st * edge - 0.5, f = fract(at), low = floor(at);
+    vec4 a = cube_tap(map, face, low, edge, level), b = cube_tap(map, face, low + vec2(1.0, 0.0), edge, level);
+    vec4 c = cube_tap(map, face, low + vec2(0.0, 1.0), edge, level), d = cube_tap(map, face, low + vec2(1.0), edge, level);
+    vec4 sum = mix(mix(a, b, f.x), mix(c, d, f.x), f.y);
+    // What is missing at a corner is the mean of the other three (Vulkan specification, "Cube Map Edge Handling").
+    return sum.rgb + (1.0 - sum.a) / 3.0 * (a + b + c + d).rgb;
 }
 
 /// Bilinear in a level, linear between levels; alpha is 1.

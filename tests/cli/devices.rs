@@ -8,29 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use crate::pretended::Layer;
-
-/// A square 300 m across with blocks, a lamp and a pane: with air before the eye.
-const TOWN: [([f32; 3], [f32; 3], &str); 6] = [
-    ([-150.0, -1.0, -150.0], [150.0, 0.0, 150.0], "ground"),
-    ([-40.0, 0.0, -60.0], [-10.0, 25.0, -30.0], "wall"),
-    ([10.0, 0.0, -80.0], [50.0, 40.0, -50.0], "wall"),
-    ([-60.0, 0.0, 20.0], [-50.0, 8.0, 60.0], "wall"),
-    ([-5.0, 0.0, -20.0], [5.0, 6.0, -10.0], "lamp"),
-    ([15.0, 0.0, 0.0], [35.0, 10.0, 0.5], "pane"),
-];
-
-/// Corners of the faces of a block, counter-clockwise from outside.
-const FACES: [[i32; 4]; 6] = [
-    [1, 3, 7, 5],
-    [0, 4, 6, 2],
-    [2, 6, 7, 3],
-    [0, 1, 5, 4],
-    [4, 5, 7, 6],
-    [0, 2, 3, 1],
-];
-
-const MATERIALS: &str = "newmtl ground\nKd 0.4 0.35 0.3\nnewmtl wall\nKd 0.7 0.7 0.65\nKs 0.2 0.2 0.2\nNs 40\n\
-    newmtl lamp\nKd 0.5 0.5 0.5\nKe 2000 1500 1000\nnewmtl pane\nKd 0 0 0\nd 0.1\nTf 0.8 0.9 0.8\n";
+use crate::town;
 
 const VIEW: &str = "town.obj --size 96x54 --eye 90,30,120 --target 0,8,-10 --sun 200,40 --no-cache";
 
@@ -107,26 +85,7 @@ struct Place {
 impl Place {
     fn new(layer: &'static Layer) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
-        let mut town = "mtllib town.mtl\n".to_owned();
-        for (low, high, material) in TOWN {
-            let corner = |i: usize, axis: usize| {
-                if i >> axis & 1 == 0 {
-                    low[axis]
-                } else {
-                    high[axis]
-                }
-            };
-            for i in 0..8 {
-                town += &format!("v {} {} {}\n", corner(i, 0), corner(i, 1), corner(i, 2));
-            }
-            town += &format!("usemtl {material}\n");
-            // Bit 0 of a corner's number is x, bit 1 y, bit 2 z.
-            for [a, b, c, d] in FACES {
-                town += &format!("f {} {} {} {}\n", a - 8, b - 8, c - 8, d - 8);
-            }
-        }
-        fs::write(folder.path().join("town.obj"), town).expect("written");
-        fs::write(folder.path().join("town.mtl"), MATERIALS).expect("written");
+        town::write(folder.path());
         Self { folder, layer }
     }
 
@@ -190,8 +149,11 @@ fn clean(output: &Output) -> Result<(), String> {
         .ok_or_else(|| format!("{:?}: {said}", output.status))
 }
 
+/// Something to do, by name, and why it went wrong.
+type Job<'p> = (String, Box<dyn Fn() -> Result<(), String> + Sync + 'p>);
+
 /// Runs jobs on two threads; fails with all that went wrong.
-fn all(jobs: &[(String, Box<dyn Fn() -> Result<(), String> + Sync + '_>)]) {
+fn all(jobs: &[Job<'_>]) {
     let (next, failures) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     thread::scope(|scope| {
         for _ in 0..2 {
@@ -216,7 +178,7 @@ fn pretended_devices_draw_the_same_pictures() {
     let Some(layer) = Layer::get() else { return };
     let place = &Place::new(layer);
     place.references();
-    let mut jobs: Vec<(String, Box<dyn Fn() -> Result<(), String> + Sync>)> = Vec::new();
+    let mut jobs: Vec<Job<'_>> = Vec::new();
     for words in THOROUGH {
         for (i, options) in FULL.into_iter().enumerate() {
             let draw = move || place.drawn(words, options, &format!("full{i}.exr"));

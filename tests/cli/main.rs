@@ -17,3 +17,4 @@ mod moment;
 mod options;
 mod sky;
 mod tiles;
+mod town;

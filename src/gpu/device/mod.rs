@@ -14,3 +14,4 @@ pub(in crate::gpu) mod surface;
 #[path = "no_surface.rs"]
 pub(in crate::gpu) mod surface;
 pub(in crate::gpu) mod validation;
+mod waiting;

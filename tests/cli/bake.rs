@@ -220,7 +220,7 @@ fn all_files_or_none() {
 #[test]
 fn options_of_a_device_are_not_accepted_in_silence() {
     let folder = tempfile::tempdir().expect("a folder");
-    let line = "-o sky.exr --size 16 --validate --device 9";
+    let line = "--map sky -o sky.exr --size 16 --validate --device 9";
     let output = bake(folder.path(), line);
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{told}");

@@ -10,11 +10,9 @@
 
 layout(local_size_x = 64) in;
 
-PRINTS;
+TABLE;
 PLACES;
 CONTESTED;
-CANDIDATES;
-WALLS;
 SUMS;
 
 layout(push_constant, scalar) uniform Push {

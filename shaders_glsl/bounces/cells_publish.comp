@@ -12,11 +12,9 @@
 
 layout(local_size_x = 64) in;
 
-PRINTS;
-LIVE;
+TABLE;
 PLACES;
 CONTESTED;
-WALLS;
 SUMS;
 
 layout(set = 0, binding = 8, rgba32ui) uniform writeonly uimage2DArray cells;

@@ -14,13 +14,9 @@ layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 0, scalar) uniform View { VIEW_BLOCK } view;
 
-PRINTS;
-LIVE;
+TABLE;
 PLACES;
 CONTESTED;
-CANDIDATES;
-WALLS;
-STAMPS;
 
 layout(push_constant, scalar) uniform Push {
     uint paths;

@@ -4,6 +4,7 @@
 #include "scene_light.glsl"
 #include "surface_light.glsl"
 #include "emitters.glsl"
+#include "filtered.glsl"
 #include "cells.glsl"
 #include "cell_table.glsl"
 
@@ -12,8 +13,7 @@
 
 layout(local_size_x = 64) in;
 
-PRINTS;
-LIVE;
+TABLE;
 PLACES;
 SUMS;
 
@@ -55,7 +55,7 @@ vec3 path_light(Surface surface, inout uint state) {
         Hit hit = closest(surface.position, toward, FAR);
         if (hit.distance == FAR) {
             // The sky's share is in the cell, if there is one.
-            if (!here.is_found) light += throughput * PI * textureLod(sky_radiance, toward, 0.0).rgb;
+            if (!here.is_found) light += throughput * PI * filtered(sky_radiance, toward, 0.0).rgb;
             break;
         }
         Surface next = surface_of(hit, surface.position, toward);
@@ -74,7 +74,7 @@ void add_path(inout Sum sum, uint slot, uint print) {
     vec3 toward = cosine_direction(n, scrambled_sobol(number, tea(print, scene.seed)));
     Hit hit = closest(point.position, toward, FAR);
     vec3 sky = vec3(0.0), bounce = vec3(0.0);
-    if (hit.distance == FAR) sky = PI * textureLod(sky_radiance, toward, 0.0).rgb;
+    if (hit.distance == FAR) sky = PI * filtered(sky_radiance, toward, 0.0).rgb;
     else if (push.segments > 0u) {
         Surface surface = surface_of(hit, point.position, toward);
         bounce = emission_of_ray(surface, dot(n, toward), toward, hit.distance) + path_light(surface, state);

@@ -79,7 +79,7 @@ void gather(vec2 uv, float d, uvec3 own, vec3 reflected) {
     vec3 n = normal_unpack(own.x);
     vec3 world = view.eye + view.world_from_view * (ray * (view.near / d));
     sky = light_of_directions(world, n, view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale));
-    vec3 open = textureLod(sky_irradiance, n, 0.0).rgb;
+    vec3 open = filtered(sky_irradiance, n, 0.0).rgb;
 #ifdef ILLUMINANCE
     illuminance.xyz = vec3(luminance(sky.rgb), sky.a, luminance(open));
     if (!SKY) {

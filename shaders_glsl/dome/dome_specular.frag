@@ -61,7 +61,7 @@ void gather(vec2 uv, float d) {
     rho_s *= through_panes(ivec2(gl_FragCoord.xy));
     vec3 r = reflect(toward, n);
     reflected.rgb = rho_s * (NORMALIZED ? sky_in_lobe(sky_radiance, r, n, m.a, push.shift)
-                                     : textureLod(sky_radiance, r, 0.0).rgb);
+                                     : filtered(sky_radiance, r, 0.0).rgb);
     if (AIR) reflected.rgb *= air_transmittance(air_ray(toward, away * 1e-3));
     vec3 face = view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale);
     float p = clamp(m.a, 1.0, MAX_EXPONENT);

@@ -1,6 +1,7 @@
 // The air between the eye and a surface, from the table of daylight::atmosphere::aerial: seen = transmittance radiance + inscatter.
 #include "air_rays.glsl"
 #include "colour.glsl"
+#include "filtered.glsl"
 
 layout(set = 0, binding = 13, scalar) uniform Air {
     vec4 rayleigh; // optical depths of a km of air, of aerosol and of ozone at their reference densities, at the four wavelengths
@@ -34,7 +35,7 @@ float air_row(float sine, bool meets_ground, int rows) {
 }
 
 vec4 air_texel(vec2 at) {
-    return textureLod(air_table, (at + 0.5) / vec2(textureSize(air_table, 0)), 0.0);
+    return filtered(air_table, at);
 }
 
 struct AirRay {

@@ -32,15 +32,16 @@ const uint MOST_PATHS = 16u;
 // Points of a path that creates cells.
 const uint PATH_POINTS = 4u;
 
-// A stage declares the buffers that it uses.
-#define PRINTS layout(set = 0, binding = 1, scalar) buffer Prints { uint prints[]; }
-#define LIVE layout(set = 0, binding = 2, scalar) buffer Live { uint live_count; uint live[]; }
-#define PLACES layout(set = 0, binding = 3, scalar) buffer Places { Point points[]; }
-#define CONTESTED layout(set = 0, binding = 4, scalar) buffer Contests { uint contests[]; }
-#define CANDIDATES layout(set = 0, binding = 5, scalar) buffer Candidates { Candidate candidates[]; }
-#define WALLS layout(set = 0, binding = 11, scalar) buffer Walls { uvec2 walls[]; }
-#define STAMPS layout(set = 0, binding = 12, scalar) buffer Stamps { uint stamps[]; }
-#define SUMS layout(set = 0, binding = 6, scalar) buffer Sums { Sum sums[]; }
+// A stage declares the buffers that it uses: a device may have no more than four for a stage.
+
+// What is in each slot, the round in which paths last met it, and the slots in use.
+#define TABLE layout(set = 0, binding = 1, scalar) buffer Table { uint prints[SLOTS]; uint stamps[SLOTS]; uint live_count; uint live[SLOTS]; }
+// Points and walls of cells.
+#define PLACES layout(set = 0, binding = 2, scalar) buffer Places { Point points[SLOTS * POINTS]; uvec2 walls[SLOTS]; }
+// The contests for them, and who takes part.
+#define CONTESTED layout(set = 0, binding = 3, scalar) buffer Contests { uint contests[SLOTS * CONTESTS]; Candidate candidates[]; }
+// Light of cells.
+#define SUMS layout(set = 0, binding = 4, scalar) buffer Sums { Sum sums[]; }
 
 /// The hidden neighbours and the level in a word.
 uint hidden_pack(uint hidden, int level) {

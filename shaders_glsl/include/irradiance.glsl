@@ -1,6 +1,6 @@
 // As on the lecture's slide "Integrating skylight": E(n) = 1/N sum L (n.w) / pdf(w) with pdf = (n.w) / pi; a sample adds pi L.
 #include "constants.glsl"
-#include "cube.glsl"
+#include "filtered.glsl"
 #include "frame.glsl"
 #include "random.glsl"
 
@@ -44,7 +44,7 @@ vec4 refined(vec3 n, ivec2 texel, int face) {
         // Filtered importance sampling (Krivanek and Colbert 2008): a sample represents its part of the hemisphere. The
         // lecture's random samples are unfiltered.
         vec4 local = MONTE_CARLO ? vec4(random_direction(t), 0.0) : samples[push.first + i];
-        total += textureLod(sky_radiance, frame * local.xyz, local.w).rgb;
+        total += filtered(sky_radiance, frame * local.xyz, local.w).rgb;
     }
     vec4 sum = vec4(PI * total, float(push.count));
     if (push.first > 0u) sum += textureLod(previous_sum, n, 0.0);

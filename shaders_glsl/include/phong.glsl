@@ -1,5 +1,6 @@
 // Specular lobes: the lecture's (r.w)^p, and its energy-conserving form.
 #include "frame.glsl"
+#include "filtered.glsl"
 
 /// Lewis 1994, "Making Shaders More Physically Plausible": with this factor (and the cosine of the incoming light, which the
 /// lecture's form omits) the lobe reflects the fraction rho_s of light at normal incidence, and never more.
@@ -27,7 +28,7 @@ vec3 sky_in_lobe(samplerCube sky, vec3 r, vec3 n, float p, vec2 shift) {
         float cosine = pow(max(xi.x, 1e-6), 1.0 / (p + 1.0));
         float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
         vec3 w = frame * vec3(sine * cos(2.0 * PI * xi.y), sine * sin(2.0 * PI * xi.y), cosine);
-        sum += max(dot(n, w), 0.0) * textureLod(sky, w, 0.0).rgb;
+        sum += max(dot(n, w), 0.0) * filtered(sky, w, 0.0).rgb;
     }
     return sum * ((p + 2.0) / ((p + 1.0) * float(LOBE_SAMPLES)));
 }

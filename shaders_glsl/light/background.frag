@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "filtered.glsl"
 #include "panes.glsl"
 #include "view.glsl"
 
@@ -63,7 +64,7 @@ void main() {
     }
     vec3 ray = view_ray(gl_FragCoord.xy / push.size, view.ray_scale, view.ray_offset);
     vec3 direction = view.world_from_view * ray;
-    vec3 sky = textureLod(sky_radiance, direction, 0.0).rgb;
+    vec3 sky = filtered(sky_radiance, direction, 0.0).rgb;
     if (DISC) sky += disc(normalize(direction)) + moon(normalize(direction));
     radiance = vec4(min(sky * through_panes(pixel) + mirrored, push.max_radiance), 0.0);
 }

@@ -124,10 +124,10 @@ void main() {
     Ambient light = Ambient(vec3(0.0), vec3(0.0));
     if (AMBIENT && CELLS) {
         light = half_size_at(ambient, pixel, ivec2(0), distance, n);
-        if (SHOW_OCCLUSION) A = luminance(light.sky) / max(luminance(textureLod(sky_irradiance, n, 0.0).rgb), 1e-9);
+        if (SHOW_OCCLUSION) A = luminance(light.sky) / max(luminance(filtered(sky_irradiance, n, 0.0).rgb), 1e-9);
     } else if (AMBIENT) {
         A = ambient_occlusion(ambient, OCCLUSION_DOWNSCALE, pixel + sun.occlusion_from, distance);
-        light.sky = A * textureLod(sky_irradiance, n, 0.0).rgb;
+        light.sky = A * filtered(sky_irradiance, n, 0.0).rgb;
     }
     vec3 sun_illuminance = sun.illuminance;
     if (PANES && V > 0.0) sun_illuminance *= PLANE_SHADOW ? plane_tint(world) : sun_tint(world);
@@ -162,7 +162,7 @@ void main() {
         if (NORMALIZED) lobe *= phong_scale(m.a) * max(n_dot_l, 0.0);
         if (SUN_SPECULAR) sum += rho_s * (lobe * V) * sun_illuminance;
         if (SKY_SPECULAR && NORMALIZED) sum += rho_s * sky_in_lobe(sky_radiance, r, n, m.a, vec2(0.0));
-        else if (SKY_SPECULAR) sum += rho_s * textureLod(sky_radiance, r, 0.0).rgb;
+        else if (SKY_SPECULAR) sum += rho_s * filtered(sky_radiance, r, 0.0).rgb;
     }
     if (AIR) {
         vec3 toward = normalize(world_ray);

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "constants.glsl"
+#include "filtered.glsl"
 #include "pane.glsl"
 #include "surface_hit.glsl"
 
@@ -23,9 +24,9 @@ layout(set = 0, binding = 3, scalar) uniform Sun {
 /// Radiance of what a ray meets, kcd/m^2.
 vec3 seen(vec3 origin, vec3 toward) {
     Hit hit = traced(origin, toward, FAR, false, PANES_ARE_OPEN);
-    if (hit.distance == FAR) return textureLod(sky_radiance, toward, 0.0).rgb;
+    if (hit.distance == FAR) return filtered(sky_radiance, toward, 0.0).rgb;
     Surface surface = surface_of(hit, origin, toward);
-    vec3 irradiance = textureLod(sky_irradiance, surface.normal, 0.0).rgb;
+    vec3 irradiance = filtered(sky_irradiance, surface.normal, 0.0).rgb;
     float cosine = dot(surface.normal, sun.direction);
     bool is_lit = cosine > 0.0 && sun.illuminance != vec3(0.0) && traced(surface.position, sun.direction, FAR, true, PANES_ARE_OPEN).distance == FAR;
     if (is_lit) irradiance += cosine * sun.illuminance;

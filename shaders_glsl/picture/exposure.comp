@@ -6,12 +6,15 @@
 // Metering for automatic exposure: the log-average luminance (Reinhard et al. 2002, eq. 1), bounded around the median. The CPU
 // counterpart is daylight/exposure.rs. One workgroup computes a histogram, its median, then the bounded mean of log2 L.
 
-const uint THREADS = 256u;
-layout(local_size_x = 256) in;
+// Every device has room for so many in a workgroup.
+const uint THREADS = 128u;
+layout(local_size_x = 128) in;
+
+const uint BINS = 256u;
 
 layout(set = 0, binding = 0) uniform sampler2D radiance;                       // kcd/m^2
 layout(set = 0, binding = 1) uniform sampler2D previous_luminance;             // kcd/m^2, one texel
-layout(set = 0, binding = 2) uniform writeonly image2DArray average_luminance; // kcd/m^2, one texel
+layout(set = 0, binding = 2, r32f) uniform writeonly image2DArray average_luminance; // kcd/m^2, one texel
 
 layout(push_constant, scalar) uniform Push {
     float black;         // log2 of kcd/m^2: darker samples are ignored
@@ -25,7 +28,7 @@ layout(push_constant, scalar) uniform Push {
 const uvec2 GRID = uvec2(128u, 72u);
 const uint SAMPLES = GRID.x * GRID.y / THREADS; // per thread
 
-shared uint bins[THREADS];
+shared uint bins[BINS];
 shared float median; // log2 of kcd/m^2
 shared vec2 sums[THREADS]; // weighted distance from the median, weight
 
@@ -42,10 +45,10 @@ float log_luminance(uint index) {
 /// The median from the histogram, linear within a bin; NOTHING if the histogram is empty.
 float find_median() {
     uint count = 0u;
-    for (uint i = 0u; i < THREADS; ++i) count += bins[i];
+    for (uint i = 0u; i < BINS; ++i) count += bins[i];
     float middle = 0.5 * float(count);
     uint below = 0u;
-    for (uint i = 0u; i < THREADS; ++i) {
+    for (uint i = 0u; i < BINS; ++i) {
         if (bins[i] > 0u && float(below + bins[i]) >= middle) {
             float within = (middle - float(below)) / float(bins[i]);
             return push.black + (float(i) + within) / push.bins_per_stop;
@@ -57,14 +60,14 @@ float find_median() {
 
 void main() {
     uint thread = gl_LocalInvocationIndex;
-    bins[thread] = 0u;
+    for (uint i = thread; i < BINS; i += THREADS) bins[i] = 0u;
     barrier();
     float logs[SAMPLES];
     for (uint i = 0u; i < SAMPLES; ++i) {
         logs[i] = log_luminance(thread + i * THREADS);
         if (logs[i] > NOTHING) {
             float bin = (logs[i] - push.black) * push.bins_per_stop;
-            atomicAdd(bins[uint(clamp(bin, 0.0, float(THREADS - 1u)))], 1u);
+            atomicAdd(bins[uint(clamp(bin, 0.0, float(BINS - 1u)))], 1u);
         }
     }
     barrier();

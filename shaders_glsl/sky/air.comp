@@ -12,7 +12,7 @@ layout(constant_id = 1) const int SOURCE_ROWS = 24;
 layout(constant_id = 2) const int DENSITY_ROWS = 96;
 layout(constant_id = 3) const int STEPS = 24;
 
-layout(set = 0, binding = 2) uniform writeonly image2DArray air_table; // see air.glsl
+layout(set = 0, binding = 2, rgba32f) uniform writeonly image2DArray air_table; // see air.glsl
 
 layout(push_constant, scalar) uniform Push {
     float sun_sine; // of the sun's true elevation

@@ -4,8 +4,8 @@
 #include "irradiance.glsl"
 #include "cube_compute.glsl"
 
-layout(set = 0, binding = 3) uniform writeonly image2DArray sum;            // rgb: sum of pi L, klx; a: number of samples
-layout(set = 0, binding = 4) uniform writeonly image2DArray sky_irradiance; // E, klx
+layout(set = 0, binding = 3, rgba32f) uniform writeonly image2DArray sum;            // rgb: sum of pi L, klx; a: number of samples
+layout(set = 0, binding = 4, rgba32f) uniform writeonly image2DArray sky_irradiance; // E, klx
 
 void main() {
     ivec2 size = imageSize(sum).xy;

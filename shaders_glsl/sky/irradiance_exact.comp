@@ -4,8 +4,8 @@
 #include "irradiance_exact.glsl"
 #include "cube_compute.glsl"
 
-layout(set = 0, binding = 2) uniform writeonly image2DArray sum;            // E, klx; a: 1
-layout(set = 0, binding = 3) uniform writeonly image2DArray sky_irradiance; // E, klx
+layout(set = 0, binding = 2, rgba32f) uniform writeonly image2DArray sum;            // E, klx; a: 1
+layout(set = 0, binding = 3, rgba32f) uniform writeonly image2DArray sky_irradiance; // E, klx
 
 void main() {
     ivec2 size = imageSize(sum).xy;

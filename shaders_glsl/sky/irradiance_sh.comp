@@ -4,8 +4,8 @@
 #include "irradiance_sh.glsl"
 #include "cube_compute.glsl"
 
-layout(set = 0, binding = 0) uniform writeonly image2DArray sum;            // E, klx; a: 1
-layout(set = 0, binding = 1) uniform writeonly image2DArray sky_irradiance; // E, klx
+layout(set = 0, binding = 0, rgba32f) uniform writeonly image2DArray sum;            // E, klx; a: 1
+layout(set = 0, binding = 1, rgba32f) uniform writeonly image2DArray sky_irradiance; // E, klx
 
 void main() {
     ivec2 size = imageSize(sum).xy;

@@ -4,7 +4,7 @@
 #include "sky_atmosphere.glsl"
 #include "cube_compute.glsl"
 
-layout(set = 0, binding = 3) uniform writeonly image2DArray sky_radiance; // kcd/m^2
+layout(set = 0, binding = 3, rgba32f) uniform writeonly image2DArray sky_radiance; // kcd/m^2
 
 void main() {
     ivec2 size = imageSize(sky_radiance).xy;

@@ -6,7 +6,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 2) uniform writeonly image2DArray sky_view; // kcd/m^2, not clipped
+layout(set = 0, binding = 2, rgba32f) uniform writeonly image2DArray sky_view; // kcd/m^2, not clipped
 
 layout(push_constant, scalar) uniform Push {
     float sun_sine; // of the sun's true elevation

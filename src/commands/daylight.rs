@@ -6,7 +6,7 @@ use glam::DVec3;
 use serde_json::json;
 
 use super::job::Job;
-use super::{progress, tell};
+use super::{progress, tell, tell_no_device};
 use crate::cli::DaylightArgs;
 use crate::error::Result;
 use crate::options::{OptionValues, in_world, shortest};
@@ -19,6 +19,7 @@ use crate::sensors::{Accuracy, Lights, Reading, Sensor, TracedScene, measure, re
 /// Fails when the grid or the model cannot be read, or when options are invalid.
 pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
     let job = Job::new(Some(&args.scene), options)?;
+    tell_no_device("daylight", &job.settings);
     let sensors = read_grid(&args.grid, job.scene.origin)?;
     let accuracy = Accuracy {
         relative_error: args.error,

@@ -22,14 +22,17 @@ fn describe(device: &DeviceSummary) -> String {
     } else {
         device.missing.join(", ")
     };
-    let optional: Vec<String> = device
-        .optional
-        .iter()
-        .map(|(what, present)| format!("{}: {}", what.name(), if *present { "yes" } else { "no" }))
-        .collect();
+    let optional: Vec<String> = device.optional.iter().map(optional).collect();
+    let portability = device.portability.as_ref().map_or(String::new(), |unused| {
+        let unused = match unused.as_slice() {
+            [] => "all features".to_owned(),
+            some => format!("without {}, which skylight does not use", some.join(", ")),
+        };
+        format!("    subset   VK_KHR_portability_subset, {unused}\n")
+    });
     format!(
         "{} \"{}\"\n    kind     {}\n    Vulkan   {}\n    driver   {}\n    lacks    {lacks}\n    \
-         optional {}\n    largest  {} pixels\n",
+         optional {}\n    largest  {} pixels\n{portability}",
         device.index,
         device.name,
         device.kind,
@@ -38,4 +41,8 @@ fn describe(device: &DeviceSummary) -> String {
         optional.join(", "),
         device.max_image_edge
     )
+}
+
+fn optional((what, used): &(Optional, bool)) -> String {
+    format!("{}: {}", what.name(), if *used { "yes" } else { "no" })
 }

@@ -26,7 +26,6 @@ use crate::passes::light::lighting::{Precision, Show};
 use crate::passes::occlusion::ssao::SsaoSettings;
 use crate::passes::picture::tone_map::Scale;
 use crate::passes::sky::irradiance::IrradianceSettings;
-use crate::passes::sky::route::CubeRoute;
 use crate::scene::{self, Camera, LoadOptions, Loaded, Scene, Subject};
 
 /// Edge of a sky cube face with `--preset lecture`, texels.
@@ -61,11 +60,9 @@ pub fn context_options(options: &Options) -> ContextOptions {
 /// Reports on stderr which fallbacks the device needs.
 pub fn notice(context: &Context) {
     let device = context.summary();
-    if CubeRoute::of(context) == CubeRoute::Compute {
-        eprintln!(
-            "notice: \"{}\" has no geometry shaders; compute shaders draw the cubes of sky and irradiance",
-            device.name
-        );
+    let missing = device.optional.iter().filter(|(_, used)| !used);
+    for what in missing.filter_map(|(optional, _)| optional.fallback()) {
+        eprintln!("notice: \"{}\" has {what}", device.name);
     }
 }
 

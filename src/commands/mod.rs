@@ -82,6 +82,21 @@ fn tell<'w>(settings: &Options, warnings: impl Iterator<Item = &'w String> + Clo
     Ok(())
 }
 
+/// Tells on stderr which options of a device have no effect in `command`, which needs none.
+fn tell_no_device(command: &str, settings: &Options) {
+    if settings.quiet || settings.no_warnings {
+        return;
+    }
+    let given = [
+        ("--device", settings.device.is_some()),
+        ("--validate", settings.validate),
+        ("--without", settings.without.is_some()),
+    ];
+    for (option, _) in given.iter().filter(|(_, is_given)| *is_given) {
+        eprintln!("notice: {command} needs no device: {option} has no effect");
+    }
+}
+
 /// Fails with the first warning if `--strict` is set.
 fn check_strict<'w>(settings: &Options, warnings: impl Iterator<Item = &'w String>) -> Result<()> {
     let mut warnings = warnings.filter(|_| settings.strict);

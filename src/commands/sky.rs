@@ -29,6 +29,7 @@ pub fn run(args: &SkyArgs, mut options: OptionValues) -> Result<()> {
     }
     exact_by_default(&mut options);
     let light = Light::new(&options)?;
+    super::tell_no_device("sky", &light.settings);
     super::check_strict(&light.settings, light.daylight.warnings.iter())?;
     let (text, drawing) = if args.irradiance_study {
         study_text(args, &light)

@@ -9,12 +9,10 @@ pub type Result<T> = std::result::Result<T, GpuError>;
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
     /// The Vulkan loader is not installed.
-    #[error("no Vulkan loader ({0}); install it (Debian, Ubuntu: libvulkan1)")]
+    #[error("no Vulkan loader ({0}); install {loader}", loader = LOADER)]
     NoLoader(String),
     /// The loader finds no device.
-    #[error(
-        "no Vulkan device; install a driver (Debian, Ubuntu: mesa-vulkan-drivers has the software device lavapipe)"
-    )]
+    #[error("no Vulkan device; install {driver}", driver = DRIVER)]
     NoDevice,
     /// No device matches `--device`.
     #[error("no device matches \"{wanted}\"; there are: {present}")]
@@ -34,7 +32,7 @@ pub enum GpuError {
     },
     /// The validation layer is requested but not installed.
     #[error(
-        "the layer VK_LAYER_KHRONOS_validation is missing; install it (Debian, Ubuntu: vulkan-validationlayers)"
+        "the layer VK_LAYER_KHRONOS_validation is missing; install {layers}", layers = LAYERS
     )]
     NoValidationLayer,
     /// The validation layer reported errors or warnings, each message once. This is a bug in the program.
@@ -47,6 +45,16 @@ pub enum GpuError {
         what: &'static str,
         /// The result code.
         result: vk::Result,
+    },
+    /// The device does not finish its work.
+    #[error(
+        "\"{device}\" has not finished its work for {seconds} s: its driver hangs; start again, or choose another with --device"
+    )]
+    Hung {
+        /// Name of the device.
+        device: String,
+        /// How long it was waited for.
+        seconds: u64,
     },
     /// Device memory is exhausted.
     #[error("no memory for {what}: {reason}; try a smaller --size")]
@@ -84,12 +92,38 @@ pub enum GpuError {
 }
 
 impl GpuError {
-    /// Whether the device was lost.
+    /// Whether the device was lost, or hangs.
     pub fn is_device_lost(&self) -> bool {
         let lost = vk::Result::ERROR_DEVICE_LOST;
-        matches!(self, Self::Vulkan { result, .. } if *result == lost)
+        matches!(self, Self::Hung { .. })
+            || matches!(self, Self::Vulkan { result, .. } if *result == lost)
     }
 }
+
+/// What to install on a system: a driver, the loader, the validation layer.
+const fn remedies(system: &str) -> [&str; 3] {
+    match system.as_bytes() {
+        b"macos" => [
+            "MoltenVK and the Vulkan loader (brew install molten-vk vulkan-loader, or the SDK of vulkan.lunarg.com)",
+            "it (brew install vulkan-loader, or the SDK of vulkan.lunarg.com)",
+            "it (brew install vulkan-validationlayers, or the SDK of vulkan.lunarg.com)",
+        ],
+        b"windows" => [
+            "the newest driver of the graphics card, from its maker",
+            "the newest driver of the graphics card, from its maker: it brings vulkan-1.dll",
+            "the SDK of vulkan.lunarg.com",
+        ],
+        _ => [
+            "a driver (Debian, Ubuntu: mesa-vulkan-drivers has the software device lavapipe)",
+            "it (Debian, Ubuntu: libvulkan1)",
+            "it (Debian, Ubuntu: vulkan-validationlayers)",
+        ],
+    }
+}
+
+const DRIVER: &str = remedies(std::env::consts::OS)[0];
+const LOADER: &str = remedies(std::env::consts::OS)[1];
+const LAYERS: &str = remedies(std::env::consts::OS)[2];
 
 fn describe(result: vk::Result) -> String {
     match result {
@@ -110,5 +144,33 @@ pub(super) trait During<T> {
 impl<T> During<T> for std::result::Result<T, vk::Result> {
     fn during(self, what: &'static str) -> Result<T> {
         self.map_err(|result| GpuError::Vulkan { what, result })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_system_has_its_own_remedies() {
+        let [linux, mac, windows] = ["linux", "macos", "windows"].map(remedies);
+        assert!(linux.iter().all(|text| text.contains("Debian")));
+        assert!(mac.iter().all(|text| text.contains("brew")) && mac[0].contains("MoltenVK"));
+        assert!(windows[0].contains("graphics card") && windows[2].contains("SDK"));
+        let told = GpuError::NoDevice.to_string();
+        assert!(told.ends_with(remedies(std::env::consts::OS)[0]), "{told}");
+    }
+
+    #[test]
+    fn a_device_that_hangs_counts_as_lost() {
+        let hung = GpuError::Hung {
+            device: "GPU".to_owned(),
+            seconds: 60,
+        };
+        assert!(hung.is_device_lost());
+        assert!(
+            hung.to_string()
+                .contains("\"GPU\" has not finished its work for 60 s")
+        );
     }
 }

@@ -23,13 +23,14 @@ mod shader_build;
 
 pub use ash::vk::Format;
 pub use device::context::{Context, ContextOptions};
-pub use device::select::{DeviceSummary, Optional, devices};
+pub use device::optional::Optional;
+pub use device::select::{DeviceSummary, devices};
 pub use device::startup::Step;
 #[cfg(feature = "window")]
 pub use device::surface::{Surface, WindowHandles};
 pub use error::{GpuError, Result};
 pub use memory::buffer::{Buffer, BufferKind};
-pub use memory::image::{Image, ImageDesc, ImageKind, Outside, Sampler};
+pub use memory::image::{Image, ImageDesc, ImageKind, Outside, Sampler, Written};
 pub use memory::read_back::{Pixels, Texel, copy_texel, read_back};
 pub use memory::upload::{upload_buffer, upload_texture};
 pub use pipeline::cache::CacheState;

@@ -150,6 +150,9 @@ choices! {
         PushDescriptor = "push-descriptor": "The extension VK_KHR_push_descriptor; descriptor pools otherwise",
         GeometryShader = "geometry-shader": "The feature geometryShader; compute shaders write the cubes of sky and irradiance otherwise",
         PipelineStatistics = "pipeline-statistics": "The feature pipelineStatisticsQuery; the benchmark has no such columns otherwise",
+        FloatFilter = "float-filter": "Linear filter of 32-bit floats; shaders filter the sky otherwise",
+        FloatBlend = "float-blend": "Blending of 32-bit floats; pictures of 32-bit floats have no stars otherwise",
+        Timestamps = "timestamps": "Timestamps of the queue; each pass is submitted alone and timed by the wall clock otherwise",
     }
     Phong {
         Lecture = "lecture": "(r·l)^p for the sun, a perfect mirror for the sky",

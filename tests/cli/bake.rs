@@ -216,3 +216,18 @@ fn all_files_or_none() {
         assert!(text.contains(part) && text.lines().count() == 1, "{text}");
     }
 }
+
+#[test]
+fn options_of_a_device_are_not_accepted_in_silence() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = "--map sky -o sky.exr --size 16 --validate --device 9";
+    let output = bake(folder.path(), line);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{told}");
+    for option in ["--validate", "--device"] {
+        let notice = format!("notice: bake needs no device: {option} has no effect");
+        assert!(told.lines().any(|l| l == notice), "{told}");
+    }
+    let output = bake(folder.path(), &format!("{line} --quiet"));
+    assert!(output.stderr.is_empty());
+}

@@ -1,10 +1,16 @@
 //! End-to-end tests of the program: options, files, exit codes.
 
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/pretended.rs"]
+mod pretended;
+
 mod bake;
 mod bake_ktx2;
 mod bench;
 mod compare;
 mod daylight;
+mod devices;
 mod false_colour;
 mod mitsuba_bake;
 mod moment;
@@ -12,3 +18,4 @@ mod options;
 mod sky;
 mod tiles;
 mod weather;
+mod town;

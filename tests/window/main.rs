@@ -2,11 +2,14 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/pretended.rs"]
+mod pretended;
 #[path = "../common/running.rs"]
 mod running;
 #[path = "../common/x.rs"]
 mod x;
 
+mod devices;
 mod faults;
 #[cfg(feature = "hot-reload")]
 mod hot_reload;

@@ -83,6 +83,7 @@ pub fn run(args: &BakeArgs, mut options: OptionValues) -> Result<()> {
     for path in names(args).iter().flatten().chain([&sidecar]) {
         check_writable(path)?;
     }
+    super::tell_no_device("bake", &light.settings);
     super::tell(&light.settings, light.daylight.warnings.iter())?;
     let files = match Container::of(&args.output) {
         Container::Ktx2 => vec![cube_file(args, &light)?],

@@ -9,7 +9,7 @@ use crate::commands::job::Job;
 use crate::daylight::sky::Daylight;
 use crate::error::Result;
 use crate::frame::{Frame, FrameSettings, Visibility};
-use crate::gpu::{Context, DeviceSummary, PassTime, PassWork, Recorder, Stopwatch, Timing};
+use crate::gpu::{Context, PassTime, PassWork, Recorder, Stopwatch, Timing};
 use crate::passes::light::lighting::Precision;
 use crate::scene::{Camera, Scene};
 
@@ -40,15 +40,6 @@ pub struct Measured {
     pub anew: Whole,
     /// Whole frames in motion: sky, irradiance and shadow map are updated only as the motion requires.
     pub moving: Whole,
-}
-
-/// Timing method for a device. Software drivers attribute timestamps to the wrong pass, so their passes are timed in isolation.
-pub fn trustworthy(device: &DeviceSummary) -> Timing {
-    if device.is_software() {
-        Timing::Isolated
-    } else {
-        Timing::Timestamps
-    }
 }
 
 /// What to draw.
@@ -105,7 +96,7 @@ impl<'j> Bench<'j> {
             camera: subject.camera,
             motion,
             frame,
-            parts: Recorder::new(context, trustworthy(context.summary()))?,
+            parts: Recorder::new(context, context.summary().timing())?,
             whole,
         })
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::BenchArgs;
-use super::measure::{Measured, Whole, trustworthy};
+use super::measure::{Measured, Whole};
 use super::statistics::Summary;
 use super::work::Work;
 use crate::commands::job::Job;
@@ -99,7 +99,7 @@ impl Head {
     /// Conditions of a measurement that is about to start.
     pub fn new(job: &Job, context: &Context, args: &BenchArgs) -> Self {
         let device = context.summary();
-        let timing = match trustworthy(device) {
+        let timing = match device.timing() {
             Timing::Timestamps => "timestamps",
             _ => "isolated",
         };

@@ -42,7 +42,7 @@ impl Display for Head {
         let how = if self.timing == "timestamps" {
             "passes timed by timestamps of the device"
         } else {
-            "each pass submitted alone and waited for: timestamps of software drivers are attributed to the wrong pass"
+            "each pass submitted alone and waited for: the device has no timestamps that tell passes apart"
         };
         writeln!(f, "{how}")
     }

@@ -167,15 +167,11 @@ impl Stage {
         Ok(self.presenter.idle()?)
     }
 
-    /// Turns pass timing on or off from the next frame. On software drivers, whose timestamps are unreliable, each pass is
-    /// submitted alone.
+    /// Turns pass timing on or off from the next frame. Without reliable timestamps each pass is submitted alone.
     pub(super) fn set_timed(&mut self, timed: bool) {
-        let software = self.context.summary().is_software();
-        self.presenter.set_timing(match (timed, software) {
-            (false, _) => Timing::Off,
-            (true, true) => Timing::Isolated,
-            (true, false) => Timing::Timestamps,
-        });
+        let timing = self.context.summary().timing();
+        self.presenter
+            .set_timing(if timed { timing } else { Timing::Off });
     }
 
     /// Pass times of the newest completed frame.

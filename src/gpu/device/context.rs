@@ -2,14 +2,17 @@
 
 use std::mem::ManuallyDrop;
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use ash::{ext, khr, vk};
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, Allocator, AllocatorCreateDesc};
 
 use crate::gpu::device::fault::{Call, Faults};
-use crate::gpu::device::instance::{InstanceGuard, has_instance_extension, load};
-use crate::gpu::device::select::{self, DeviceSummary, Optional};
+use crate::gpu::device::instance::{InstanceGuard, load};
+use crate::gpu::device::optional::{FLOATS, Optional};
+use crate::gpu::device::portability;
+use crate::gpu::device::select::{self, DeviceSummary};
 use crate::gpu::device::startup::{Startup, Step};
 use crate::gpu::device::surface::{self, RawSurface, Window};
 #[cfg(feature = "window")]
@@ -43,11 +46,8 @@ struct DeviceGuard {
 
 impl Drop for DeviceGuard {
     fn drop(&mut self) {
-        // SAFETY: every resource holds the context, so none is alive.
-        unsafe {
-            let _ = self.raw.device_wait_idle();
-            self.raw.destroy_device(None);
-        }
+        // SAFETY: every resource holds the context, so none is alive, and its drop has waited for the device.
+        unsafe { self.raw.destroy_device(None) };
     }
 }
 
@@ -56,25 +56,25 @@ pub(in crate::gpu) struct Extensions {
     pub(in crate::gpu) push_descriptor: Option<khr::push_descriptor::Device>,
     #[cfg(feature = "window")]
     pub(in crate::gpu) swapchain: Option<khr::swapchain::Device>,
+    /// Names and labels for the messages of the validation layer.
     pub(in crate::gpu) debug: Option<ext::debug_utils::Device>,
 }
 
 impl Extensions {
     fn load(
-        entry: &ash::Entry,
         instance: &ash::Instance,
         device: &ash::Device,
         push_descriptor: bool,
+        validates: bool,
         #[cfg(feature = "window")] presents: bool,
-    ) -> Result<Self> {
-        let has_debug = has_instance_extension(entry, None, ext::debug_utils::NAME)?;
-        Ok(Self {
+    ) -> Self {
+        Self {
             push_descriptor: push_descriptor
                 .then(|| khr::push_descriptor::Device::new(instance, device)),
             #[cfg(feature = "window")]
             swapchain: presents.then(|| khr::swapchain::Device::new(instance, device)),
-            debug: has_debug.then(|| ext::debug_utils::Device::new(instance, device)),
-        })
+            debug: validates.then(|| ext::debug_utils::Device::new(instance, device)),
+        }
     }
 }
 
@@ -85,6 +85,8 @@ pub struct Context {
     samplers: [vk::Sampler; Sampler::COUNT],
     cache: PipelineCache,
     pub(in crate::gpu) faults: Faults,
+    /// Whether the device has not answered in time: nothing waits for it any more.
+    pub(in crate::gpu::device) is_hung: AtomicBool,
     pub(in crate::gpu) stage_uploads: bool,
     pub(in crate::gpu) startup: Startup,
     device: DeviceGuard,
@@ -153,13 +155,13 @@ impl Context {
         };
         startup.done("device");
         let extensions = Extensions::load(
-            &entry,
             &instance.raw,
             &device.raw,
             chosen.summary.has(Optional::PushDescriptor),
+            options.validate,
             #[cfg(feature = "window")]
             surface.is_some(),
-        )?;
+        );
         let allocator = create_allocator(&instance.raw, &device.raw, chosen.handle)?;
         let samplers = create_samplers(&device.raw)?;
         startup.done("memory, samplers");
@@ -171,6 +173,7 @@ impl Context {
             samplers,
             cache,
             faults,
+            is_hung: AtomicBool::new(false),
             stage_uploads: options.stage_uploads,
             startup,
             device,
@@ -256,7 +259,21 @@ impl Context {
 
     /// Whether a pipeline may combine fragments with images of `format`, see [`crate::gpu::Blend`].
     pub fn can_blend(&self, format: vk::Format) -> bool {
-        self.can(format, vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND)
+        let is_offered = format != FLOATS || self.summary.has(Optional::FloatBlend);
+        is_offered && self.can(format, vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND)
+    }
+
+    /// The sampler to bind for a sampler that is asked for: shaders filter 32-bit floats where the device cannot, see
+    /// `include/filtered.glsl`.
+    pub(in crate::gpu) fn sampler_of(&self, format: vk::Format, asked: Sampler) -> vk::Sampler {
+        let is_filtered = format != FLOATS || self.summary.has(Optional::FloatFilter);
+        let kind = if is_filtered { asked } else { Sampler::Nearest };
+        self.samplers[kind.index()]
+    }
+
+    /// Specialization constants that tell shaders of the device.
+    pub(in crate::gpu) fn constants(&self) -> [(&'static str, u32); 1] {
+        [("FILTERED", self.summary.has(Optional::FloatFilter).into())]
     }
 
     fn can(&self, format: vk::Format, needed: vk::FormatFeatureFlags) -> bool {
@@ -267,24 +284,6 @@ impl Context {
                 .get_physical_device_format_properties(self.physical, format)
         };
         properties.optimal_tiling_features.contains(needed)
-    }
-
-    /// The first of `formats` that can be sampled and rendered to. Blending and filtering are not required.
-    ///
-    /// # Errors
-    /// When none is supported; the message lists the formats.
-    pub fn supported_format(&self, formats: &[vk::Format]) -> Result<vk::Format> {
-        let needed =
-            vk::FormatFeatureFlags::COLOR_ATTACHMENT | vk::FormatFeatureFlags::SAMPLED_IMAGE;
-        let able = |format: &&vk::Format| self.can(**format, needed);
-        formats
-            .iter()
-            .find(able)
-            .copied()
-            .ok_or_else(|| GpuError::Unsupported {
-                missing: format!("rendering to {formats:?} is"),
-                device: self.summary.name.clone(),
-            })
     }
 
     /// For tests: replaces the planned fault ([`ContextOptions::fault`]), or removes it. Call counts restart at zero.
@@ -324,10 +323,6 @@ impl Context {
             .map_err(|e| refused(e.to_string().trim_end_matches('.').to_lowercase()))
     }
 
-    pub(in crate::gpu) fn sampler(&self, sampler: Sampler) -> vk::Sampler {
-        self.samplers[sampler.index()]
-    }
-
     /// Sets the debug name of a handle, shown in validation messages and captures.
     pub(in crate::gpu) fn name<H: vk::Handle>(&self, handle: H, name: &str) {
         let Some(debug) = &self.extensions.debug else {
@@ -347,24 +342,13 @@ impl Context {
     pub fn allocated_bytes(&self) -> u64 {
         self.allocator().generate_report().total_allocated_bytes
     }
-
-    /// Waits until the device is idle.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub fn wait_idle(&self) -> Result<()> {
-        let planned = self.faults.at(Call::Wait);
-        // SAFETY: the queue is used by one thread at a time (recorders are not shared).
-        let waited = unsafe { self.raw().device_wait_idle() };
-        planned.and(waited).during("wait for the device")
-    }
 }
 
 impl Drop for Context {
     fn drop(&mut self) {
+        self.settle();
         // SAFETY: no resource is alive (each holds an Arc of the context); the allocator is dropped once, before the device.
         unsafe {
-            let _ = self.raw().device_wait_idle();
             self.cache.save_and_destroy(&self.device.raw);
             for sampler in self.samplers {
                 self.device.raw.destroy_sampler(sampler, None);
@@ -403,6 +387,9 @@ fn create_device(
         .queue_family_index(chosen.queue_family)
         .queue_priorities(&priority)];
     let mut extensions = Vec::new();
+    if chosen.summary.portability.is_some() {
+        extensions.push(portability::SUBSET.as_ptr());
+    }
     if chosen.summary.has(Optional::PushDescriptor) {
         extensions.push(select::PUSH_DESCRIPTORS.as_ptr());
     }
@@ -411,7 +398,6 @@ fn create_device(
     }
     let core = vk::PhysicalDeviceFeatures::default()
         .geometry_shader(chosen.summary.has(Optional::GeometryShader))
-        .shader_storage_image_write_without_format(chosen.stores_without_format)
         .pipeline_statistics_query(chosen.summary.has(Optional::PipelineStatistics));
     let mut v12 = vk::PhysicalDeviceVulkan12Features::default()
         .scalar_block_layout(true)

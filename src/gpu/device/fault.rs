@@ -51,7 +51,7 @@ const CALLS: [(&str, Call); 11] = [
     ("present", Call::Present),
 ];
 
-const ERRORS: [(&str, vk::Result); 6] = [
+const ERRORS: [(&str, vk::Result); 7] = [
     ("device-lost", vk::Result::ERROR_DEVICE_LOST),
     (
         "out-of-device-memory",
@@ -61,6 +61,7 @@ const ERRORS: [(&str, vk::Result); 6] = [
     ("out-of-pool-memory", vk::Result::ERROR_OUT_OF_POOL_MEMORY),
     ("surface-lost", vk::Result::ERROR_SURFACE_LOST_KHR),
     ("out-of-date", vk::Result::ERROR_OUT_OF_DATE_KHR),
+    ("timeout", vk::Result::TIMEOUT),
 ];
 
 /// One fault: a call, its occurrence (from 1) and the error it returns. Written as `submit@3=device-lost`.

@@ -4,6 +4,7 @@ use std::ffi::{CStr, c_char};
 
 use ash::{ext, vk};
 
+use crate::gpu::device::portability;
 use crate::gpu::device::validation::{LAYER, SyncRequest, sync_setting};
 use crate::gpu::error::{During, GpuError, Result};
 
@@ -24,18 +25,24 @@ impl InstanceGuard {
             .engine_name(c"skylight")
             .api_version(vk::API_VERSION_1_3);
         let mut extensions = windows.to_vec();
-        if has_instance_extension(entry, None, ext::debug_utils::NAME)? {
-            extensions.push(ext::debug_utils::NAME.as_ptr());
+        // Without it the loader hides drivers such as MoltenVK.
+        let mut flags = vk::InstanceCreateFlags::empty();
+        if has_instance_extension(entry, None, portability::ENUMERATION)? {
+            extensions.push(portability::ENUMERATION.as_ptr());
+            flags |= vk::InstanceCreateFlags::ENUMERATE_PORTABILITY_KHR;
         }
         let mut layers = Vec::new();
         let settings = [sync_setting(&vk::TRUE)];
         let mut settings = vk::LayerSettingsCreateInfoEXT::default().settings(&settings);
         let sync = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
         let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&sync);
-        let mut info = vk::InstanceCreateInfo::default().application_info(&app);
+        let mut info = vk::InstanceCreateInfo::default()
+            .application_info(&app)
+            .flags(flags);
         if validate {
             let request = SyncRequest::of_layer(entry)?;
             layers.push(LAYER.as_ptr());
+            extensions.push(ext::debug_utils::NAME.as_ptr());
             extensions.extend(request.map(|request| request.extension().as_ptr()));
             info = match request {
                 Some(SyncRequest::LayerSettings) => info.push_next(&mut settings),

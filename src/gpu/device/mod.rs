@@ -3,6 +3,9 @@
 pub(in crate::gpu) mod context;
 pub(in crate::gpu) mod fault;
 pub(in crate::gpu) mod instance;
+pub(in crate::gpu) mod needs;
+pub(in crate::gpu) mod optional;
+pub(in crate::gpu) mod portability;
 pub(in crate::gpu) mod select;
 pub(in crate::gpu) mod startup;
 #[cfg(feature = "window")]
@@ -11,3 +14,4 @@ pub(in crate::gpu) mod surface;
 #[path = "no_surface.rs"]
 pub(in crate::gpu) mod surface;
 pub(in crate::gpu) mod validation;
+mod waiting;

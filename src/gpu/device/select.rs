@@ -4,8 +4,11 @@ use std::ffi::{CStr, c_char};
 
 use ash::vk;
 
+use crate::gpu::device::optional::{Offered, Optional};
 use crate::gpu::device::surface::RawSurface;
+use crate::gpu::device::{needs, portability};
 use crate::gpu::error::{During, GpuError, Result};
+use crate::gpu::record::timings::Timing;
 
 /// Description of a device, including whether the renderer can use it.
 #[derive(Debug, Clone)]
@@ -24,37 +27,12 @@ pub struct DeviceSummary {
     pub missing: Vec<String>,
     /// Optional features, and whether each is used.
     pub optional: Vec<(Optional, bool)>,
-    /// Maximum size of a 2D image, pixels.
+    /// Maximum edge of an image that is drawn, pixels: the least of the limits on images, framebuffers and viewports.
     pub max_image_edge: u32,
-}
-
-/// Features that are used if available but not required.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Optional {
-    /// Extension VK_KHR_push_descriptor. Fallback: descriptor pools.
-    PushDescriptor,
-    /// Feature geometryShader. Fallback: compute shaders write the sky and irradiance cubes.
-    GeometryShader,
-    /// Feature pipelineStatisticsQuery. Without it the benchmark omits those columns.
-    PipelineStatistics,
-}
-
-impl Optional {
-    /// All optional features.
-    pub const ALL: [Self; 3] = [
-        Self::PushDescriptor,
-        Self::GeometryShader,
-        Self::PipelineStatistics,
-    ];
-
-    /// Name in the Vulkan specification.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::PushDescriptor => "VK_KHR_push_descriptor",
-            Self::GeometryShader => "geometryShader",
-            Self::PipelineStatistics => "pipelineStatisticsQuery",
-        }
-    }
+    /// Bits of the timestamps that count; 0: there are none.
+    pub timestamp_bits: u32,
+    /// For a driver on top of another interface (MoltenVK): features of Vulkan that it lacks. None of them is used.
+    pub portability: Option<Vec<&'static str>>,
 }
 
 impl DeviceSummary {
@@ -67,6 +45,15 @@ impl DeviceSummary {
     pub fn is_software(&self) -> bool {
         self.kind == SOFTWARE
     }
+
+    /// How its passes are timed: software drivers attribute timestamps to the wrong pass, and some queues have none.
+    pub fn timing(&self) -> Timing {
+        if self.is_software() || !self.has(Optional::Timestamps) {
+            Timing::Isolated
+        } else {
+            Timing::Timestamps
+        }
+    }
 }
 
 /// [`DeviceSummary::kind`] of devices that run on the CPU.
@@ -77,8 +64,6 @@ pub(in crate::gpu) struct Candidate {
     pub(in crate::gpu) handle: vk::PhysicalDevice,
     pub(in crate::gpu) summary: DeviceSummary,
     pub(in crate::gpu) queue_family: u32,
-    /// Whether compute shaders can write images of any format.
-    pub(in crate::gpu) stores_without_format: bool,
     rank: u32,
 }
 
@@ -135,73 +120,58 @@ fn candidate(
     let (kind, rank) = kind_and_rank(properties.device_type);
     let version = properties.api_version;
     let extensions = extensions(instance, handle)?;
-    let queue_family = graphics_queue(instance, handle, surface)?;
+    let queue = needs::queue(instance, handle, surface)?;
+    let portability = portability::missing(instance, handle, &extensions);
     let mut missing = Vec::new();
     if version < vk::API_VERSION_1_3 {
         missing.push("Vulkan 1.3".to_owned());
     } else {
-        missing.extend(missing_features(instance, handle));
+        missing.extend(needs::missing_features(instance, handle));
     }
-    let buffers = properties.limits.max_per_stage_descriptor_storage_buffers;
-    if buffers < STORAGE_BUFFERS {
-        missing.push(format!(
-            "{STORAGE_BUFFERS} storage buffers in a shader (it has {buffers})"
-        ));
-    }
-    if queue_family.is_none() {
-        let to = surface.map_or("", |_| " that presents to this window");
-        missing.push(format!("a graphics queue{to}"));
-    }
+    missing.extend(needs::missing_formats(instance, handle));
+    missing.extend(portability.iter().flat_map(|p| p.needed.clone()));
+    missing.extend(queue.clone().err());
     if surface.is_some() && !extensions.iter().any(|e| e == "VK_KHR_swapchain") {
         missing.push("VK_KHR_swapchain".to_owned());
     }
+    let timestamp_bits = queue.as_ref().map_or(0, |queue| queue.timestamp_bits);
+    let offered = Offered {
+        instance,
+        handle,
+        extensions: &extensions,
+        timestamp_bits,
+    };
     let summary = DeviceSummary {
         index,
         name: text(&properties.device_name),
         kind,
-        api: format!(
-            "{}.{}.{}",
-            vk::api_version_major(version),
-            vk::api_version_minor(version),
-            vk::api_version_patch(version)
-        ),
+        api: version_text(version),
         driver: format!(
             "{} {}",
             text(&driver.driver_name),
             text(&driver.driver_info)
         ),
         missing,
-        optional: optional(instance, handle, &extensions, without),
-        max_image_edge: properties.limits.max_image_dimension2_d,
+        optional: offered.list(without),
+        max_image_edge: needs::largest_target(&properties.limits),
+        timestamp_bits,
+        portability: portability.map(|p| p.unused),
     };
-    // SAFETY: `handle` comes from this instance.
-    let core = unsafe { instance.get_physical_device_features(handle) };
     Ok(Candidate {
         handle,
         summary,
-        stores_without_format: core.shader_storage_image_write_without_format == vk::TRUE,
-        queue_family: queue_family.unwrap_or(0),
+        queue_family: queue.map_or(0, |queue| queue.family),
         rank,
     })
 }
 
-fn optional(
-    instance: &ash::Instance,
-    handle: vk::PhysicalDevice,
-    extensions: &[String],
-    without: &[Optional],
-) -> Vec<(Optional, bool)> {
-    // SAFETY: `handle` comes from this instance.
-    let core = unsafe { instance.get_physical_device_features(handle) };
-    let present = |optional: &Optional| match optional {
-        Optional::PushDescriptor => extensions.iter().any(|e| e == optional.name()),
-        Optional::GeometryShader => core.geometry_shader == vk::TRUE,
-        Optional::PipelineStatistics => core.pipeline_statistics_query == vk::TRUE,
-    };
-    Optional::ALL
-        .iter()
-        .map(|o| (*o, present(o) && !without.contains(o)))
-        .collect()
+fn version_text(version: u32) -> String {
+    let major = vk::api_version_major(version);
+    let (minor, patch) = (
+        vk::api_version_minor(version),
+        vk::api_version_patch(version),
+    );
+    format!("{major}.{minor}.{patch}")
 }
 
 fn extensions(instance: &ash::Instance, handle: vk::PhysicalDevice) -> Result<Vec<String>> {
@@ -209,53 +179,6 @@ fn extensions(instance: &ash::Instance, handle: vk::PhysicalDevice) -> Result<Ve
     let list = unsafe { instance.enumerate_device_extension_properties(handle) }
         .during("list device extensions")?;
     Ok(list.iter().map(|e| text(&e.extension_name)).collect())
-}
-
-fn graphics_queue(
-    instance: &ash::Instance,
-    handle: vk::PhysicalDevice,
-    surface: Option<&RawSurface>,
-) -> Result<Option<u32>> {
-    // SAFETY: `handle` comes from this instance.
-    let families = unsafe { instance.get_physical_device_queue_family_properties(handle) };
-    for (family, properties) in (0u32..).zip(&families) {
-        let draws = properties.queue_flags.contains(vk::QueueFlags::GRAPHICS);
-        if draws && surface.map_or(Ok(true), |s| s.is_supported(handle, family))? {
-            return Ok(Some(family));
-        }
-    }
-    Ok(None)
-}
-
-/// Largest number of storage buffers that a shader of this program uses; Vulkan guarantees four.
-const STORAGE_BUFFERS: u32 = 7;
-
-fn missing_features(instance: &ash::Instance, handle: vk::PhysicalDevice) -> Vec<String> {
-    let mut v12 = vk::PhysicalDeviceVulkan12Features::default();
-    let mut v13 = vk::PhysicalDeviceVulkan13Features::default();
-    let mut features = vk::PhysicalDeviceFeatures2::default()
-        .push_next(&mut v12)
-        .push_next(&mut v13);
-    // SAFETY: `handle` comes from this instance; the chain lives on this stack.
-    unsafe { instance.get_physical_device_features2(handle, &mut features) };
-    let core = features.features;
-    // Cube maps are written by geometry shaders, or by compute shaders as a fallback.
-    let cubes = core.geometry_shader | core.shader_storage_image_write_without_format;
-    [
-        (
-            "geometryShader or shaderStorageImageWriteWithoutFormat",
-            cubes,
-        ),
-        ("scalarBlockLayout", v12.scalar_block_layout),
-        ("hostQueryReset", v12.host_query_reset),
-        ("dynamicRendering", v13.dynamic_rendering),
-        ("synchronization2", v13.synchronization2),
-        ("shaderTerminateInvocation", v13.shader_terminate_invocation),
-    ]
-    .into_iter()
-    .filter(|(_, present)| *present == vk::FALSE)
-    .map(|(name, _)| name.to_owned())
-    .collect()
 }
 
 /// The device the user asked for (index or part of the name), otherwise the best usable one: discrete, then integrated, then
@@ -346,13 +269,11 @@ pub fn devices(without: &[Optional]) -> Result<Vec<DeviceSummary>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::pipeline::shader::{BindingKind, Shader, compiled};
 
     fn fake(index: usize, name: &str, rank: u32, missing: &[&str]) -> Candidate {
         Candidate {
             handle: vk::PhysicalDevice::null(),
             queue_family: 0,
-            stores_without_format: true,
             rank,
             summary: DeviceSummary {
                 index,
@@ -363,6 +284,8 @@ mod tests {
                 missing: missing.iter().map(|m| (*m).to_owned()).collect(),
                 optional: Vec::new(),
                 max_image_edge: 16384,
+                timestamp_bits: 64,
+                portability: None,
             },
         }
     }
@@ -412,17 +335,5 @@ mod tests {
                 .to_string()
                 .contains("Vulkan 1.3")
         );
-    }
-
-    #[test]
-    fn the_limit_of_storage_buffers_is_what_the_shaders_use() {
-        let buffers = |shader: &&Shader| {
-            let bindings = shader.bindings.iter();
-            bindings
-                .filter(|b| b.kind == BindingKind::StorageBuffer)
-                .count()
-        };
-        let most = compiled::ALL.iter().map(buffers).max();
-        assert_eq!(most, Some(STORAGE_BUFFERS as usize));
     }
 }

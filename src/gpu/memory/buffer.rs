@@ -169,8 +169,11 @@ impl Buffer {
 
 impl Drop for Buffer {
     fn drop(&mut self) {
+        let Some(raw) = self.context.freeing() else {
+            return;
+        };
         // SAFETY: recorders wait for their work before they release resources.
-        unsafe { self.context.raw().destroy_buffer(self.raw, None) };
+        unsafe { raw.destroy_buffer(self.raw, None) };
         if let Some(allocation) = self.allocation.take() {
             // Freeing fails only for memory from another allocator.
             let _ = self.context.allocator().free(allocation);

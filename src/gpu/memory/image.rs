@@ -34,8 +34,19 @@ pub struct ImageDesc<'a> {
     pub kind: ImageKind,
     /// Mip levels, at least one.
     pub levels: u32,
-    /// Whether compute shaders may write to it.
-    pub is_stored: bool,
+    /// What writes to it.
+    pub written: Written,
+}
+
+/// What writes to an image. Devices may compress an image that less can happen to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Written {
+    /// Uploads alone: a texture.
+    Once,
+    /// Rendering.
+    Drawn,
+    /// Rendering or compute shaders.
+    Stored,
 }
 
 impl<'a> ImageDesc<'a> {
@@ -47,7 +58,15 @@ impl<'a> ImageDesc<'a> {
             size,
             kind: ImageKind::Flat,
             levels: 1,
-            is_stored: false,
+            written: Written::Drawn,
+        }
+    }
+
+    /// A 2D image with one mip level that is uploaded, see [`crate::gpu::upload_texture`].
+    pub fn texture(name: &'a str, format: vk::Format, size: [u32; 2]) -> Self {
+        Self {
+            written: Written::Once,
+            ..Self::flat(name, format, size)
         }
     }
 
@@ -60,14 +79,14 @@ impl<'a> ImageDesc<'a> {
             kind: ImageKind::Cube,
             levels: 1,
             // Devices without geometry shaders write cubes from compute shaders.
-            is_stored: true,
+            written: Written::Stored,
         }
     }
 
     /// Same, writable by compute shaders.
     pub fn stored(self) -> Self {
         Self {
-            is_stored: true,
+            written: Written::Stored,
             ..self
         }
     }
@@ -115,23 +134,16 @@ pub(in crate::gpu) fn is_depth(format: vk::Format) -> bool {
     matches!(format, vk::Format::D32_SFLOAT | vk::Format::D16_UNORM)
 }
 
-fn is_srgb_texture(format: vk::Format) -> bool {
-    format == vk::Format::R8G8B8A8_SRGB
-}
-
 fn usage(desc: &ImageDesc<'_>) -> vk::ImageUsageFlags {
-    let (format, levels) = (desc.format, desc.levels);
-    let common = vk::ImageUsageFlags::SAMPLED
-        | vk::ImageUsageFlags::TRANSFER_SRC
-        | vk::ImageUsageFlags::TRANSFER_DST;
-    if is_depth(format) {
-        common | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT
-    } else if levels > 1 && is_srgb_texture(format) {
-        common
-    } else if desc.is_stored {
-        common | vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE
-    } else {
-        common | vk::ImageUsageFlags::COLOR_ATTACHMENT
+    let uploaded = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+    let drawn = uploaded | vk::ImageUsageFlags::TRANSFER_SRC;
+    match desc.written {
+        Written::Once => uploaded,
+        _ if is_depth(desc.format) => drawn | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
+        Written::Drawn => drawn | vk::ImageUsageFlags::COLOR_ATTACHMENT,
+        Written::Stored => {
+            drawn | vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE
+        }
     }
 }
 
@@ -141,7 +153,10 @@ impl Image {
     /// # Errors
     /// When it is larger than the device supports or device memory is exhausted.
     pub fn new(context: &Arc<Context>, desc: &ImageDesc<'_>) -> Result<Self> {
-        let limit = context.limits.max_image_dimension2_d;
+        let limit = match desc.written {
+            Written::Once => context.limits.max_image_dimension2_d,
+            Written::Drawn | Written::Stored => context.summary().max_image_edge,
+        };
         let asked = desc.size[0].max(desc.size[1]);
         if asked > limit {
             let device = context.summary().name.clone();
@@ -194,7 +209,9 @@ impl Image {
             ImageKind::Cube => vk::ImageViewType::CUBE,
         };
         image.sampled_view = image.view(sampled, desc.levels)?;
-        image.attachment_view = image.view(vk::ImageViewType::TYPE_2D_ARRAY, 1)?;
+        if desc.written != Written::Once {
+            image.attachment_view = image.view(vk::ImageViewType::TYPE_2D_ARRAY, 1)?;
+        }
         Ok(image)
     }
 
@@ -335,23 +352,8 @@ impl Image {
         barrier
     }
 
-    /// The barrier of one mip level. The caller must leave all levels in the same access and report it with
-    /// [`Image::set_last_access`].
-    pub(in crate::gpu) fn level_barrier(
-        &self,
-        level: u32,
-        from: ImageAccess,
-        to: ImageAccess,
-    ) -> Option<vk::ImageMemoryBarrier2<'static>> {
-        let range = vk::ImageSubresourceRange {
-            base_mip_level: level,
-            level_count: 1,
-            ..self.whole()
-        };
-        self.barrier(from, to, range)
-    }
-
-    /// Sets the access that a sequence of level barriers ended with.
+    /// Sets the access with which the swapchain hands an image over.
+    #[cfg(feature = "window")]
     pub(in crate::gpu) fn set_last_access(&self, last: ImageAccess) {
         self.last_access.set(last);
     }
@@ -386,16 +388,15 @@ impl Image {
 
 impl Drop for Image {
     fn drop(&mut self) {
+        let Some(raw) = self.context.freeing() else {
+            return;
+        };
         // SAFETY: recorders wait for their work before they release resources; null views are ignored.
         unsafe {
-            self.context
-                .raw()
-                .destroy_image_view(self.sampled_view, None);
-            self.context
-                .raw()
-                .destroy_image_view(self.attachment_view, None);
+            raw.destroy_image_view(self.sampled_view, None);
+            raw.destroy_image_view(self.attachment_view, None);
             if !self.is_borrowed {
-                self.context.raw().destroy_image(self.raw, None);
+                raw.destroy_image(self.raw, None);
             }
         }
         if let Some(allocation) = self.allocation.take() {

@@ -2,6 +2,5 @@
 
 pub(in crate::gpu) mod buffer;
 pub(in crate::gpu) mod image;
-pub(in crate::gpu) mod mips;
 pub(in crate::gpu) mod read_back;
 pub(in crate::gpu) mod upload;

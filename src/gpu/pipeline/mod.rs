@@ -4,6 +4,8 @@ pub(in crate::gpu) mod cache;
 #[cfg(feature = "hot-reload")]
 pub(in crate::gpu) mod hot_reload;
 pub(in crate::gpu) mod layout;
+#[cfg(test)]
+mod limits_tests;
 pub(in crate::gpu) mod shader;
 mod state;
 
@@ -274,10 +276,11 @@ impl Pipeline {
     fn create(&self, desc: &PipelineDesc<'_>, modules: &Modules) -> Result<vk::Pipeline> {
         let what = "compile a pipeline";
         self.context.faults.at(Call::Pipeline).during(what)?;
+        let values = [desc.constants, &self.context.constants()].concat();
         let constants: Vec<Constants> = desc
             .stages
             .iter()
-            .map(|s| Constants::new(s, desc.constants))
+            .map(|s| Constants::new(s, &values))
             .collect();
         let specializations: Vec<_> = constants.iter().map(Constants::info).collect();
         let stages: Vec<_> = desc
@@ -337,15 +340,14 @@ impl Pipeline {
 
 impl Drop for Pipeline {
     fn drop(&mut self) {
+        let Some(raw) = self.context.freeing() else {
+            return;
+        };
         // SAFETY: recorders wait for their work before pipelines are dropped; null handles are ignored.
         unsafe {
-            self.context.raw().destroy_pipeline(self.raw, None);
-            self.context
-                .raw()
-                .destroy_pipeline_layout(self.layout, None);
-            self.context
-                .raw()
-                .destroy_descriptor_set_layout(self.set_layout, None);
+            raw.destroy_pipeline(self.raw, None);
+            raw.destroy_pipeline_layout(self.layout, None);
+            raw.destroy_descriptor_set_layout(self.set_layout, None);
         }
     }
 }

@@ -125,12 +125,10 @@ impl Overlay {
 
 impl Drop for Overlay {
     fn drop(&mut self) {
-        // SAFETY: the device is idle, so nothing of the pool or the renderer is in use.
-        unsafe {
-            let _ = self.context.raw().device_wait_idle();
-            self.context
-                .raw()
-                .destroy_command_pool(self.command_pool, None);
+        self.context.settle();
+        if let Some(raw) = self.context.freeing() {
+            // SAFETY: the device is idle, so nothing of the pool or the renderer is in use.
+            unsafe { raw.destroy_command_pool(self.command_pool, None) };
         }
     }
 }

@@ -27,6 +27,41 @@ impl Recorder {
         }
     }
 
+    /// Copies an image (all of its layers) to a mip level of another one that is as large.
+    pub fn copy_to_level(&mut self, from: &Image, to: &Image, level: u32) {
+        let uses = [
+            (from, ImageAccess::CopySource),
+            (to, ImageAccess::CopyTarget),
+        ];
+        self.transition(uses.into_iter());
+        let layers = |image: &Image, mip_level| vk::ImageSubresourceLayers {
+            aspect_mask: image.aspect(),
+            mip_level,
+            base_array_layer: 0,
+            layer_count: image.layers(),
+        };
+        let [width, height] = from.size();
+        let region = [vk::ImageCopy::default()
+            .src_subresource(layers(from, 0))
+            .dst_subresource(layers(to, level))
+            .extent(vk::Extent3D {
+                width,
+                height,
+                depth: 1,
+            })];
+        // SAFETY: both images are in these layouts; the command buffer is recording outside of a rendering.
+        unsafe {
+            self.context.raw().cmd_copy_image(
+                self.command,
+                from.raw(),
+                vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+                to.raw(),
+                vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+                &region,
+            );
+        }
+    }
+
     /// Transitions the attachments of the following passes now, so that no barriers separate these passes. Passes that do not
     /// read each other's images may then overlap on the device.
     pub fn prepare<'i>(&self, targets: impl Iterator<Item = &'i Image>) {
@@ -46,18 +81,6 @@ impl Recorder {
         accesses: impl Iterator<Item = (&'i Image, ImageAccess)>,
     ) {
         let barriers = accesses.filter_map(|(image, next)| image.next(next));
-        self.image_barriers(&barriers.collect());
-    }
-
-    /// Transitions one mip level; see [`Image::level_barrier`].
-    pub(in crate::gpu) fn level_transition(
-        &self,
-        image: &Image,
-        level: u32,
-        from: ImageAccess,
-        to: ImageAccess,
-    ) {
-        let barriers = image.level_barrier(level, from, to).into_iter();
         self.image_barriers(&barriers.collect());
     }
 

@@ -106,9 +106,12 @@ impl DescriptorPools {
 
 impl Drop for DescriptorPools {
     fn drop(&mut self) {
+        let Some(raw) = self.context.freeing() else {
+            return;
+        };
         for pool in &self.pools {
             // SAFETY: the recorder that owns the pools has waited for its work.
-            unsafe { self.context.raw().destroy_descriptor_pool(*pool, None) };
+            unsafe { raw.destroy_descriptor_pool(*pool, None) };
         }
     }
 }

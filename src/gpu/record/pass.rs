@@ -230,7 +230,11 @@ impl<'r> Pass<'r> {
         self.order_buffers();
         self.begin_rendering();
         record(&mut Draws { pass: &mut self });
-        self.recorder.end_timing(&mark);
+        let is_software = self.recorder.context.summary().is_software();
+        // Software drivers attribute what is after the rendering to the next pass; tilers draw at its end.
+        if is_software {
+            self.recorder.end_timing(&mark);
+        }
         // SAFETY: pairs with `begin_rendering`.
         unsafe {
             self.recorder
@@ -238,6 +242,9 @@ impl<'r> Pass<'r> {
                 .raw()
                 .cmd_end_rendering(self.recorder.command)
         };
+        if !is_software {
+            self.recorder.end_timing(&mark);
+        }
         self.recorder.unlabel();
         let traffic = self.traffic();
         self.recorder.end_work(&mark, self.drawn, || traffic);
@@ -309,7 +316,7 @@ impl<'r> Pass<'r> {
 
     pub(in crate::gpu) fn bind_image(&mut self, name: &str, image: &Image, sampler: Sampler) {
         let info = vk::DescriptorImageInfo {
-            sampler: self.recorder.context.sampler(sampler),
+            sampler: self.recorder.context.sampler_of(image.format(), sampler),
             image_view: image.sampled_view(),
             image_layout: access::layout(sampled_access(image)),
         };

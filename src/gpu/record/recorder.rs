@@ -169,8 +169,7 @@ impl Recorder {
         let waited = self.wait_for_fence();
         if waited.is_err() {
             // The wait itself may have run out of memory, but the resources must still outlive the work.
-            // SAFETY: the queue is used by one thread at a time. On a lost device there is nothing to wait for.
-            let _ = unsafe { self.context.raw().device_wait_idle() };
+            self.context.settle();
         }
         self.kept.clear();
         if let Some(fault) = self.fault.take() {
@@ -195,11 +194,12 @@ impl Recorder {
         }
         let raw = self.context.raw();
         let planned = self.context.faults.at(Call::Wait);
-        planned.during("wait for the device")?;
+        planned.map_err(|result| self.context.unanswered(result, self.context.longest_wait()))?;
         // SAFETY: the fence belongs to the one pending submission.
         unsafe {
-            raw.wait_for_fences(&[self.fence], true, u64::MAX)
-                .during("wait for the device")?;
+            let longest = self.context.longest_wait();
+            raw.wait_for_fences(&[self.fence], true, longest.as_nanos() as u64)
+                .map_err(|result| self.context.unanswered(result, longest))?;
             raw.reset_fences(&[self.fence]).during("reset a fence")?;
         }
         Ok(true)
@@ -312,8 +312,7 @@ impl Recorder {
         }
     }
 
-    /// Writes the end timestamp. It is inside the render pass, because software drivers would otherwise attribute the time to
-    /// the next pass.
+    /// Writes the end timestamp.
     pub(in crate::gpu) fn end_timing(&self, mark: &Mark) {
         if let Mark::Query(index) = mark {
             self.queries.end(self.command, *index);
@@ -348,10 +347,12 @@ impl Recorder {
 
 impl Drop for Recorder {
     fn drop(&mut self) {
-        let raw = self.context.raw();
+        self.context.settle();
+        let Some(raw) = self.context.freeing() else {
+            return;
+        };
         // SAFETY: the device is idle or lost; null handles are ignored.
         unsafe {
-            let _ = raw.device_wait_idle();
             raw.destroy_fence(self.fence, None);
             raw.destroy_command_pool(self.command_pool, None);
         }

@@ -88,6 +88,12 @@ pub(in crate::gpu) struct Queries {
     names: Vec<&'static str>,
 }
 
+/// Ticks from one timestamp to a later one; the counter starts again at 0 after its last bit that counts.
+fn ticks_between(from: u64, to: u64, bits: u32) -> u64 {
+    let mask = u64::MAX.checked_shr(64 - bits.min(64)).unwrap_or(0);
+    to.wrapping_sub(from) & mask
+}
+
 impl Queries {
     pub(in crate::gpu) fn new(context: &Arc<Context>) -> Result<Self> {
         let info = vk::QueryPoolCreateInfo::default()
@@ -160,8 +166,9 @@ impl Queries {
         }
         .during("read timestamps")?;
         let to_ms = f64::from(self.context.limits.timestamp_period) * 1e-6;
+        let bits = self.context.summary().timestamp_bits;
         for (name, pair) in self.names.iter().zip(ticks.chunks_exact(2)) {
-            let ms = pair[1].saturating_sub(pair[0]) as f64 * to_ms;
+            let ms = ticks_between(pair[0], pair[1], bits) as f64 * to_ms;
             into.push(PassTime {
                 name,
                 ms,
@@ -174,7 +181,24 @@ impl Queries {
 
 impl Drop for Queries {
     fn drop(&mut self) {
-        // SAFETY: the recorder that owns this has waited for its work.
-        unsafe { self.context.raw().destroy_query_pool(self.pool, None) };
+        if let Some(raw) = self.context.freeing() {
+            // SAFETY: the recorder that owns this has waited for its work.
+            unsafe { raw.destroy_query_pool(self.pool, None) };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_counter_that_starts_again_is_no_negative_time() {
+        assert_eq!(ticks_between(5, 25, 64), 20);
+        assert_eq!(ticks_between(u64::MAX - 4, 5, 64), 10);
+        assert_eq!(ticks_between((1 << 36) - 10, 20, 36), 30);
+        // Bits that do not count may hold anything.
+        assert_eq!(ticks_between(0xabc << 36 | 7, 0x123 << 36 | 9, 36), 2);
+        assert_eq!(ticks_between(1, 9, 0), 0);
     }
 }

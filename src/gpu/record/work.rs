@@ -233,7 +233,9 @@ impl WorkLog {
 
 impl Drop for WorkLog {
     fn drop(&mut self) {
-        // SAFETY: the recorder that owns this has waited for its work; a null handle is ignored.
-        unsafe { self.context.raw().destroy_query_pool(self.pool, None) };
+        if let Some(raw) = self.context.freeing() {
+            // SAFETY: the recorder that owns this has waited for its work; a null handle is ignored.
+            unsafe { raw.destroy_query_pool(self.pool, None) };
+        }
     }
 }

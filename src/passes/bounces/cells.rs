@@ -36,6 +36,7 @@ const CONTESTS: u32 = 2;
 const PATH_POINTS: u32 = 4;
 /// Sizes of the structs there, bytes.
 const POINT_BYTES: u32 = 16;
+const WALL_BYTES: u32 = 8;
 const CANDIDATE_BYTES: u32 = 28;
 const SUM_BYTES: u32 = 56;
 
@@ -157,14 +158,10 @@ pub struct Cells {
     place: Pipeline,
     update: Pipeline,
     publish: Pipeline,
-    prints: Buffer,
-    live: Buffer,
-    points: Buffer,
+    table: Buffer,
+    places: Buffer,
     contests: Buffer,
-    candidates: Buffer,
     sums: Buffer,
-    stamps: Buffer,
-    walls: Buffer,
     cells: Image,
     planes: Image,
     held: Option<Held>,
@@ -227,18 +224,18 @@ impl Cells {
                 &tree.constants_with_emitters(),
             )?,
             publish: pipeline("cells: publish", &shaders::CELLS_PUBLISH_COMP, &[])?,
-            prints: buffer("prints of cells", SLOTS)?,
-            live: buffer("live cells", SLOTS + 1)?,
-            points: buffer("points of cells", SLOTS * POINTS * POINT_BYTES / 4)?,
-            contests: buffer("contests of cells", SLOTS * CONTESTS)?,
-            candidates: buffer(
-                "candidates of cells",
-                PATHS * PATH_POINTS * CANDIDATE_BYTES / 4,
+            // Prints, rounds, the number of live cells, the cells.
+            table: buffer("table of cells", 3 * SLOTS + 1)?,
+            places: buffer(
+                "points and walls of cells",
+                SLOTS * (POINTS * POINT_BYTES + WALL_BYTES) / 4,
+            )?,
+            contests: buffer(
+                "contests of cells",
+                SLOTS * CONTESTS + PATHS * PATH_POINTS * CANDIDATE_BYTES / 4,
             )?,
             sums: buffer("sums of cells", SLOTS * SUM_BYTES / 4)?,
-            stamps: buffer("rounds of cells", SLOTS)?,
             cells: image("cells")?,
-            walls: buffer("walls of cells", SLOTS * 2)?,
             planes: image("cells: walls and gradients")?,
             held: None,
             round: 0,
@@ -248,7 +245,7 @@ impl Cells {
 
     /// Empties the table.
     fn clear(&mut self, recorder: &mut Recorder) {
-        for buffer in [&self.prints, &self.live, &self.sums, &self.stamps] {
+        for buffer in [&self.table, &self.sums] {
             recorder.fill(buffer, 0);
         }
         recorder.fill(&self.contests, u32::MAX);
@@ -349,13 +346,9 @@ impl Cells {
             .bound_to(pass)
             .uniform("view", &view.block())
             .uniform("scene", &self.block(&view, around.daylight))
-            .storage_mut("Prints", &self.prints)
-            .storage_mut("Live", &self.live)
-            .storage_mut("Places", &self.points)
+            .storage_mut("Table", &self.table)
+            .storage_mut("Places", &self.places)
             .storage_mut("Contests", &self.contests)
-            .storage_mut("Candidates", &self.candidates)
-            .storage_mut("Walls", &self.walls)
-            .storage_mut("Stamps", &self.stamps)
             .push(&SeedPush { paths })
             .dispatch_over([paths, 1, 1]);
         let candidates = paths * PATH_POINTS;
@@ -364,11 +357,9 @@ impl Cells {
             .tree
             .bound_to(pass)
             .uniform("scene", &self.block(&view, around.daylight))
-            .storage_mut("Prints", &self.prints)
-            .storage_mut("Places", &self.points)
+            .storage_mut("Table", &self.table)
+            .storage_mut("Places", &self.places)
             .storage_mut("Contests", &self.contests)
-            .storage_mut("Candidates", &self.candidates)
-            .storage_mut("Walls", &self.walls)
             .storage_mut("Sums", &self.sums)
             .push(&PlacePush { candidates })
             .dispatch_over([candidates, 1, 1]);
@@ -380,9 +371,8 @@ impl Cells {
         self.bound_to(pass)
             .uniform("scene", &self.block(around.view, around.daylight))
             .sample("sky_radiance", around.sky_radiance, Sampler::Linear)
-            .storage_mut("Prints", &self.prints)
-            .storage_mut("Live", &self.live)
-            .storage_mut("Places", &self.points)
+            .storage_mut("Table", &self.table)
+            .storage_mut("Places", &self.places)
             .storage_mut("Sums", &self.sums)
             .push(push)
             .dispatch_over([self.most_live(), 1, 1]);
@@ -396,10 +386,8 @@ impl Cells {
                 first: update.first,
             })
             .uniform("scene", &self.block(around.view, around.daylight))
-            .storage_mut("Places", &self.points)
-            .storage_mut("Prints", &self.prints)
-            .storage_mut("Live", &self.live)
-            .storage_mut("Walls", &self.walls)
+            .storage_mut("Table", &self.table)
+            .storage_mut("Places", &self.places)
             .storage_mut("Contests", &self.contests)
             .storage_mut("Sums", &self.sums)
             .store("cells", &self.cells)

@@ -166,7 +166,7 @@ fn upload<T: Sync, const N: usize>(
         }
     });
     let size = [(columns * N) as u32, rows as u32];
-    let desc = ImageDesc::flat(name, Format::R32G32B32A32_UINT, size);
+    let desc = ImageDesc::texture(name, Format::R32G32B32A32_UINT, size);
     let words = bytemuck::cast_slice(table.as_flattened());
     let image = upload_texture(recorder, &desc, &[words])?;
     Ok((image, columns as u32))

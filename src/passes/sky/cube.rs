@@ -16,6 +16,7 @@ use crate::gpu_struct;
 
 use crate::passes::kilo;
 use crate::passes::sky::atmosphere::{AtmosphereView, SkyViews};
+use crate::passes::sky::mips::Mips;
 use crate::passes::sky::route::{CubePipeline, CubeRoute, CubeShaders};
 
 gpu_struct! {
@@ -229,6 +230,7 @@ pub struct SkyCube {
     painter: Painter,
     radiance: Image,
     smooth: Image,
+    mips: Mips,
     coarse: Image,
     atmosphere: AtmosphereView,
     drawn: Option<Daylight>,
@@ -247,6 +249,7 @@ impl SkyCube {
             painter: Painter::new(context, float)?,
             radiance: Image::new(context, &ImageDesc::cube("sky radiance", float, edge))?,
             smooth: Image::new(context, &smooth)?,
+            mips: Mips::new(context, float, SMOOTH_EDGE)?,
             coarse: Image::new(context, &coarse)?,
             atmosphere: AtmosphereView::new(context)?,
             drawn: None,
@@ -264,7 +267,7 @@ impl SkyCube {
             self.painter
                 .paint(recorder, daylight, views, &self.radiance);
             self.painter.paint(recorder, daylight, views, &self.smooth);
-            recorder.mipmap("sky mips", &self.smooth);
+            self.mips.record(recorder, &self.smooth);
             self.painter.paint(recorder, daylight, views, &self.coarse);
             self.drawn = Some(daylight.clone());
         }

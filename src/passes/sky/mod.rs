@@ -4,4 +4,5 @@ pub mod air;
 pub mod atmosphere;
 pub mod cube;
 pub mod irradiance;
+mod mips;
 pub mod route;

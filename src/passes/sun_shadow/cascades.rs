@@ -68,11 +68,7 @@ pub fn count(bounds: &Bounds, resolution: u32, most_texels: u32) -> u32 {
         _ => MAX_CASCADES as u32,
     };
     // The cascades lie side by side in one image.
-    if wanted * resolution <= most_texels {
-        wanted
-    } else {
-        1
-    }
+    wanted.min(most_texels / resolution.max(1)).max(1)
 }
 
 /// Fitted cascades, the finest first.
@@ -229,7 +225,11 @@ mod tests {
         let of = |half, most| count(&square(half), 2048, most);
         assert_eq!([of(20.0, 16_384), of(80.0, 16_384)], [1, 1]);
         assert_eq!([of(200.0, 16_384), of(2000.0, 16_384)], [3, 4]);
-        assert_eq!(of(2000.0, 4096), 1, "no image is wide enough");
+        assert_eq!(
+            [of(2000.0, 4096), of(2000.0, 2048)],
+            [2, 1],
+            "no image is wider"
+        );
     }
 
     #[test]

@@ -59,7 +59,7 @@ pub(in crate::passes) fn upload_materials(
         table[at + 2 * columns] = emission.extend(0.0).to_array();
     }
     let size = [MATERIAL_COLUMNS, rows as u32];
-    let desc = ImageDesc::flat("materials", Format::R32G32B32A32_SFLOAT, size);
+    let desc = ImageDesc::texture("materials", Format::R32G32B32A32_SFLOAT, size);
     upload_texture(recorder, &desc, &[bytemuck::cast_slice(&table)])
 }
 
@@ -102,7 +102,7 @@ pub(in crate::passes) fn upload(recorder: &mut Recorder, texture: &Texture) -> R
     };
     let desc = ImageDesc {
         levels: levels.len() as u32,
-        ..ImageDesc::flat(&texture.name, format, [texture.width, texture.height])
+        ..ImageDesc::texture(&texture.name, format, [texture.width, texture.height])
     };
     upload_texture(recorder, &desc, &levels)
 }

@@ -6,7 +6,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::{Key, NamedKey};
 use winit::window::WindowId;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 use super::app::App;
 use super::input::Wheel;
@@ -45,10 +45,12 @@ impl App {
         match event {
             WindowEvent::CloseRequested => event_loop.exit(),
             WindowEvent::RedrawRequested => self.redraw(event_loop)?,
-            WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
-                stage.resize();
+            WindowEvent::Resized(size) => {
+                stage.resize(size);
                 stage.window.request_redraw();
             }
+            WindowEvent::ScaleFactorChanged { .. } => stage.window.request_redraw(),
+            WindowEvent::Destroyed => return Err(Error::WindowGone),
             WindowEvent::Occluded(false) | WindowEvent::Focused(true) => {
                 stage.window.request_redraw();
             }
@@ -66,7 +68,7 @@ impl App {
 
     fn on_pointer(&mut self, event: &WindowEvent, consumed: bool) {
         let Some(stage) = &self.stage else { return };
-        let height = f64::from(stage.window.inner_size().height);
+        let height = f64::from(stage.size().height);
         match event {
             WindowEvent::CursorMoved { position, .. } => {
                 let controls = self.document.as_mut().map(|d| &mut d.controls);
@@ -112,9 +114,12 @@ fn is_tab(event: &WindowEvent) -> bool {
 }
 
 impl ApplicationHandler<Message> for App {
-    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
+    fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
         if matches!(cause, StartCause::ResumeTimeReached { .. }) {
             self.again_at = None;
+            if self.trouble.is_ending() {
+                event_loop.exit();
+            }
             self.request_redraw();
         }
     }
@@ -132,7 +137,10 @@ impl ApplicationHandler<Message> for App {
                 }
                 self.request_redraw();
             }
-            Err(error) => self.end(event_loop, error),
+            Err(error) => {
+                self.trouble.end(error);
+                event_loop.exit();
+            }
         }
     }
 
@@ -157,8 +165,12 @@ impl ApplicationHandler<Message> for App {
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        // A window that is gone must not be drawn to: of its events only the last one counts.
+        if self.trouble.is_ending() && event != WindowEvent::Destroyed {
+            return;
+        }
         if let Err(error) = self.on_event(event_loop, event) {
-            self.end(event_loop, error);
+            self.trouble_of(event_loop, error);
         }
     }
 
@@ -174,12 +186,7 @@ impl ApplicationHandler<Message> for App {
         if let Some(stage) = &mut self.stage {
             let _ = stage.idle();
         }
-        if let Some(document) = &self.document
-            && let Err(error) = super::resume::keep(document)
-            && !self.options.no_warnings
-        {
-            eprintln!("warning: {error}");
-        }
+        self.keep_settings();
         self.document = None;
     }
 }

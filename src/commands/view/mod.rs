@@ -4,6 +4,7 @@
 //! - `app` and `events`: the event loop. `stage`: the window and its device. `document`: the open scene. `adaptation`: its
 //!   exposure over time.
 //! - `keys` and `input`: keyboard and mouse. `interface`: the user interface, panel by panel.
+//! - `trouble`: what is done about errors, a lost device among them.
 //! - `loader`: background loading. `capture`: screenshots. `resume`: settings of the last session.
 
 mod adaptation;
@@ -20,6 +21,7 @@ mod loader;
 mod resume;
 mod stage;
 mod style;
+mod trouble;
 pub mod viewpoints;
 
 use std::path::Path;
@@ -35,7 +37,7 @@ use app::App;
 /// the last session with this scene.
 ///
 /// # Errors
-/// No display, no device that can present to it, or a lost device. A scene that fails to load is reported in the window.
+/// No display, no device that can present to it, a window that another program destroyed, or a device that was lost twice. A scene that fails to load is reported in the window.
 pub fn run(scene: Option<&Path>, resumes: bool, user: OptionValues) -> Result<()> {
     let user = if resumes {
         resume::recall(scene, user)?

@@ -5,7 +5,7 @@ use std::ffi::{CStr, c_char};
 use ash::vk;
 
 use crate::gpu::device::surface::RawSurface;
-use crate::gpu::error::{During, GpuError, Result};
+use crate::gpu::error::{During, GpuError, Result, list_with_verb};
 
 /// Description of a device, including whether the renderer can use it.
 #[derive(Debug, Clone)]
@@ -77,6 +77,8 @@ pub(in crate::gpu) struct Candidate {
     pub(in crate::gpu) handle: vk::PhysicalDevice,
     pub(in crate::gpu) summary: DeviceSummary,
     pub(in crate::gpu) queue_family: u32,
+    /// What it lacks to present to the window, if there is one.
+    lacks_for_window: Vec<String>,
     /// Whether compute shaders can write images of any format.
     pub(in crate::gpu) stores_without_format: bool,
     rank: u32,
@@ -148,13 +150,18 @@ fn candidate(
             "{STORAGE_BUFFERS} storage buffers in a shader (it has {buffers})"
         ));
     }
-    if queue_family.is_none() {
-        let to = surface.map_or("", |_| " that presents to this window");
-        missing.push(format!("a graphics queue{to}"));
+    let mut lacks_for_window = Vec::new();
+    match (queue_family, surface) {
+        (None, Some(_)) => {
+            lacks_for_window.push("a graphics queue that presents to this window".to_owned());
+        }
+        (None, None) => missing.push("a graphics queue".to_owned()),
+        _ => {}
     }
     if surface.is_some() && !extensions.iter().any(|e| e == "VK_KHR_swapchain") {
-        missing.push("VK_KHR_swapchain".to_owned());
+        lacks_for_window.push("VK_KHR_swapchain".to_owned());
     }
+    missing.extend(lacks_for_window.iter().cloned());
     let summary = DeviceSummary {
         index,
         name: text(&properties.device_name),
@@ -181,6 +188,7 @@ fn candidate(
         summary,
         stores_without_format: core.shader_storage_image_write_without_format == vk::TRUE,
         queue_family: queue_family.unwrap_or(0),
+        lacks_for_window,
         rank,
     })
 }
@@ -264,8 +272,11 @@ pub(in crate::gpu) fn choose(
     candidates: Vec<Candidate>,
     wanted: Option<&str>,
 ) -> Result<Candidate> {
-    if candidates.is_empty() {
+    let Some(first) = candidates.first() else {
         return Err(GpuError::NoDevice);
+    };
+    if candidates.iter().all(|c| !c.lacks_for_window.is_empty()) {
+        return Err(GpuError::CannotPresent(first.lacks_for_window.clone()));
     }
     let summaries: Vec<&DeviceSummary> = candidates.iter().map(|c| &c.summary).collect();
     let index = match wanted {
@@ -284,13 +295,8 @@ fn usable(summary: &DeviceSummary) -> Result<()> {
     if summary.missing.is_empty() {
         return Ok(());
     }
-    let verb = if summary.missing.len() == 1 {
-        "is"
-    } else {
-        "are"
-    };
     Err(GpuError::Unsupported {
-        missing: format!("{} {verb}", summary.missing.join(", ")),
+        missing: list_with_verb(&summary.missing),
         device: summary.name.clone(),
     })
 }
@@ -353,6 +359,7 @@ mod tests {
             handle: vk::PhysicalDevice::null(),
             queue_family: 0,
             stores_without_format: true,
+            lacks_for_window: Vec::new(),
             rank,
             summary: DeviceSummary {
                 index,
@@ -401,6 +408,22 @@ mod tests {
             "{unknown}"
         );
         assert!(matches!(choose(Vec::new(), None), Err(GpuError::NoDevice)));
+    }
+
+    #[test]
+    fn where_none_presents_the_line_points_to_render() {
+        let headless = |index, name| Candidate {
+            lacks_for_window: vec!["VK_KHR_swapchain".to_owned()],
+            ..fake(index, name, 0, &["VK_KHR_swapchain"])
+        };
+        let none = choose(vec![headless(0, "A"), headless(1, "B")], Some("B"));
+        assert_eq!(
+            none.map(|_| ()).expect_err("lacks").to_string(),
+            "no driver here can present to this window (VK_KHR_swapchain is missing); \
+             skylight render writes pictures without one"
+        );
+        let one = choose(vec![headless(0, "A"), fake(1, "B", 3, &[])], None);
+        assert_eq!(one.expect("B").summary.name, "B");
     }
 
     #[test]

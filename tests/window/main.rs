@@ -12,3 +12,4 @@ mod faults;
 mod hot_reload;
 mod life;
 mod rest;
+mod surfaces;

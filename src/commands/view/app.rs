@@ -1,10 +1,11 @@
 //! The event loop: turns events into changes and changes into frames.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
-use winit::window::Fullscreen;
+use winit::window::{Fullscreen, Window};
 
 use crate::error::{Error, Result};
 use crate::options::{Hdr, OptionValues, Options, Size};
@@ -37,6 +38,8 @@ pub(super) struct App {
     // Declared before the stage so that it is dropped first: it uses the stage's device.
     pub(super) document: Option<Document>,
     pub(super) stage: Option<Stage>,
+    /// The window, from its creation to the end: if it is destroyed meanwhile, another program did it.
+    pub(super) window: Option<Arc<Window>>,
     pub(super) interface: Interface,
     pub(super) input: Input,
     pub(super) started: Instant,
@@ -67,6 +70,7 @@ impl App {
             waiting: None,
             document: None,
             stage: None,
+            window: None,
             input: Input::default(),
             started: Instant::now(),
             ticked: None,

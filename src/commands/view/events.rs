@@ -12,7 +12,7 @@ use super::app::App;
 use super::input::Wheel;
 use super::keys;
 use super::loader::Message;
-use super::stage::Stage;
+use super::stage::{self, Stage};
 
 impl App {
     fn key(&mut self, event: &KeyEvent, is_free: bool) -> Result<()> {
@@ -50,7 +50,6 @@ impl App {
                 stage.window.request_redraw();
             }
             WindowEvent::ScaleFactorChanged { .. } => stage.window.request_redraw(),
-            WindowEvent::Destroyed => return Err(Error::WindowGone),
             WindowEvent::Occluded(false) | WindowEvent::Focused(true) => {
                 stage.window.request_redraw();
             }
@@ -128,7 +127,11 @@ impl ApplicationHandler<Message> for App {
         if self.stage.is_some() {
             return;
         }
-        match Stage::new(event_loop, &self.options) {
+        let opened = stage::window(event_loop, &self.options).and_then(|window| {
+            self.window = Some(window.0.clone());
+            Stage::new(window, &self.options)
+        });
+        match opened {
             Ok(stage) => {
                 self.stage = Some(stage);
                 self.interface.loading(Some((0.0, "opening")));
@@ -137,10 +140,7 @@ impl ApplicationHandler<Message> for App {
                 }
                 self.request_redraw();
             }
-            Err(error) => {
-                self.trouble.end(error);
-                event_loop.exit();
-            }
+            Err(error) => self.trouble_of(event_loop, error),
         }
     }
 
@@ -165,11 +165,13 @@ impl ApplicationHandler<Message> for App {
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
-        // A window that is gone must not be drawn to: of its events only the last one counts.
-        if self.trouble.is_ending() && event != WindowEvent::Destroyed {
-            return;
-        }
-        if let Err(error) = self.on_event(event_loop, event) {
+        let done = match event {
+            WindowEvent::Destroyed => Err(Error::WindowGone),
+            // A window that may be gone is not drawn to.
+            _ if self.trouble.is_ending() => Ok(()),
+            event => self.on_event(event_loop, event),
+        };
+        if let Err(error) = done {
             self.trouble_of(event_loop, error);
         }
     }

@@ -58,20 +58,33 @@ pub(super) struct Layout {
     pub(super) again_after: Duration,
 }
 
+/// Opens the window; returns it with its size, pixels.
+///
+/// # Errors
+/// Fails when the window cannot be created.
+pub(super) fn window(
+    event_loop: &ActiveEventLoop,
+    options: &Options,
+) -> Result<(Arc<Window>, PhysicalSize<u32>)> {
+    let attributes = Window::default_attributes()
+        .with_title("skylight")
+        .with_inner_size(PhysicalSize::new(options.size.width, options.size.height));
+    let window = event_loop.create_window(attributes);
+    let window = window.map_err(|e| GpuError::Window(super::reason(&e)))?;
+    let size = window.inner_size();
+    Ok((Arc::new(window), size))
+}
+
 impl Stage {
-    /// Opens the window and a device that can present to it.
+    /// Opens a device that can present to a new window of this size.
     ///
     /// # Errors
-    /// Fails when the window cannot be created or no device is usable.
-    pub(super) fn new(event_loop: &ActiveEventLoop, options: &Options) -> Result<Self> {
-        let attributes = Window::default_attributes()
-            .with_title("skylight")
-            .with_inner_size(PhysicalSize::new(options.size.width, options.size.height));
-        let window = event_loop
-            .create_window(attributes)
-            .map_err(|e| GpuError::Window(super::reason(&e)))?;
-        let size = window.inner_size();
-        Self::on(Arc::new(window), size, options, context_options(options))
+    /// Fails when no device is usable.
+    pub(super) fn new(
+        (window, size): (Arc<Window>, PhysicalSize<u32>),
+        options: &Options,
+    ) -> Result<Self> {
+        Self::on(window, size, options, context_options(options))
     }
 
     /// Closes everything but the window.

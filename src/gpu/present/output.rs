@@ -34,27 +34,35 @@ pub struct Output {
     pub(in crate::gpu) color_space: Space,
 }
 
+impl Output {
+    /// Images of a `format` with values encoded so, in the colour space that belongs to the encoding.
+    pub fn new(format: Format, encoding: Encoding) -> Self {
+        let color_space = match encoding {
+            Encoding::ByFormat | Encoding::Srgb => Space::SRGB_NONLINEAR,
+            Encoding::ScRgb => Space::EXTENDED_SRGB_LINEAR_EXT,
+            Encoding::Hdr10 => Space::HDR10_ST2084_EXT,
+        };
+        Self {
+            format,
+            encoding,
+            color_space,
+        }
+    }
+}
+
 /// What the program can draw to, best first. Of HDR signals HDR10 comes first: its values are luminances, whatever the system.
-///
-/// Formats with an alpha channel of few bits are there because windows without transparency write 1 to it.
-const KNOWN: [(Encoding, Space, &[Format]); 4] = [
+const KNOWN: [(Encoding, &[Format]); 4] = [
     (
         Encoding::Hdr10,
-        Space::HDR10_ST2084_EXT,
         &[
             Format::A2B10G10R10_UNORM_PACK32,
             Format::A2R10G10B10_UNORM_PACK32,
             Format::R16G16B16A16_UNORM,
         ],
     ),
-    (
-        Encoding::ScRgb,
-        Space::EXTENDED_SRGB_LINEAR_EXT,
-        &[Format::R16G16B16A16_SFLOAT],
-    ),
+    (Encoding::ScRgb, &[Format::R16G16B16A16_SFLOAT]),
     (
         Encoding::ByFormat,
-        Space::SRGB_NONLINEAR,
         &[
             Format::B8G8R8A8_SRGB,
             Format::R8G8B8A8_SRGB,
@@ -63,7 +71,6 @@ const KNOWN: [(Encoding, Space, &[Format]); 4] = [
     ),
     (
         Encoding::Srgb,
-        Space::SRGB_NONLINEAR,
         &[
             Format::B8G8R8A8_UNORM,
             Format::R8G8B8A8_UNORM,
@@ -80,13 +87,7 @@ const KNOWN: [(Encoding, Space, &[Format]); 4] = [
 pub(in crate::gpu) fn choose(offered: &[vk::SurfaceFormatKHR], hdr: bool) -> Option<Output> {
     let known = KNOWN.iter().filter(|known| hdr || !known.0.is_hdr());
     known
-        .flat_map(|(encoding, color_space, formats)| {
-            formats.iter().map(|format| Output {
-                format: *format,
-                encoding: *encoding,
-                color_space: *color_space,
-            })
-        })
+        .flat_map(|(encoding, formats)| formats.iter().map(|f| Output::new(*f, *encoding)))
         .find(|output| {
             offered
                 .iter()

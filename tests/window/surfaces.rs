@@ -17,12 +17,32 @@ fn view() -> Vec<&'static str> {
     [&SMALL[..], &DIRECT].concat()
 }
 
+/// Compiles a C file beside this one to a shared library in `folder`.
+fn library(folder: &Path, source: &str, define: &str) -> PathBuf {
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/window");
+    let library = folder.join(source).with_extension("so");
+    let built = Command::new("cc")
+        .args(["-shared", "-fPIC", "-O1", define, "-o"])
+        .arg(&library)
+        .arg(sources.join(source))
+        .arg("-ldl")
+        .output()
+        .expect("a C compiler; run scripts/setup");
+    let said = String::from_utf8_lossy(&built.stderr);
+    assert!(built.status.success(), "{said}");
+    library
+}
+
 #[test]
 fn a_screen_of_30_bits_shows_the_picture_and_the_panel() {
     let _machine = shared_machine();
     let words = [&view()[..], &["--validate"]].concat();
     let [eight, ten] = [24, 30].map(|bits| {
-        let running = Running::on(Display::of_depth(bits), &words, &[]).bared();
+        let folder = tempfile::tempdir().expect("a scratch folder");
+        let define = format!("-DDEPTH={bits}");
+        let presents = library(folder.path(), "depth_of_window.c", &define);
+        let variables = [("LD_PRELOAD", presents.as_path())];
+        let running = Running::on(Display::of_depth(bits), &words, &variables).bared();
         let shown = running.picture();
         let panel = running.after(|d| d.key(keysym::TAB, false));
         running.close_well();
@@ -128,20 +148,8 @@ fn headless_driver(folder: &Path) -> Option<PathBuf> {
     let manifest = std::fs::read_to_string(manifest).ok()?;
     let (_, rest) = manifest.split_once("\"library_path\"")?;
     let driver = rest.split('"').nth(1)?;
-    let library = folder.join("headless.so");
-    let built = Command::new("cc")
-        .args(["-shared", "-fPIC", "-O1", "-o"])
-        .arg(&library)
-        .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/window/headless_driver.c"))
-        .arg(format!("-DDRIVER=\"{driver}\""))
-        .arg("-ldl")
-        .output()
-        .expect("a C compiler; run scripts/setup");
-    assert!(
-        built.status.success(),
-        "{}",
-        String::from_utf8_lossy(&built.stderr)
-    );
+    let define = format!("-DDRIVER=\"{driver}\"");
+    let library = library(folder, "headless_driver.c", &define);
     let headless = folder.join("headless.json");
     let text = format!(
         r#"{{"file_format_version": "1.0.0", "ICD": {{"library_path": "{}", "api_version": "1.3.0"}}}}"#,

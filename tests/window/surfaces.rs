@@ -54,7 +54,7 @@ fn a_screen_of_30_bits_shows_the_picture_and_the_panel() {
         difference(&ten.0, &ten.1),
     ];
     println!("FLIP of 30 bits against 24: the picture, the panel; between these two: {flips:.5?}");
-    assert!(flips[0] < 0.002 && flips[1] < 0.01, "{flips:?}");
+    assert!(flips[0] < 0.002 && flips[1] < 0.02, "{flips:?}");
     assert!(flips[2] > 0.1, "the panel is there: {flips:?}");
 
     let folder = tempfile::tempdir().expect("a scratch folder");

@@ -148,8 +148,8 @@ fn a_window_lives_on_without_its_surface() {
 #[test]
 fn a_window_opens_a_lost_device_once_more_and_shows_the_same() {
     let _machine = shared_machine();
-    let view = ["--size", "320x180", "--samples", "2", "--validate"];
-    let view = [&view[..], &DIRECT].concat();
+    let view = ["colonnade", "--size", "320x180", "--samples", "2"];
+    let view = [&view[..], &DIRECT, &["--validate"]].concat();
     let sound = Running::bare(&view);
     let expected = sound.after(|d| d.typed('h'));
     sound.close_well();
@@ -197,7 +197,8 @@ fn lose_device(number: u32) -> bool {
         ("SKYLIGHT_FAULT", Path::new(&fault)),
         ("XDG_STATE_HOME", state.path()),
     ];
-    let running = Running::with(&["--size", "320x180", "--samples", "1024"], &variables);
+    let view = ["colonnade", "--size", "320x180", "--samples", "1024"];
+    let running = Running::with(&view, &variables);
     let output = running.ended();
     let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(1), "{fault}: {stderr}");

@@ -11,7 +11,15 @@ use crate::running::{DIRECT, Running, difference, program, shared_machine};
 use crate::x::{Display, keysym};
 
 /// A small view that is quickly at rest.
-const SMALL: [&str; 6] = ["--size", "320x180", "--samples", "2", "--sky", "preetham"];
+const SMALL: [&str; 7] = [
+    "colonnade",
+    "--size",
+    "320x180",
+    "--samples",
+    "2",
+    "--sky",
+    "preetham",
+];
 
 fn view() -> Vec<&'static str> {
     [&SMALL[..], &DIRECT].concat()

@@ -18,6 +18,7 @@ use super::interface::{Interface, UiRequest};
 use super::keys::Action;
 use super::loader::{Loader, Message};
 use super::stage::Stage;
+use super::touch::Touches;
 use super::trouble::Trouble;
 
 /// Retry interval when the window cannot be drawn to.
@@ -42,6 +43,7 @@ pub(super) struct App {
     pub(super) window: Option<Arc<Window>>,
     pub(super) interface: Interface,
     pub(super) input: Input,
+    pub(super) touches: Touches,
     pub(super) started: Instant,
     /// Start of the newest frame, while something is moving.
     ticked: Option<Instant>,
@@ -72,6 +74,7 @@ impl App {
             stage: None,
             window: None,
             input: Input::default(),
+            touches: Touches::default(),
             started: Instant::now(),
             ticked: None,
             again_at: None,
@@ -118,6 +121,9 @@ impl App {
                 stage
                     .window
                     .set_title(&format!("{} \u{2013} skylight", document.title()));
+                if self.document.is_none() {
+                    self.interface.hint();
+                }
                 self.document = Some(document);
             }
             Err(error) => {

@@ -2,8 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{ComboBox, DragValue, Slider, Ui};
+use egui::{ComboBox, Ui};
 
+use super::numbers::{field, slider};
 use super::{UiRequest, choice};
 use crate::commands::view::document::Document;
 use crate::commands::view::keys::Action;
@@ -30,7 +31,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, requests: &mut Vec<UiRe
     if screen.offers_hdr {
         choice(ui, "HDR", &mut settings.hdr);
         if screen.is_hdr {
-            let peak = Slider::new(&mut settings.hdr_peak, 100.0..=PQ_PEAK);
+            let peak = slider(&mut settings.hdr_peak, 100.0..=PQ_PEAK);
             ui.add(peak.logarithmic(true).text("peak, cd/m²"))
                 .on_hover_text("peak luminance of the screen; white paper has 203 cd/m²");
         }
@@ -69,6 +70,7 @@ fn false_colours(ui: &mut Ui, settings: &mut Options) {
         };
     }
     if let Some(quantity) = settings.false_colour {
+        choice(ui, "colours", &mut settings.colour_map);
         range(ui, &mut settings.false_colour_range, quantity);
     }
 }
@@ -92,10 +94,7 @@ fn range(ui: &mut Ui, range: &mut Option<Range>, quantity: Quantity) {
 
 /// Edits a value as a power of ten; returns whether it changed.
 fn power(ui: &mut Ui, value: &mut f64, range: RangeInclusive<f64>) -> bool {
-    let power = DragValue::new(value)
-        .speed(0.05)
-        .prefix("10^")
-        .max_decimals(1);
+    let power = field(value).speed(0.05).prefix("10^").max_decimals(1);
     ui.add(power.range(range)).changed()
 }
 
@@ -104,7 +103,7 @@ fn exposure(ui: &mut Ui, ev100: &mut Option<f64>, min_ev100: &mut Option<f64>) {
     if ui.checkbox(&mut auto, "automatic exposure").changed() {
         *ev100 = (!auto).then_some(SUNNY_EV100);
     }
-    let slider = |value| Slider::new(value, EV100_RANGE).text("EV100");
+    let slider = |value| slider(value, EV100_RANGE).text("EV100");
     if let Some(ev100) = ev100 {
         ui.add(slider(ev100));
         return;

@@ -1,6 +1,6 @@
 //! What the window shows, drawn to images of each format without a window, against the CPU.
 //!
-//! Verified to fail with two rows of the matrix of BT.2020 swapped, with paper at 100 cd/m², without the dither of HDR10, with the interface
+//! Verified to fail with two rows of the matrix of BT.2020 swapped, with paper at 100 cd/m², without the sRGB curve, with the interface
 //! blended after the encoding, and with a tone curve on HDR screens.
 
 use std::sync::Arc;

@@ -48,6 +48,15 @@ pub enum Error {
     /// Nowhere to open a window.
     #[error("no display to open a window on ({0}); skylight render writes pictures without one")]
     NoDisplay(String),
+    /// A window that another program destroyed.
+    #[error("another program closed the window; skylight view --resume goes on where it was")]
+    WindowGone,
+    /// `--hdr on` on a screen without HDR.
+    #[error("--hdr on: this window has no HDR signal; use --hdr auto. It offers {0}")]
+    NoHdr(String),
+    /// A device that was lost and could not be opened again: why.
+    #[error("the device was lost (driver fault or reset), and opening it again failed: {0}")]
+    LostForGood(Box<Error>),
     /// The command `view` in a build without the feature `window`.
     #[error(
         "this skylight is built without the window; skylight render writes pictures, and cargo build --release builds one with it"

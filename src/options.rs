@@ -40,12 +40,13 @@ pub use resolve::ResolveError;
 pub(crate) use resolve::{in_world, shortest};
 pub use sun_input::SunInput;
 pub use values::{
-    AerosolInput, AoResolution, Direction, ExposureMode, Fresnel, Penumbra, Place, Preset, Size,
-    SolarTime, Switch, When,
+    AerosolInput, AoResolution, Direction, ExposureMode, Fresnel, Hdr, Penumbra, Place, Preset,
+    Size, SolarTime, Switch, When,
 };
 pub(crate) use values::{exposure_factor, ratio, sun as direction};
 
 use crate::daylight::atmosphere::air::Air;
+use crate::daylight::hdr::HDR_PEAK;
 use crate::daylight::sky::Conditions;
 use crate::frame::FrameSettings;
 use crate::passes::dome::gather::{DomeSettings, MOST_DIRECTIONS};
@@ -271,6 +272,16 @@ options! {
             /// Factor before the tone curve, instead of an exposure.
             #[arg(value_name = "S", value_parser = values::scale, allow_hyphen_values = true)]
             scale: Option<f64>,
+        }
+
+        "Tone" ["exposure"] {
+            /// HDR signal of the window: exposed cd/m² in proportion, without tone curve and gamma, white paper at 203 cd/m² and what is brighter up
+            /// to the screen's peak (view only). Screens without HDR may get one offered too: hence the default.
+            #[arg(value_name = "WHEN", value_parser = choice::<Hdr>(), default_value_t)]
+            hdr: Hdr,
+            /// Peak luminance of the HDR screen, cd/m², 100 to 10000.
+            #[arg(value_name = "CD/M2", value_parser = values::hdr_peak, allow_hyphen_values = true, default_value_t = HDR_PEAK)]
+            hdr_peak: f64,
         }
 
         "Tone" [] {

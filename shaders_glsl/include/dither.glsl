@@ -1,4 +1,4 @@
-// Dither before rounding to 8 bits, so that smooth dark pictures have no bands. One noise for all channels: grey stays grey.
+// Dither before rounding to 8 or 10 bits, so that smooth dark pictures have no bands. One noise for all channels: grey stays grey.
 
 /// Two numbers in [-0.5, 0.5) from a pixel: PCG2D (Jarzynski & Olano 2020, "Hash Functions for GPU Rendering").
 vec2 dither_noise(uvec2 v) {
@@ -12,10 +12,10 @@ vec2 dither_noise(uvec2 v) {
     return vec2(v >> 8u) / 16777216.0 - 0.5;
 }
 
-/// Encoded values in 0..1, with noise in steps of 8 bits. Its first part alone makes the mean of the rounded values that of the true ones; the second
+/// Encoded values in 0..1, with noise in steps: `steps` is 255 for 8 bits. Its first part alone makes the mean of the rounded values that of the true ones; the second
 /// makes their variance the same everywhere. Near black and white it is left out: nothing is clamped there, and black stays black.
-vec3 dithered(vec3 c, uvec2 pixel) {
+vec3 dithered(vec3 c, uvec2 pixel, float steps) {
     vec2 noise = dither_noise(pixel);
-    vec3 from_end = min(c, 1.0 - c) * 255.0;
-    return c + (noise.x + noise.y * clamp(2.0 * from_end, 0.0, 1.0)) / 255.0;
+    vec3 from_end = min(c, 1.0 - c) * steps;
+    return c + (noise.x + noise.y * clamp(2.0 * from_end, 0.0, 1.0)) / steps;
 }

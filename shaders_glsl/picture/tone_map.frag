@@ -5,6 +5,7 @@
 #include "tone_curve.glsl"
 #include "false_colour.glsl"
 #include "dither.glsl"
+#include "hdr.glsl"
 
 layout(location = 0) out vec4 display;
 
@@ -28,6 +29,8 @@ layout(constant_id = 10) const bool DITHER = false;
 // Show false colours of the luminance instead of exposure and curve.
 layout(constant_id = 9) const bool FALSE_COLOUR = false;
 layout(constant_id = 12) const int COLOUR_MAP = TURBO;
+// Up to the peak of an HDR screen instead of a tone curve.
+layout(constant_id = 13) const bool HDR = false;
 
 layout(set = 0, binding = 0) uniform sampler2D radiance;          // kcd/m^2
 layout(set = 0, binding = 1) uniform sampler2D average_luminance; // kcd/m^2, one texel
@@ -39,6 +42,7 @@ layout(push_constant, scalar) uniform Push {
     float white;         // Reinhard's white, display units
     float inverse_gamma; // of the power
     float least;         // with AUTO: the lowest average luminance that is exposed for, kcd/m^2
+    float peak;          // with HDR: highest display value of the screen
     uvec2 origin;        // of this tile in the picture, pixels
 } push;
 
@@ -61,9 +65,9 @@ void main() {
     if (AGX) c = tone_agx(c);
     if (NEUTRAL) c = tone_neutral(c);
     if (ACES) c = tone_aces(c);
-    c = clamp(c, 0.0, 1.0);
+    c = HDR ? bounded(c, push.peak) : clamp(c, 0.0, 1.0);
     if (GAMMA) c = pow(c, vec3(push.inverse_gamma));
     if (SRGB) c = srgb_from_linear(c);
-    if (DITHER) c = dithered(c, uvec2(gl_FragCoord.xy) + push.origin);
+    if (DITHER) c = dithered(c, uvec2(gl_FragCoord.xy) + push.origin, 255.0);
     display = vec4(c, 1.0);
 }

@@ -52,9 +52,15 @@ pub fn context_options(options: &Options) -> ContextOptions {
         validate: options.validate,
         without: options.without.into_iter().collect(),
         cache_folder: cache_folder(),
-        fault: std::env::var("SKYLIGHT_FAULT").ok(),
+        fault: planned_fault(0),
         ..ContextOptions::default()
     }
+}
+
+/// For tests: the fault planned for the device that is opened as number `device`, from 0: one of a list, `submit@3=device-lost,..`.
+pub fn planned_fault(device: usize) -> Option<String> {
+    let list = std::env::var("SKYLIGHT_FAULT").ok()?;
+    list.split(',').nth(device).map(str::to_owned)
 }
 
 /// Reports on stderr which fallbacks the device needs.

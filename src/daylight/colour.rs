@@ -13,6 +13,9 @@ pub const BT709_PRIMARIES: [[f64; 2]; 3] = [[0.640, 0.330], [0.300, 0.600], [0.1
 /// Chromaticity (x, y) of the white point D65 as given in BT.709.
 pub const D65_WHITE: [f64; 2] = [0.3127, 0.3290];
 
+/// Chromaticities (x, y) of the BT.2020 primaries red, green and blue (ITU-R BT.2020-2, table 3).
+pub const BT2020_PRIMARIES: [[f64; 2]; 3] = [[0.708, 0.292], [0.170, 0.797], [0.131, 0.046]];
+
 type Rows = [[f64; 3]; 3];
 
 /// XYZ from linear BT.709 RGB (multiplies a column vector). Not rounded: computed from the primaries and the white point.
@@ -24,7 +27,12 @@ pub const RGB_FROM_XYZ: DMat3 = matrix(inverse(XYZ_FROM_RGB_ROWS));
 /// Luminance weights of R, G and B: the middle row of [`XYZ_FROM_RGB`], about (0.2126, 0.7152, 0.0722).
 pub const LUMINANCE_WEIGHTS: DVec3 = DVec3::from_array(XYZ_FROM_RGB_ROWS[1]);
 
-const XYZ_FROM_RGB_ROWS: Rows = xyz_from_rgb_rows();
+const XYZ_FROM_RGB_ROWS: Rows = xyz_from_rgb_rows(BT709_PRIMARIES);
+
+/// XYZ from linear RGB of these primaries, with white [`D65_WHITE`]: as [`XYZ_FROM_RGB`] for BT.709.
+pub const fn xyz_from_rgb_of(primaries: [[f64; 2]; 3]) -> DMat3 {
+    matrix(xyz_from_rgb_rows(primaries))
+}
 
 const fn matrix(r: Rows) -> DMat3 {
     DMat3::from_cols_array_2d(&[
@@ -35,8 +43,7 @@ const fn matrix(r: Rows) -> DMat3 {
 }
 
 /// SMPTE RP 177-1993: the primaries are scaled so that R = G = B = 1 is the white point with Y = 1.
-const fn xyz_from_rgb_rows() -> Rows {
-    let [r, g, b] = BT709_PRIMARIES;
+const fn xyz_from_rgb_rows([r, g, b]: [[f64; 2]; 3]) -> Rows {
     let p = [
         [r[0], g[0], b[0]],
         [r[1], g[1], b[1]],

@@ -19,7 +19,8 @@
 //!    in a [`cube_pyramid`].
 //! 6. [`sky_sampler`]: directional lights drawn from the sky by luminance, one shadow map each.
 //! 7. [`glass`]: the transmittance of window panes.
-//! 8. [`exposure`] and [`tone_curve`]: from cd/m² to a picture; [`false_colour`]: to a picture with readable values.
+//! 8. [`exposure`] and [`tone_curve`]: from cd/m² to a picture; [`false_colour`]: to a picture with readable values;
+//!    [`hdr`]: to the signals of HDR screens.
 //!
 //! # Conventions
 //!
@@ -49,6 +50,7 @@ pub mod ggx;
 
 pub mod glass;
 pub mod grey_sky;
+pub mod hdr;
 pub mod hosek;
 pub mod irradiance;
 pub mod moment;

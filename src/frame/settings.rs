@@ -93,6 +93,7 @@ impl Default for FrameSettings {
                 gamma: None,
                 depth_scale: 1.0,
                 false_colour: None,
+                peak: None,
             },
         }
     }

@@ -30,6 +30,11 @@ pub enum GpuError {
         /// Name of the device.
         device: String,
     },
+    /// No driver presents to the window: what they all lack for it.
+    #[error(
+        "no driver here can present to this window ({} missing); skylight render writes pictures without one", list_with_verb(.0)
+    )]
+    CannotPresent(Vec<String>),
     /// The validation layer is requested but not installed.
     #[error(
         "the layer VK_LAYER_KHRONOS_validation is missing; install {layers}", layers = LAYERS
@@ -92,6 +97,15 @@ pub enum GpuError {
 }
 
 impl GpuError {
+    /// For tests: a lost device.
+    #[cfg(test)]
+    pub(crate) fn lost() -> Self {
+        Self::Vulkan {
+            what: "submit",
+            result: vk::Result::ERROR_DEVICE_LOST,
+        }
+    }
+
     /// Whether the device was lost, or hangs.
     pub fn is_device_lost(&self) -> bool {
         let lost = vk::Result::ERROR_DEVICE_LOST;
@@ -134,6 +148,12 @@ fn describe(result: vk::Result) -> String {
         },
         other => format!("{other:?}"),
     }
+}
+
+/// Names in a sentence: `A is`, `A, B are`.
+pub(super) fn list_with_verb(names: &[String]) -> String {
+    let verb = if names.len() == 1 { "is" } else { "are" };
+    format!("{} {verb}", names.join(", "))
 }
 
 /// Attaches the name of the operation to a failed Vulkan call.

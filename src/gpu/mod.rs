@@ -39,6 +39,7 @@ pub use pipeline::shader::{Binding, BindingKind, Field, Shader, Stage, compiled 
 pub use pipeline::{Blend, Depth, Pipeline, PipelineDesc};
 #[cfg(feature = "window")]
 pub use present::{
+    output::{Encoding, Output},
     presenter::Presenter,
     ui::{Overlay, UiFrame},
 };

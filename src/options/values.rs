@@ -8,6 +8,7 @@ use crate::daylight::atmosphere::air::{
     ALTITUDE_RANGE_M, AOD_RANGE, Aerosol, Air, OZONE_RANGE_DU, VISIBILITY_RANGE_KM,
 };
 use crate::daylight::false_colour::Range;
+use crate::daylight::hdr::PQ_PEAK;
 pub use crate::daylight::moment::When;
 use crate::daylight::perez::{DEW_POINTS, MOST_IRRADIANCE_W};
 pub use crate::daylight::place::Place;
@@ -89,6 +90,17 @@ choice_enum! {
         #[default]
         On = "on": "On",
         Off = "off": "Off",
+    }
+}
+
+choice_enum! {
+    /// Whether the window has an HDR signal.
+    #[derive(Default)]
+    pub enum Hdr {
+        #[default]
+        Off = "off": "Tone-mapped, 0 to white, on every screen",
+        Auto = "auto": "Where the window's surface offers HDR10 or scRGB",
+        On = "on": "The same, and an error where it offers neither",
     }
 }
 
@@ -288,6 +300,7 @@ ranged! {
     fov: "field of view", "degrees", 1.0..=170.0;
     ev100: "exposure value", "", -20.0..=40.0;
     gamma: "gamma", "", 0.1..=10.0;
+    hdr_peak: "peak of the screen", "cd/m²", 100.0..=PQ_PEAK;
     scale: "scale", "", 0.0..=1e6;
     exposure_factor: "exposure", "", 1e-9..=1e9;
     ratio: "ratio", "", 0.0..=1e9;

@@ -2,10 +2,11 @@
 #![allow(dead_code)]
 
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::{Child, Command, Output, Stdio};
-use std::sync::{PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
-use std::thread::sleep;
+use std::process::{Child, ChildStderr, Command, Output, Stdio};
+use std::sync::{Arc, Mutex, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
+use std::thread::{JoinHandle, sleep, spawn};
 use std::time::{Duration, Instant};
 
 use skylight::compare::{Picture, flip};
@@ -37,6 +38,21 @@ pub struct Running {
     child: Option<Child>,
     pub window: Window,
     pub folder: tempfile::TempDir,
+    stderr: (Arc<Mutex<String>>, Option<JoinHandle<()>>),
+}
+
+/// Collects what a program says, while it runs.
+fn listen(stderr: ChildStderr) -> (Arc<Mutex<String>>, Option<JoinHandle<()>>) {
+    let said = Arc::new(Mutex::new(String::new()));
+    let kept = said.clone();
+    let thread = spawn(move || {
+        for line in BufReader::new(stderr).lines().map_while(Result::ok) {
+            let mut said = kept.lock().unwrap_or_else(PoisonError::into_inner);
+            said.push_str(&line);
+            said.push('\n');
+        }
+    });
+    (said, Some(thread))
 }
 
 pub fn program(folder: &Path) -> Command {
@@ -58,7 +74,11 @@ impl Running {
 
     /// Starts the program with extra environment variables.
     pub fn with(words: &[&str], variables: &[(&str, &Path)]) -> Self {
-        let display = Display::new();
+        Self::on(Display::new(), words, variables)
+    }
+
+    /// Starts the program on this display, with extra environment variables.
+    pub fn on(display: Display, words: &[&str], variables: &[(&str, &Path)]) -> Self {
         let folder = tempfile::tempdir().expect("a scratch folder");
         let mut child = program(folder.path())
             .arg("view")
@@ -67,6 +87,7 @@ impl Running {
             .envs(variables.iter().copied())
             .spawn()
             .expect("the program starts");
+        let stderr = listen(child.stderr.take().expect("a pipe"));
         // A program that exits at once may never map its window.
         let window = until("a window", || {
             let ended = || child.try_wait().expect("a state").map(|_| x11rb::NONE);
@@ -78,6 +99,7 @@ impl Running {
             child: Some(child),
             window,
             folder,
+            stderr,
         };
         // Park the pointer outside the window.
         running.display.point(1590, 1190);
@@ -91,13 +113,17 @@ impl Running {
 
     /// As [`Running::bare`], with extra environment variables.
     pub fn bare_with(words: &[&str], variables: &[(&str, &Path)]) -> Self {
-        let running = Self::with(words, variables);
+        Self::with(words, variables).bared()
+    }
+
+    /// Hides panel and read-outs, once the scene is there.
+    pub fn bared(self) -> Self {
         until("the scene", || {
-            let title = running.display.title(running.window);
+            let title = self.display.title(self.window);
             (title != "skylight").then_some(())
         });
-        running.display.key(keysym::TAB, false);
-        running
+        self.display.key(keysym::TAB, false);
+        self
     }
 
     /// The picture once it no longer changes.
@@ -144,7 +170,18 @@ impl Running {
             }
             sleep(Duration::from_millis(20));
         }
-        child.wait_with_output().expect("what it said")
+        let mut output = child.wait_with_output().expect("what it said");
+        if let Some(thread) = self.stderr.1.take() {
+            thread.join().expect("what it said");
+        }
+        output.stderr = self.said().into_bytes();
+        output
+    }
+
+    /// What the program has said on stderr so far.
+    pub fn said(&self) -> String {
+        let said = self.stderr.0.lock();
+        said.unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Closes the window; the program must succeed without complaints.

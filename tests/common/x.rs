@@ -41,13 +41,19 @@ const MOST_AT_REST: f64 = 0.2;
 impl Display {
     /// Starts the server. Fails without Xvfb.
     pub fn new() -> Self {
+        Self::of_depth(24)
+    }
+
+    /// Starts a server whose screen has this many bits for the colour of a pixel: 24, or 30.
+    pub fn of_depth(bits: u32) -> Self {
+        let screen = format!("1600x1200x{bits}");
         let mut server = Command::new("Xvfb")
             .args([
                 "-displayfd",
                 "1",
                 "-screen",
                 "0",
-                "1600x1200x24",
+                &screen,
                 "-nolisten",
                 "tcp",
             ])
@@ -145,7 +151,10 @@ impl Display {
         let bytes: Vec<u8> = image
             .data
             .chunks_exact(4)
-            .flat_map(|p| [p[2], p[1], p[0]])
+            .flat_map(|p| match image.depth {
+                30 => eight_of_ten_bits(u32::from_le_bytes([p[0], p[1], p[2], p[3]])),
+                _ => [p[2], p[1], p[0]],
+            })
             .collect();
         Picture::from_srgb8([width as usize, height as usize], &bytes)
     }
@@ -223,6 +232,24 @@ impl Display {
             .expect("told");
     }
 
+    /// Destroys a window of another program.
+    pub fn destroy(&self, window: Window) {
+        self.connection
+            .destroy_window(window)
+            .expect("sent")
+            .check()
+            .expect("destroyed");
+    }
+
+    /// Closes the connection of the program that has this window.
+    pub fn kill_client(&self, window: Window) {
+        self.connection
+            .kill_client(window)
+            .expect("sent")
+            .check()
+            .expect("killed");
+    }
+
     /// Types the key of a keysym (a Latin-1 character is its own keysym), with Shift if asked.
     pub fn key(&self, keysym: u32, shift: bool) {
         let shift = shift.then_some(keysym::SHIFT);
@@ -285,6 +312,11 @@ impl Display {
             .send_request_without_reply(&[IoSlice::new(&request)], Vec::new());
         sent.expect("sent").check().expect("XTEST takes it");
     }
+}
+
+/// Red, green and blue of a pixel of 30 bits.
+fn eight_of_ten_bits(word: u32) -> [u8; 3] {
+    [20, 10, 0].map(|bit| ((word >> bit & 0x3ff) as f32 * 255.0 / 1023.0).round() as u8)
 }
 
 impl Drop for Display {

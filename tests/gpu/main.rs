@@ -26,6 +26,8 @@ mod lighting;
 mod moon;
 mod moving_light;
 mod penumbra;
+#[cfg(feature = "window")]
+mod present;
 mod probe;
 mod rays;
 mod reflections;

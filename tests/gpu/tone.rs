@@ -85,6 +85,7 @@ fn mapped(device: &mut Device, inputs: &[[f32; 4]], case: &Case) -> Vec<[f32; 4]
         white: case.white,
         inverse_gamma: case.gamma.map_or(1.0, f32::recip),
         least: 0.0,
+        peak: 1.0,
         origin: UVec2::ZERO,
     };
     device.run(|rec| {
@@ -160,6 +161,7 @@ fn false_colours_are_those_of_the_cpu(map: ColourMap) {
         gamma: Some(2.2),
         depth_scale: 1.0,
         false_colour: Some(colours),
+        peak: None,
     };
     let tone_map = ToneMap::new(&device.context, size, settings).expect("a pass");
     let source = device
@@ -194,6 +196,7 @@ fn exposed(factor: f64, gamma: Option<f64>) -> ToneSettings {
         gamma,
         depth_scale: 1.0,
         false_colour: None,
+        peak: None,
     }
 }
 

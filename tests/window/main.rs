@@ -15,3 +15,4 @@ mod faults;
 mod hot_reload;
 mod life;
 mod rest;
+mod surfaces;

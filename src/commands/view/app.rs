@@ -1,13 +1,14 @@
 //! The event loop: turns events into changes and changes into frames.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
-use winit::window::Fullscreen;
+use winit::window::{Fullscreen, Window};
 
 use crate::error::{Error, Result};
-use crate::options::{OptionValues, Options, Size};
+use crate::options::{Hdr, OptionValues, Options, Size};
 use crate::scene::{Loaded, SceneError};
 
 use super::capture;
@@ -18,9 +19,10 @@ use super::keys::Action;
 use super::loader::{Loader, Message};
 use super::stage::Stage;
 use super::touch::Touches;
+use super::trouble::Trouble;
 
 /// Retry interval when the window cannot be drawn to.
-const RETRY: Duration = Duration::from_millis(100);
+pub(super) const RETRY: Duration = Duration::from_millis(100);
 
 /// Result of loading a scene.
 type Opened = Box<std::result::Result<Loaded, SceneError>>;
@@ -37,6 +39,8 @@ pub(super) struct App {
     // Declared before the stage so that it is dropped first: it uses the stage's device.
     pub(super) document: Option<Document>,
     pub(super) stage: Option<Stage>,
+    /// The window, from its creation to the end: if it is destroyed meanwhile, another program did it.
+    pub(super) window: Option<Arc<Window>>,
     pub(super) interface: Interface,
     pub(super) input: Input,
     pub(super) touches: Touches,
@@ -47,7 +51,7 @@ pub(super) struct App {
     pub(super) again_at: Option<Instant>,
     /// Whether the next frame of the options is to be saved.
     is_capture_due: bool,
-    error: Option<Error>,
+    pub(super) trouble: Trouble,
 }
 
 impl App {
@@ -68,29 +72,25 @@ impl App {
             waiting: None,
             document: None,
             stage: None,
+            window: None,
             input: Input::default(),
             touches: Touches::default(),
             started: Instant::now(),
             ticked: None,
             again_at: None,
             is_capture_due: false,
-            error: None,
+            trouble: Trouble::default(),
         }
     }
 
     /// Result of the program, once the event loop has ended.
     pub(super) fn into_result(mut self) -> Result<()> {
         self.document = None;
-        match (self.error.take(), &self.stage) {
+        match (self.trouble.take(), &self.stage) {
             (Some(error), _) => Err(error),
             (None, Some(stage)) => Ok(stage.context.check_validation()?),
             (None, None) => Ok(()),
         }
-    }
-
-    pub(super) fn end(&mut self, event_loop: &ActiveEventLoop, error: Error) {
-        self.error.get_or_insert(error);
-        event_loop.exit();
     }
 
     pub(super) fn request_redraw(&self) {
@@ -106,9 +106,10 @@ impl App {
             return;
         };
         self.interface.loading(None);
-        let (user, options, size) = (&self.user, &self.options, window_size(stage));
+        let (user, options) = (&self.user, &self.options);
+        let window = (window_size(stage), stage.screen());
         let opened = match *result {
-            Ok(loaded) => stage.work(|rec| Document::open(rec, path.clone(), loaded, user, size)),
+            Ok(loaded) => stage.work(|rec| Document::open(rec, path.clone(), loaded, user, window)),
             Err(error) => Err(error.into()),
         };
         let opened = opened.and_then(|document| document.job.check_strict().map(|()| document));
@@ -125,9 +126,22 @@ impl App {
                 }
                 self.document = Some(document);
             }
-            Err(error) => tell(&mut self.interface, &error),
+            Err(error) => {
+                self.trouble.keep_unopened(&error, path);
+                tell(&mut self.interface, &error);
+            }
         }
         stage.window.request_redraw();
+    }
+
+    /// Keeps the settings of the document for `--resume`.
+    pub(super) fn keep_settings(&self) {
+        if let Some(document) = &self.document
+            && let Err(error) = super::resume::keep(document)
+            && !self.options.no_warnings
+        {
+            eprintln!("warning: {error}");
+        }
     }
 
     /// Opens another file in the background.
@@ -163,7 +177,7 @@ impl App {
 
     /// Saves the newest frame if that was asked for, once it has the daylight of the options.
     fn capture(&mut self) {
-        let (Some(stage), Some(document)) = (&mut self.stage, &self.document) else {
+        let (Some(stage), Some(document)) = (&mut self.stage, &mut self.document) else {
             return;
         };
         if !self.is_capture_due || document.is_behind() {
@@ -205,6 +219,11 @@ impl App {
             if size.width > 0 && size.height > 0 {
                 document.job.settings.size = size;
             }
+            if let Err(error) = stage.set_hdr(document.job.settings.hdr) {
+                document.job.settings.hdr = Hdr::Off;
+                tell(interface, &error);
+            }
+            document.set_screen(stage.screen());
             if document.is_behind()
                 && let Err(error) = stage.work(|rec| document.follow(rec))
             {
@@ -317,7 +336,7 @@ fn reload(_: &mut Stage, _: &mut Document) -> Result<String> {
     Ok("this build does not reload shaders; build with --features hot-reload".to_owned())
 }
 
-/// Shows an error, except for a lost device: the next frame ends the program then.
+/// Shows an error, except for a lost device: the next frame finds it lost too ([`App::trouble_of`]).
 fn tell(interface: &mut Interface, error: &Error) {
     if !error.is_device_lost() {
         interface.complain(&error.to_string());
@@ -325,7 +344,7 @@ fn tell(interface: &mut Interface, error: &Error) {
 }
 
 fn window_size(stage: &Stage) -> Size {
-    let size = stage.window.inner_size();
+    let size = stage.size();
     Size {
         width: size.width,
         height: size.height,

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::Result;
-use crate::gpu::read_back;
+use crate::gpu::{Pixels, read_back};
 use crate::output::{Channels, Effort, Encoding, Layer, Metadata, write_exr, write_png};
 
 use super::document::Document;
@@ -13,7 +13,7 @@ use super::stage::Stage;
 ///
 /// # Errors
 /// Fails when a file cannot be written.
-pub(super) fn save(stage: &mut Stage, document: &Document) -> Result<String> {
+pub(super) fn save(stage: &mut Stage, document: &mut Document) -> Result<String> {
     let stem = free_name(document);
     let (png, exr) = (stem.with_extension("png"), stem.with_extension("exr"));
     let metadata = metadata(stage, document)?;
@@ -49,13 +49,25 @@ fn metadata(stage: &mut Stage, document: &Document) -> Result<Metadata> {
     Ok(metadata)
 }
 
+/// The newest frame as a file has it: an HDR screen shows another picture.
+fn display_of_file(stage: &mut Stage, document: &mut Document) -> Result<Pixels> {
+    let peak = document.frame().settings().tone.peak;
+    if peak.is_none() {
+        return Ok(read_back(stage.idle()?, document.display())?);
+    }
+    stage.work(|rec| document.retone(rec, None))?;
+    let pixels = read_back(stage.idle()?, document.display())?;
+    stage.work(|rec| document.retone(rec, peak))?;
+    Ok(pixels)
+}
+
 fn save_png(
     stage: &mut Stage,
-    document: &Document,
+    document: &mut Document,
     path: &Path,
     metadata: &Metadata,
 ) -> Result<()> {
-    let pixels = read_back(stage.idle()?, document.display())?;
+    let pixels = display_of_file(stage, document)?;
     let gamma = document.job.settings.gamma;
     let encoding = gamma.map_or(Encoding::Srgb, Encoding::Gamma);
     write_png(

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::commands::job::Job;
+use crate::daylight::hdr::PAPER_WHITE;
 use crate::daylight::sun_position::azimuth_elevation;
 use crate::error::Result;
 use crate::frame::{Frame, FrameSettings};
@@ -10,7 +11,7 @@ use crate::gpu::{Image, Recorder};
 use crate::options::{OptionValues, Options, Size, SunInput, Visibility};
 use crate::passes::light::lighting::Precision;
 use crate::passes::light::probe::Reading;
-use crate::passes::picture::tone_map::Scale;
+use crate::passes::picture::tone_map::{Scale, ToneSettings};
 use crate::scene::{Camera, Loaded};
 
 use super::adaptation::Adaptation;
@@ -18,6 +19,7 @@ use super::controls::{Controls, FlyKeys};
 use super::interface::{Notes, shift};
 use super::keys::Action;
 use super::light_ahead::LightAhead;
+use super::stage::Screen;
 use super::viewpoints::{Viewpoint, Viewpoints};
 
 /// Default of `--samples` in the window: number of frames averaged at rest.
@@ -45,6 +47,47 @@ pub(super) struct Document {
     adaptation: Adaptation,
     /// Number of frames drawn since the scene was opened.
     frames: u64,
+    /// What the window can show; the frame may be behind.
+    screen: Screen,
+    is_hdr: bool,
+}
+
+/// A document without a device.
+pub(super) struct Aside {
+    job: Job,
+    controls: Controls,
+    viewpoints: Viewpoints,
+    followed: Options,
+    light: LightAhead,
+    frames: u64,
+}
+
+impl Aside {
+    /// Uploads the scene. `recorder` must be recording, with no frame in flight.
+    ///
+    /// # Errors
+    /// Not enough device memory for the scene.
+    pub(super) fn on(self, recorder: &mut Recorder, screen: Screen) -> Result<Document> {
+        let frame = Frame::new(
+            recorder,
+            &self.job.scene,
+            frame_settings(&self.job, screen.is_hdr),
+        )?;
+        Ok(Document {
+            frame,
+            job: self.job,
+            controls: self.controls,
+            viewpoints: self.viewpoints,
+            followed: self.followed,
+            light: self.light,
+            frames: self.frames,
+            drawn: None,
+            averaged: 0,
+            adaptation: Adaptation::default(),
+            is_hdr: screen.is_hdr,
+            screen,
+        })
+    }
 }
 
 impl Document {
@@ -57,24 +100,42 @@ impl Document {
         path: Option<PathBuf>,
         loaded: Loaded,
         user: &OptionValues,
-        size: Size,
+        (size, screen): (Size, Screen),
     ) -> Result<Self> {
         let user = at_rest(user, size);
         let job = Job::of(path.as_deref(), loaded, &user)?;
         let viewpoints = named_cameras(&job, &user);
-        let frame = Frame::new(recorder, &job.scene, frame_settings(&job))?;
-        Ok(Self {
+        let aside = Aside {
             controls: Controls::new(&job.camera, &job.scene.bounds),
             viewpoints,
             followed: job.settings.clone(),
             light: LightAhead::new(&job.settings),
-            frame,
-            job,
-            drawn: None,
-            averaged: 0,
-            adaptation: Adaptation::default(),
             frames: 0,
-        })
+            job,
+        };
+        aside.on(recorder, screen)
+    }
+
+    /// Gives up the device, and keeps scene, options and view.
+    pub(super) fn lay_aside(self) -> Aside {
+        Aside {
+            job: self.job,
+            controls: self.controls,
+            viewpoints: self.viewpoints,
+            followed: self.followed,
+            light: self.light,
+            frames: self.frames,
+        }
+    }
+
+    /// Sets what the window can show.
+    pub(super) fn set_screen(&mut self, screen: Screen) {
+        self.screen = screen;
+    }
+
+    /// What the window can show.
+    pub(super) fn screen(&self) -> Screen {
+        self.screen
     }
 
     /// Performs a key's action on scene and daylight, and reports it in `notes`.
@@ -130,7 +191,9 @@ impl Document {
 
     /// Whether the options have changed since the last update of daylight and frame, or the daylight follows later.
     pub(super) fn is_behind(&self) -> bool {
-        self.job.settings != self.followed || self.light.is_solving()
+        self.job.settings != self.followed
+            || self.screen.is_hdr != self.is_hdr
+            || self.light.is_solving()
     }
 
     /// Updates daylight and frame to the options. `recorder` must be recording, with no frame in flight. While another thread solves
@@ -146,6 +209,7 @@ impl Document {
             self.light.go_back(&mut self.job)?;
         }
         self.followed = self.job.settings.clone();
+        self.is_hdr = self.screen.is_hdr;
         self.start_over();
         followed
     }
@@ -155,7 +219,7 @@ impl Document {
             self.adaptation.cut();
         }
         self.light.follow(&mut self.job)?;
-        let wanted = frame_settings(&self.job);
+        let wanted = frame_settings(&self.job, self.screen.is_hdr);
         if wanted != *self.frame.settings() {
             self.frame.apply(recorder, wanted)?;
         }
@@ -168,7 +232,11 @@ impl Document {
     /// Fails when the device cannot create the resources; the previous frame is kept.
     #[cfg(feature = "hot-reload")]
     pub(super) fn rebuild(&mut self, recorder: &mut Recorder) -> Result<()> {
-        self.frame = Frame::new(recorder, &self.job.scene, frame_settings(&self.job))?;
+        self.frame = Frame::new(
+            recorder,
+            &self.job.scene,
+            frame_settings(&self.job, self.is_hdr),
+        )?;
         self.start_over();
         Ok(())
     }
@@ -243,6 +311,18 @@ impl Document {
         &self.frame
     }
 
+    /// Tone maps the newest image again: for an HDR screen of this peak, or for a file. `recorder` must be recording, with no frame in flight.
+    ///
+    /// # Errors
+    /// Fails when the device cannot create the resources.
+    pub(super) fn retone(&mut self, recorder: &mut Recorder, peak: Option<f64>) -> Result<()> {
+        let tone = ToneSettings {
+            peak,
+            ..self.frame.settings().tone
+        };
+        Ok(self.frame.retone(recorder, tone)?)
+    }
+
     /// Records the read-back of one pixel of the newest image.
     pub(super) fn pick(&mut self, recorder: &mut Recorder, pixel: [u32; 2]) {
         self.frame.pick(recorder, pixel);
@@ -285,8 +365,9 @@ fn at_rest(user: &OptionValues, size: Size) -> OptionValues {
 
 /// Frame settings for the screen. The number of irradiance samples does not depend on the light, so the sun can be dragged
 /// without recreating the cube.
-fn frame_settings(job: &Job) -> FrameSettings {
+fn frame_settings(job: &Job, is_hdr: bool) -> FrameSettings {
     let mut settings = job.frame_settings(job.settings.show, Precision::Half);
+    settings.tone.peak = is_hdr.then_some(job.settings.hdr_peak / PAPER_WHITE);
     settings.irradiance.samples = job.settings.irradiance_samples;
     settings.sampling.dome.illuminance = true;
     // Single frames while something moves; at rest the image fades over to the converging one.

@@ -6,13 +6,13 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::{Key, NamedKey};
 use winit::window::WindowId;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 use super::app::App;
 use super::input::Wheel;
 use super::keys;
 use super::loader::Message;
-use super::stage::Stage;
+use super::stage::{self, Stage};
 
 impl App {
     fn key(&mut self, event: &KeyEvent, is_free: bool) -> Result<()> {
@@ -49,10 +49,11 @@ impl App {
         match event {
             WindowEvent::CloseRequested => event_loop.exit(),
             WindowEvent::RedrawRequested => self.redraw(event_loop)?,
-            WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
-                stage.resize();
+            WindowEvent::Resized(size) => {
+                stage.resize(size);
                 stage.window.request_redraw();
             }
+            WindowEvent::ScaleFactorChanged { .. } => stage.window.request_redraw(),
             WindowEvent::Occluded(false) | WindowEvent::Focused(true) => {
                 stage.window.request_redraw();
             }
@@ -70,7 +71,7 @@ impl App {
 
     fn on_pointer(&mut self, event: &WindowEvent, consumed: bool) {
         let Some(stage) = &self.stage else { return };
-        let height = f64::from(stage.window.inner_size().height);
+        let height = f64::from(stage.size().height);
         match event {
             WindowEvent::CursorMoved { position, .. } => {
                 let controls = self.document.as_mut().map(|d| &mut d.controls);
@@ -126,9 +127,12 @@ fn is_tab(event: &WindowEvent) -> bool {
 }
 
 impl ApplicationHandler<Message> for App {
-    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
+    fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
         if matches!(cause, StartCause::ResumeTimeReached { .. }) {
             self.again_at = None;
+            if self.trouble.is_ending() {
+                event_loop.exit();
+            }
             self.request_redraw();
         }
     }
@@ -137,7 +141,11 @@ impl ApplicationHandler<Message> for App {
         if self.stage.is_some() {
             return;
         }
-        match Stage::new(event_loop, &self.options) {
+        let opened = stage::window(event_loop, &self.options).and_then(|window| {
+            self.window = Some(window.0.clone());
+            Stage::new(window, &self.options)
+        });
+        match opened {
             Ok(stage) => {
                 self.stage = Some(stage);
                 self.interface.loading(Some((0.0, "opening")));
@@ -146,7 +154,7 @@ impl ApplicationHandler<Message> for App {
                 }
                 self.request_redraw();
             }
-            Err(error) => self.end(event_loop, error),
+            Err(error) => self.trouble_of(event_loop, error),
         }
     }
 
@@ -171,8 +179,14 @@ impl ApplicationHandler<Message> for App {
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
-        if let Err(error) = self.on_event(event_loop, event) {
-            self.end(event_loop, error);
+        let done = match event {
+            WindowEvent::Destroyed => Err(Error::WindowGone),
+            // A window that may be gone is not drawn to.
+            _ if self.trouble.is_ending() => Ok(()),
+            event => self.on_event(event_loop, event),
+        };
+        if let Err(error) = done {
+            self.trouble_of(event_loop, error);
         }
     }
 
@@ -188,12 +202,7 @@ impl ApplicationHandler<Message> for App {
         if let Some(stage) = &mut self.stage {
             let _ = stage.idle();
         }
-        if let Some(document) = &self.document
-            && let Err(error) = super::resume::keep(document)
-            && !self.options.no_warnings
-        {
-            eprintln!("warning: {error}");
-        }
+        self.keep_settings();
         self.document = None;
     }
 }

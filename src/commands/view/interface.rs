@@ -147,6 +147,11 @@ impl Interface {
         self.timings.is_open
     }
 
+    /// Whether the chart of pass times is open.
+    pub(super) fn is_timed(&self) -> bool {
+        self.timings.is_open
+    }
+
     /// Updates the pass times and the device memory use.
     pub(super) fn observe(&mut self, stage: &Stage) {
         self.timings.observe(stage);

@@ -4,6 +4,7 @@
 //! - `app` and `events`: the event loop. `stage`: the window and its device. `document`: the open scene. `adaptation`: its
 //!   exposure over time.
 //! - `keys`, `input` and `touch`: keyboard, mouse and touch screen. `interface`: the user interface, panel by panel.
+//! - `trouble`: what is done about errors, a lost device among them.
 //! - `loader`: background loading. `capture`: screenshots. `resume`: settings of the last session.
 
 mod adaptation;
@@ -21,6 +22,7 @@ mod resume;
 mod stage;
 mod style;
 mod touch;
+mod trouble;
 pub mod viewpoints;
 
 use std::path::Path;
@@ -40,7 +42,8 @@ const OPENING: &str = "island";
 /// the last session with this scene.
 ///
 /// # Errors
-/// No display, no device that can present to it, or a lost device. A scene that fails to load is reported in the window.
+/// No display, no device that can present to it, a window that another program destroyed, or a device that was lost twice. A
+/// scene that fails to load is reported in the window.
 pub fn run(scene: Option<&Path>, resumes: bool, user: OptionValues) -> Result<()> {
     let opening = Path::new(OPENING);
     let scene = scene.or_else(|| bundled_name(opening).map(|_| opening));

@@ -1,21 +1,21 @@
 //! The window and its device: combines frames and the user interface.
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use winit::dpi::PhysicalSize;
 use winit::event::WindowEvent;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
 
-use crate::commands::job::{context_options, notice};
-use crate::error::Result;
+use crate::commands::job::{context_options, notice, planned_fault};
+use crate::error::{Error, Result};
 use crate::gpu::{
-    Context, Format, GpuError, Image, ImageDesc, Overlay, Presenter, Recorder, Timing, Timings,
-    UiFrame,
+    Context, ContextOptions, Format, GpuError, Image, ImageDesc, Overlay, Presenter, Recorder,
+    Timing, Timings, UiFrame,
 };
-use crate::options::Options;
-use crate::passes::picture::present::Present;
+use crate::options::{Hdr, Options};
+use crate::passes::picture::present::{Present, interface_format};
 
 use super::document::Document;
 
@@ -29,6 +29,26 @@ pub(super) struct Stage {
     egui: egui_winit::State,
     pub(super) context: Arc<Context>,
     pub(super) window: Arc<Window>,
+    /// Size of the window, pixels, as its last event told: asking a window that is already gone would end the program.
+    size: PhysicalSize<u32>,
+    started: Instant,
+}
+
+/// What the window can show.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Screen {
+    /// Whether the window's surface offers an HDR signal.
+    pub(super) offers_hdr: bool,
+    /// Whether the window has one.
+    pub(super) is_hdr: bool,
+}
+
+/// What is left of a stage whose device is lost.
+pub(super) struct Left {
+    window: Arc<Window>,
+    size: PhysicalSize<u32>,
+    /// What the user interface remembers: open sections, positions.
+    memory: egui::Memory,
 }
 
 /// A laid-out user interface.
@@ -38,35 +58,112 @@ pub(super) struct Layout {
     pub(super) again_after: Duration,
 }
 
+/// Opens the window; returns it with its size, pixels.
+///
+/// # Errors
+/// Fails when the window cannot be created.
+pub(super) fn window(
+    event_loop: &ActiveEventLoop,
+    options: &Options,
+) -> Result<(Arc<Window>, PhysicalSize<u32>)> {
+    let attributes = Window::default_attributes()
+        .with_title("skylight")
+        .with_inner_size(PhysicalSize::new(options.size.width, options.size.height));
+    let window = event_loop.create_window(attributes);
+    let window = window.map_err(|e| GpuError::Window(super::reason(&e)))?;
+    let size = window.inner_size();
+    Ok((Arc::new(window), size))
+}
+
 impl Stage {
-    /// Opens the window and a device that can present to it.
+    /// Opens a device that can present to a new window of this size.
     ///
     /// # Errors
-    /// Fails when the window cannot be created or no device is usable.
-    pub(super) fn new(event_loop: &ActiveEventLoop, options: &Options) -> Result<Self> {
-        let attributes = Window::default_attributes()
-            .with_title("skylight")
-            .with_inner_size(PhysicalSize::new(options.size.width, options.size.height));
-        let window = event_loop
-            .create_window(attributes)
-            .map_err(|e| GpuError::Window(super::reason(&e)))?;
-        let window = Arc::new(window);
-        let (context, surface) = Context::for_window(&context_options(options), window.clone())?;
+    /// Fails when no device is usable.
+    pub(super) fn new(
+        (window, size): (Arc<Window>, PhysicalSize<u32>),
+        options: &Options,
+    ) -> Result<Self> {
+        Self::on(window, size, options, context_options(options))
+    }
+
+    /// Closes everything but the window.
+    pub(super) fn leave(self) -> Left {
+        Left {
+            window: self.window.clone(),
+            size: self.size,
+            memory: self.ui().memory(Clone::clone),
+        }
+    }
+
+    /// Opens another device on a window that is left.
+    ///
+    /// # Errors
+    /// Fails when no device is usable.
+    pub(super) fn again(left: Left, options: &Options) -> Result<Self> {
+        let device = ContextOptions {
+            fault: planned_fault(1),
+            ..context_options(options)
+        };
+        let stage = Self::on(left.window, left.size, options, device)?;
+        stage.ui().memory_mut(|memory| *memory = left.memory);
+        Ok(stage)
+    }
+
+    fn on(
+        window: Arc<Window>,
+        size: PhysicalSize<u32>,
+        options: &Options,
+        device: ContextOptions,
+    ) -> Result<Self> {
+        let (context, surface) = Context::for_window(&device, window.clone())?;
         if !(options.quiet || options.no_warnings) {
             notice(&context);
         }
-        let mut presenter = Presenter::new(surface, window.inner_size().into())?;
-        let format = presenter.format();
+        let mut presenter = Presenter::new(surface, size.into(), false)?;
+        let output = presenter.output();
+        let interface = interface_format(output);
         let recorder = presenter.idle()?;
-        Ok(Self {
-            overlay: Overlay::new(&context, format)?,
-            present: Present::new(&context, format)?,
+        let mut stage = Self {
+            overlay: Overlay::new(&context, interface)?,
+            present: Present::new(&context, output, interface)?,
             blank: blank(recorder)?,
             egui: egui_state(&window, &context),
             presenter,
             context,
             window,
-        })
+            size,
+            started: Instant::now(),
+        };
+        stage.set_hdr(options.hdr)?;
+        Ok(stage)
+    }
+
+    /// Draws with an HDR signal, or without. On an error the window has none.
+    ///
+    /// # Errors
+    /// Fails when one is insisted on and the surface offers none, and when the device cannot create the resources.
+    pub(super) fn set_hdr(&mut self, hdr: Hdr) -> Result<()> {
+        let output = self.presenter.output_for(hdr != Hdr::Off);
+        if output != self.presenter.output() {
+            self.presenter.idle()?;
+            let interface = interface_format(self.presenter.output_for(false));
+            self.present = Present::new(&self.context, output, interface)?;
+            self.presenter.set_output(output);
+        }
+        if hdr == Hdr::On && !self.screen().is_hdr {
+            return Err(Error::NoHdr(self.presenter.offered()));
+        }
+        Ok(())
+    }
+
+    /// What the window can show.
+    pub(super) fn screen(&self) -> Screen {
+        let hdr = self.presenter.output_for(true);
+        Screen {
+            offers_hdr: hdr.encoding.is_hdr(),
+            is_hdr: self.presenter.output().encoding.is_hdr(),
+        }
     }
 
     /// Passes an event to the user interface. Returns whether the interface consumed it, and whether it needs another
@@ -81,9 +178,31 @@ impl Stage {
         self.egui.egui_ctx()
     }
 
-    /// Follows a change of the window's size, which may be zero.
-    pub(super) fn resize(&mut self) {
-        self.presenter.resize(self.window.inner_size().into());
+    /// Follows a change of the window's size, pixels, which may be zero.
+    pub(super) fn resize(&mut self, size: PhysicalSize<u32>) {
+        self.size = size;
+        self.presenter.resize(size.into());
+    }
+
+    /// Size of the window, pixels.
+    pub(super) fn size(&self) -> PhysicalSize<u32> {
+        self.size
+    }
+
+    /// The input of the user interface since the last layout. `egui_winit::State::take_egui_input` asks the window for its size.
+    fn input(&mut self) -> egui::RawInput {
+        let scale = egui_winit::pixels_per_point(self.ui(), &self.window);
+        let native = self.window.scale_factor() as f32;
+        let seconds = self.started.elapsed().as_secs_f64();
+        let size = egui::vec2(self.size.width as f32, self.size.height as f32) / scale;
+        let input = self.egui.egui_input_mut();
+        input.time = Some(seconds);
+        let has_area = size.x > 0.0 && size.y > 0.0;
+        input.screen_rect = has_area.then(|| egui::Rect::from_min_size(egui::Pos2::ZERO, size));
+        input.viewport_id = egui::ViewportId::ROOT;
+        let viewport = input.viewports.entry(egui::ViewportId::ROOT).or_default();
+        viewport.native_pixels_per_point = Some(native);
+        input.take()
     }
 
     /// Lays out the user interface.
@@ -95,7 +214,7 @@ impl Stage {
         event_loop: &ActiveEventLoop,
         content: impl FnMut(&mut egui::Ui),
     ) -> Result<Layout> {
-        let input = self.egui.take_egui_input(&self.window);
+        let input = self.input();
         let context = self.ui().clone();
         let output = context.run_ui(input, content);
         self.egui.handle_platform_output_with_event_loop(

@@ -364,10 +364,10 @@ fn open_instance(
     validate: bool,
     window: Option<Window>,
 ) -> Result<(InstanceGuard, Option<Messenger>, Option<RawSurface>)> {
-    let windows = window
-        .as_ref()
-        .map_or(Ok(&[][..]), surface::instance_extensions)?;
-    let instance = InstanceGuard::new(entry, validate, windows)?;
+    let windows = window.as_ref().map_or(Ok(Vec::new()), |window| {
+        surface::instance_extensions(entry, window)
+    })?;
+    let instance = InstanceGuard::new(entry, validate, &windows)?;
     let messenger = validate
         .then(|| Messenger::new(entry, &instance.raw))
         .transpose()?;

@@ -23,7 +23,7 @@ pub(in crate::gpu) fn queue(
     instance: &ash::Instance,
     handle: vk::PhysicalDevice,
     surface: Option<&RawSurface>,
-) -> Result<std::result::Result<Queue, String>> {
+) -> Result<std::result::Result<Queue, MissingQueue>> {
     // SAFETY: `handle` comes from this instance.
     let families = unsafe { instance.get_physical_device_queue_family_properties(handle) };
     for (family, properties) in (0u32..).zip(&families) {
@@ -42,14 +42,28 @@ pub(in crate::gpu) fn queue(
 const BOTH: vk::QueueFlags =
     vk::QueueFlags::from_raw(vk::QueueFlags::GRAPHICS.as_raw() | vk::QueueFlags::COMPUTE.as_raw());
 
-fn missing_queue(families: &[vk::QueueFlags], presents: bool) -> String {
+/// Why a device has no queue for the renderer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::gpu) struct MissingQueue {
+    /// What is missing.
+    pub(in crate::gpu) what: &'static str,
+    /// Whether it is the window alone that none presents to.
+    pub(in crate::gpu) is_for_window: bool,
+}
+
+fn missing_queue(families: &[vk::QueueFlags], presents: bool) -> MissingQueue {
     let any = |wanted| families.iter().any(|f: &vk::QueueFlags| f.contains(wanted));
-    if any(BOTH) && presents {
-        "a graphics queue that presents to this window".to_owned()
+    let is_for_window = any(BOTH) && presents;
+    let what = if is_for_window {
+        "a graphics queue that presents to this window"
     } else if any(vk::QueueFlags::GRAPHICS) {
-        "a queue for graphics and compute together (it has them apart)".to_owned()
+        "a queue for graphics and compute together (it has them apart)"
     } else {
-        "a graphics queue".to_owned()
+        "a graphics queue"
+    };
+    MissingQueue {
+        what,
+        is_for_window,
     }
 }
 
@@ -189,12 +203,12 @@ mod tests {
     fn a_missing_queue_is_named() {
         use vk::QueueFlags as Q;
         assert_eq!(
-            missing_queue(&[Q::TRANSFER, Q::COMPUTE], false),
+            missing_queue(&[Q::TRANSFER, Q::COMPUTE], false).what,
             "a graphics queue"
         );
-        let apart = missing_queue(&[Q::GRAPHICS, Q::COMPUTE], true);
+        let apart = missing_queue(&[Q::GRAPHICS, Q::COMPUTE], true).what;
         assert!(apart.contains("apart"), "{apart}");
-        let elsewhere = missing_queue(&[BOTH], true);
+        let elsewhere = missing_queue(&[BOTH], true).what;
         assert!(elsewhere.contains("this window"), "{elsewhere}");
     }
 }

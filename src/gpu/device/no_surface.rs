@@ -9,7 +9,10 @@ use crate::gpu::error::Result;
 
 pub(in crate::gpu) type Window = Infallible;
 
-pub(in crate::gpu) fn instance_extensions(window: &Window) -> Result<&'static [*const c_char]> {
+pub(in crate::gpu) fn instance_extensions(
+    _: &ash::Entry,
+    window: &Window,
+) -> Result<Vec<*const c_char>> {
     match *window {}
 }
 

@@ -7,7 +7,7 @@ use ash::vk;
 use crate::gpu::device::optional::{Offered, Optional};
 use crate::gpu::device::surface::RawSurface;
 use crate::gpu::device::{needs, portability};
-use crate::gpu::error::{During, GpuError, Result};
+use crate::gpu::error::{During, GpuError, Result, list_with_verb};
 use crate::gpu::record::timings::Timing;
 
 /// Description of a device, including whether the renderer can use it.
@@ -64,6 +64,8 @@ pub(in crate::gpu) struct Candidate {
     pub(in crate::gpu) handle: vk::PhysicalDevice,
     pub(in crate::gpu) summary: DeviceSummary,
     pub(in crate::gpu) queue_family: u32,
+    /// What it lacks to present to the window, if there is one.
+    lacks_for_window: Vec<String>,
     rank: u32,
 }
 
@@ -130,9 +132,17 @@ fn candidate(
     }
     missing.extend(needs::missing_formats(instance, handle));
     missing.extend(portability.iter().flat_map(|p| p.needed.clone()));
-    missing.extend(queue.clone().err());
+    let mut lacks_for_window = Vec::new();
+    if let Err(lack) = &queue {
+        let list = if lack.is_for_window {
+            &mut lacks_for_window
+        } else {
+            &mut missing
+        };
+        list.push(lack.what.to_owned());
+    }
     if surface.is_some() && !extensions.iter().any(|e| e == "VK_KHR_swapchain") {
-        missing.push("VK_KHR_swapchain".to_owned());
+        lacks_for_window.push("VK_KHR_swapchain".to_owned());
     }
     let timestamp_bits = queue.as_ref().map_or(0, |queue| queue.timestamp_bits);
     let offered = Offered {
@@ -141,6 +151,7 @@ fn candidate(
         extensions: &extensions,
         timestamp_bits,
     };
+    missing.extend(lacks_for_window.iter().cloned());
     let summary = DeviceSummary {
         index,
         name: text(&properties.device_name),
@@ -161,6 +172,7 @@ fn candidate(
         handle,
         summary,
         queue_family: queue.map_or(0, |queue| queue.family),
+        lacks_for_window,
         rank,
     })
 }
@@ -187,8 +199,11 @@ pub(in crate::gpu) fn choose(
     candidates: Vec<Candidate>,
     wanted: Option<&str>,
 ) -> Result<Candidate> {
-    if candidates.is_empty() {
+    let Some(first) = candidates.first() else {
         return Err(GpuError::NoDevice);
+    };
+    if candidates.iter().all(|c| !c.lacks_for_window.is_empty()) {
+        return Err(GpuError::CannotPresent(first.lacks_for_window.clone()));
     }
     let summaries: Vec<&DeviceSummary> = candidates.iter().map(|c| &c.summary).collect();
     let index = match wanted {
@@ -207,13 +222,8 @@ fn usable(summary: &DeviceSummary) -> Result<()> {
     if summary.missing.is_empty() {
         return Ok(());
     }
-    let verb = if summary.missing.len() == 1 {
-        "is"
-    } else {
-        "are"
-    };
     Err(GpuError::Unsupported {
-        missing: format!("{} {verb}", summary.missing.join(", ")),
+        missing: list_with_verb(&summary.missing),
         device: summary.name.clone(),
     })
 }
@@ -274,6 +284,7 @@ mod tests {
         Candidate {
             handle: vk::PhysicalDevice::null(),
             queue_family: 0,
+            lacks_for_window: Vec::new(),
             rank,
             summary: DeviceSummary {
                 index,
@@ -324,6 +335,22 @@ mod tests {
             "{unknown}"
         );
         assert!(matches!(choose(Vec::new(), None), Err(GpuError::NoDevice)));
+    }
+
+    #[test]
+    fn where_none_presents_the_line_points_to_render() {
+        let headless = |index, name| Candidate {
+            lacks_for_window: vec!["VK_KHR_swapchain".to_owned()],
+            ..fake(index, name, 0, &["VK_KHR_swapchain"])
+        };
+        let none = choose(vec![headless(0, "A"), headless(1, "B")], Some("B"));
+        assert_eq!(
+            none.map(|_| ()).expect_err("lacks").to_string(),
+            "no driver here can present to this window (VK_KHR_swapchain is missing); \
+             skylight render writes pictures without one"
+        );
+        let one = choose(vec![headless(0, "A"), fake(1, "B", 3, &[])], None);
+        assert_eq!(one.expect("B").summary.name, "B");
     }
 
     #[test]

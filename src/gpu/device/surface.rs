@@ -1,13 +1,14 @@
 //! The surface of a window, to which a swapchain presents.
 
-use std::ffi::c_char;
+use std::ffi::{CStr, c_char};
 use std::sync::Arc;
 
-use ash::{khr, vk};
+use ash::{ext, khr, vk};
 use raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 
 use crate::gpu::device::context::Context;
 use crate::gpu::device::fault::Call;
+use crate::gpu::device::instance::{InstanceGuard, has_instance_extension};
 use crate::gpu::error::{During, GpuError, Result};
 
 /// A window from any windowing library.
@@ -22,11 +23,36 @@ fn refused(error: &raw_window_handle::HandleError) -> GpuError {
     GpuError::Window(error.to_string())
 }
 
-/// Instance extensions required to present to this window.
-pub(in crate::gpu) fn instance_extensions(window: &Window) -> Result<&'static [*const c_char]> {
+/// Instance extensions to present to this window: those that the window system needs, and the one of colour spaces if there is one.
+///
+/// # Errors
+/// When a required one is missing.
+pub(in crate::gpu) fn instance_extensions(
+    entry: &ash::Entry,
+    window: &Window,
+) -> Result<Vec<*const c_char>> {
     let display = window.display_handle().map_err(|e| refused(&e))?;
-    ash_window::enumerate_required_extensions(display.as_raw())
-        .during("list the extensions of the window system")
+    let needed = ash_window::enumerate_required_extensions(display.as_raw())
+        .during("list the extensions of the window system")?;
+    // SAFETY: `ash_window` lists names of extensions, which are static and terminated.
+    let names = needed.iter().map(|name| unsafe { CStr::from_ptr(*name) });
+    let mut missing = Vec::new();
+    for name in names {
+        if !has_instance_extension(entry, None, name)? {
+            missing.push(name.to_string_lossy().into_owned());
+        }
+    }
+    if !missing.is_empty() {
+        // Without any driver that is what to tell of.
+        InstanceGuard::new(entry, false, &[])?;
+        return Err(GpuError::CannotPresent(missing));
+    }
+    let mut extensions = needed.to_vec();
+    let spaces = ext::swapchain_colorspace::NAME;
+    if has_instance_extension(entry, None, spaces)? {
+        extensions.push(spaces.as_ptr());
+    }
+    Ok(extensions)
 }
 
 /// A surface, which keeps its window alive. It must be dropped before the instance.
@@ -122,24 +148,14 @@ impl Surface {
         }
     }
 
-    /// The first sRGB format with 8 bits per channel.
-    pub(in crate::gpu) fn format(&self) -> Result<vk::SurfaceFormatKHR> {
+    /// The pairs of format and colour space that the surface offers.
+    pub(in crate::gpu) fn formats(&self) -> Result<Vec<vk::SurfaceFormatKHR>> {
         // SAFETY: device and surface belong to one instance.
-        let formats = unsafe {
+        unsafe {
             self.surface
                 .loader
                 .get_physical_device_surface_formats(self.context.physical, self.handle())
         }
-        .during("list the formats of the window")?;
-        let encoded = [vk::Format::B8G8R8A8_SRGB, vk::Format::R8G8B8A8_SRGB];
-        formats
-            .into_iter()
-            .find(|f| {
-                encoded.contains(&f.format) && f.color_space == vk::ColorSpaceKHR::SRGB_NONLINEAR
-            })
-            .ok_or_else(|| GpuError::Unsupported {
-                missing: "an sRGB format of the window is".into(),
-                device: self.context.summary().name.clone(),
-            })
+        .during("list the formats of the window")
     }
 }

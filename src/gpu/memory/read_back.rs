@@ -26,7 +26,12 @@ pub struct Pixels {
 fn shape(format: vk::Format) -> (usize, usize) {
     match format {
         vk::Format::R8_UNORM => (1, 1),
-        vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB => (4, 1),
+        vk::Format::R8G8B8A8_UNORM
+        | vk::Format::R8G8B8A8_SRGB
+        | vk::Format::B8G8R8A8_UNORM
+        | vk::Format::B8G8R8A8_SRGB => (4, 1),
+        // Four channels in a word of 32 bits.
+        vk::Format::A2B10G10R10_UNORM_PACK32 | vk::Format::A2R10G10B10_UNORM_PACK32 => (4, 1),
         vk::Format::R16_SFLOAT | vk::Format::R16_UINT => (1, 2),
         // Packed words: lower half first, then upper half.
         vk::Format::R32_UINT => (2, 2),
@@ -146,7 +151,7 @@ pub fn read_back(recorder: &mut Recorder, image: &Image) -> Result<Pixels> {
 }
 
 impl Pixels {
-    /// All channels as floats, in the order of `bytes`: integer formats as their value, normalised formats in 0..1 or −1..1
+    /// All channels as floats, red first: integer formats as their value, normalised formats in 0..1 or −1..1
     /// (sRGB values stay encoded).
     pub fn floats(&self) -> Vec<f32> {
         floats(self.format, &self.bytes)
@@ -177,6 +182,17 @@ fn floats(format: vk::Format, bytes: &[u8]) -> Vec<f32> {
         vk::Format::R8_UNORM | vk::Format::R8G8B8A8_UNORM | vk::Format::R8G8B8A8_SRGB => {
             bytes.iter().map(|b| f32::from(*b) / 255.0).collect()
         }
+        vk::Format::B8G8R8A8_UNORM | vk::Format::B8G8R8A8_SRGB => bytes
+            .chunks_exact(4)
+            .flat_map(|b| [b[2], b[1], b[0], b[3]])
+            .map(|b| f32::from(b) / 255.0)
+            .collect(),
+        vk::Format::A2B10G10R10_UNORM_PACK32 => words(bytes)
+            .flat_map(|w| ten_bits(w, [0, 10, 20]))
+            .collect(),
+        vk::Format::A2R10G10B10_UNORM_PACK32 => words(bytes)
+            .flat_map(|w| ten_bits(w, [20, 10, 0]))
+            .collect(),
         vk::Format::R16_UINT
         | vk::Format::R32_UINT
         | vk::Format::R32G32_UINT
@@ -187,11 +203,19 @@ fn floats(format: vk::Format, bytes: &[u8]) -> Vec<f32> {
         vk::Format::R16_SFLOAT | vk::Format::R16G16_SFLOAT | vk::Format::R16G16B16A16_SFLOAT => {
             pairs().map(half_to_f32).collect()
         }
-        _ => bytes
-            .chunks_exact(4)
-            .map(|b| f32::from_ne_bytes([b[0], b[1], b[2], b[3]]))
-            .collect(),
+        _ => words(bytes).map(f32::from_bits).collect(),
     }
+}
+
+fn words(bytes: &[u8]) -> impl Iterator<Item = u32> {
+    let words = bytes.chunks_exact(4);
+    words.map(|b| u32::from_ne_bytes([b[0], b[1], b[2], b[3]]))
+}
+
+/// Red, green and blue of 10 bits each, which begin at these bits of the word, and alpha of 2.
+fn ten_bits(word: u32, first: [u32; 3]) -> [f32; 4] {
+    let [r, g, b] = first.map(|bit| (word >> bit & 0x3ff) as f32 / 1023.0);
+    [r, g, b, (word >> 30) as f32 / 3.0]
 }
 
 fn half_to_f32(bits: u16) -> f32 {

@@ -3,8 +3,9 @@
 use ash::vk;
 
 use crate::gpu::device::surface::Surface;
-use crate::gpu::error::Result;
+use crate::gpu::error::{GpuError, Result};
 use crate::gpu::memory::image::Image;
+use crate::gpu::present::output::{Output, choose, listed};
 use crate::gpu::present::swapchain::{Semaphore, Swapchain};
 use crate::gpu::record::access::ImageAccess;
 use crate::gpu::record::recorder::Recorder;
@@ -24,14 +25,15 @@ pub struct Presenter {
     slots: [Slot; FRAMES],
     current: usize,
     swapchain: Swapchain,
+    offered: Vec<vk::SurfaceFormatKHR>,
 }
 
 impl Presenter {
-    /// Creates a presenter for a window of `size` pixels.
+    /// Creates a presenter for a window of `size` pixels, with an HDR signal if `hdr` and the surface offers one.
     ///
     /// # Errors
-    /// When the surface offers no sRGB format or memory is exhausted.
-    pub fn new(surface: Surface, size: [u32; 2]) -> Result<Self> {
+    /// When the surface offers no format that the program draws to, or memory is exhausted.
+    pub fn new(surface: Surface, size: [u32; 2], hdr: bool) -> Result<Self> {
         let context = surface.context().clone();
         let slot = || -> Result<Slot> {
             Ok(Slot {
@@ -39,16 +41,37 @@ impl Presenter {
                 acquired: Semaphore::new(&context)?,
             })
         };
+        let offered = surface.formats()?;
+        let output = choose(&offered, hdr).ok_or_else(|| {
+            let there_are = listed(&offered);
+            GpuError::Window(format!("skylight knows none of its formats ({there_are})"))
+        })?;
         Ok(Self {
             slots: [slot()?, slot()?],
             current: 0,
-            swapchain: Swapchain::new(surface, size)?,
+            swapchain: Swapchain::new(surface, size, output)?,
+            offered,
         })
     }
 
-    /// Format of the swapchain images.
-    pub fn format(&self) -> vk::Format {
-        self.swapchain.format()
+    /// What the window is drawn in.
+    pub fn output(&self) -> Output {
+        self.swapchain.output()
+    }
+
+    /// What the window can be drawn in: with an HDR signal if `hdr` and the surface offers one, or without.
+    pub fn output_for(&self, hdr: bool) -> Output {
+        choose(&self.offered, hdr).unwrap_or(self.output())
+    }
+
+    /// The formats and colour spaces that the surface offers, for a message.
+    pub fn offered(&self) -> String {
+        listed(&self.offered)
+    }
+
+    /// Sets what the window is drawn in from the next frame on: one of [`Presenter::output_for`].
+    pub fn set_output(&mut self, output: Output) {
+        self.swapchain.set_output(output);
     }
 
     /// Sets the window size, pixels; 0 when minimised.

@@ -9,6 +9,7 @@ use crate::gpu::device::fault::Call;
 use crate::gpu::device::surface::Surface;
 use crate::gpu::error::{During, GpuError, Result};
 use crate::gpu::memory::image::Image;
+use crate::gpu::present::output::Output;
 use crate::gpu::record::access::ImageAccess;
 
 /// A semaphore destroyed on drop.
@@ -52,7 +53,7 @@ pub(in crate::gpu) struct Swapchain {
     targets: Vec<Target>,
     raw: vk::SwapchainKHR,
     loader: khr::swapchain::Device,
-    format: vk::SurfaceFormatKHR,
+    output: Output,
     wanted: [u32; 2],
     is_stale: bool,
     surface: Surface,
@@ -67,7 +68,7 @@ enum Acquired {
 
 impl Swapchain {
     /// Creates a swapchain of `size` pixels. The images are created by the first `acquire`.
-    pub(in crate::gpu) fn new(surface: Surface, size: [u32; 2]) -> Result<Self> {
+    pub(in crate::gpu) fn new(surface: Surface, size: [u32; 2], output: Output) -> Result<Self> {
         let context = surface.context().clone();
         let loader = context
             .extensions
@@ -78,7 +79,7 @@ impl Swapchain {
             targets: Vec::new(),
             raw: vk::SwapchainKHR::null(),
             loader,
-            format: surface.format()?,
+            output,
             wanted: size,
             is_stale: true,
             surface,
@@ -89,8 +90,14 @@ impl Swapchain {
         self.surface.context()
     }
 
-    pub(in crate::gpu) fn format(&self) -> vk::Format {
-        self.format.format
+    pub(in crate::gpu) fn output(&self) -> Output {
+        self.output
+    }
+
+    /// Sets what the images are from the next `acquire` on.
+    pub(in crate::gpu) fn set_output(&mut self, output: Output) {
+        self.is_stale |= output != self.output;
+        self.output = output;
     }
 
     pub(in crate::gpu) fn image(&self, index: u32) -> &Image {
@@ -207,22 +214,16 @@ impl Swapchain {
         } else {
             can.max_image_count
         };
-        let opaque = vk::CompositeAlphaFlagsKHR::OPAQUE;
-        let alpha = if can.supported_composite_alpha.contains(opaque) {
-            opaque
-        } else {
-            vk::CompositeAlphaFlagsKHR::INHERIT
-        };
         let info = vk::SwapchainCreateInfoKHR::default()
             .surface(self.surface.handle())
             .min_image_count((can.min_image_count + 1).min(most))
-            .image_format(self.format.format)
-            .image_color_space(self.format.color_space)
+            .image_format(self.output.format)
+            .image_color_space(self.output.color_space)
             .image_extent(extent)
             .image_array_layers(1)
             .image_usage(vk::ImageUsageFlags::COLOR_ATTACHMENT)
             .pre_transform(can.current_transform)
-            .composite_alpha(alpha)
+            .composite_alpha(alpha(can.supported_composite_alpha))
             // FIFO is always supported and does not tear.
             .present_mode(vk::PresentModeKHR::FIFO)
             .clipped(true)
@@ -240,7 +241,7 @@ impl Swapchain {
             .into_iter()
             .map(|raw| {
                 Ok(Target {
-                    image: Image::of_swapchain(context, raw, self.format.format, size)?,
+                    image: Image::of_swapchain(context, raw, self.output.format, size)?,
                     drawn: Semaphore::new(context)?,
                 })
             })
@@ -271,16 +272,33 @@ impl Drop for Swapchain {
     }
 }
 
-/// The extent required by the surface, or the window size clamped to the surface limits.
+/// The extent required by the surface, or the window size clamped to the surface limits; 0 while the window has no area.
 fn extent(can: &vk::SurfaceCapabilitiesKHR, wanted: [u32; 2]) -> vk::Extent2D {
     if can.current_extent.width != u32::MAX {
         return can.current_extent;
     }
     let (least, most) = (can.min_image_extent, can.max_image_extent);
+    let within = |wanted: u32, least: u32, most: u32| match wanted {
+        0 => 0,
+        wanted => wanted.max(least).min(most),
+    };
     vk::Extent2D {
-        width: wanted[0].min(most.width).max(least.width.min(wanted[0])),
-        height: wanted[1].min(most.height).max(least.height.min(wanted[1])),
+        width: within(wanted[0], least.width, most.width),
+        height: within(wanted[1], least.height, most.height),
     }
+}
+
+/// How the window's alpha is used: not at all if that is offered. Else any of what is offered: the alpha of every pixel is 1.
+fn alpha(supported: vk::CompositeAlphaFlagsKHR) -> vk::CompositeAlphaFlagsKHR {
+    use vk::CompositeAlphaFlagsKHR as Alpha;
+    let order = [
+        Alpha::OPAQUE,
+        Alpha::PRE_MULTIPLIED,
+        Alpha::POST_MULTIPLIED,
+        Alpha::INHERIT,
+    ];
+    let first = order.into_iter().find(|flag| supported.contains(*flag));
+    first.unwrap_or(Alpha::OPAQUE)
 }
 
 #[cfg(test)]
@@ -292,6 +310,10 @@ mod tests {
             .current_extent(vk::Extent2D {
                 width: current,
                 height: current,
+            })
+            .min_image_extent(vk::Extent2D {
+                width: 8,
+                height: 8,
             })
             .max_image_extent(vk::Extent2D {
                 width: 100,
@@ -309,5 +331,15 @@ mod tests {
         assert_eq!(of(u32::MAX, [50, 600]), [50, 100]);
         assert_eq!(of(0, [50, 60]), [0, 0]);
         assert_eq!(of(u32::MAX, [0, 60]), [0, 60]);
+        assert_eq!(of(u32::MAX, [1, 60]), [8, 60]);
+    }
+
+    #[test]
+    fn only_an_alpha_that_is_offered_is_asked_for() {
+        use vk::CompositeAlphaFlagsKHR as Alpha;
+        assert_eq!(alpha(Alpha::OPAQUE | Alpha::INHERIT), Alpha::OPAQUE);
+        assert_eq!(alpha(Alpha::INHERIT), Alpha::INHERIT);
+        let multiplied = Alpha::POST_MULTIPLIED | Alpha::PRE_MULTIPLIED;
+        assert_eq!(alpha(multiplied), Alpha::PRE_MULTIPLIED);
     }
 }

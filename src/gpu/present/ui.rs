@@ -8,8 +8,12 @@ use egui_ash_renderer::{DynamicRendering, Options, RenderMode, Renderer, Rendere
 
 use crate::gpu::device::context::Context;
 use crate::gpu::error::{During, GpuError, Result};
+use crate::gpu::memory::image::Image;
 use crate::gpu::present::presenter::FRAMES;
+use crate::gpu::record::access::ImageAccess;
 use crate::gpu::record::draws::Draws;
+use crate::gpu::record::recorder::Recorder;
+use crate::gpu::record::work::{Traffic, texels};
 
 /// A tessellated user interface.
 pub struct UiFrame {
@@ -43,7 +47,7 @@ fn fault(error: RendererError) -> GpuError {
 }
 
 impl Overlay {
-    /// Creates a renderer for targets with an sRGB `format`.
+    /// Creates a renderer for targets of a `format` that encodes by the sRGB curve ([`Encoding::ByFormat`](super::output::Encoding::ByFormat)).
     ///
     /// # Errors
     /// When the driver cannot create its resources.
@@ -115,7 +119,61 @@ impl Overlay {
     /// # Errors
     /// When memory is exhausted.
     pub fn draw(&mut self, draws: &mut Draws<'_, '_>, frame: &UiFrame) -> Result<()> {
-        let (command, [width, height]) = draws.foreign();
+        let (command, size) = draws.foreign();
+        self.record(command, size, frame)
+    }
+
+    /// Draws the interface alone to `target`, transparent elsewhere, with premultiplied alpha.
+    ///
+    /// # Errors
+    /// When memory is exhausted.
+    pub fn draw_alone(
+        &mut self,
+        recorder: &mut Recorder,
+        frame: &UiFrame,
+        target: &Image,
+    ) -> Result<()> {
+        const NAME: &str = "user interface";
+        recorder.label(NAME);
+        let mark = recorder.begin_timing(NAME);
+        recorder.transition([(target, ImageAccess::ColorAttachment)].into_iter());
+        let colors = [vk::RenderingAttachmentInfo::default()
+            .image_view(target.attachment_view())
+            .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
+            .load_op(vk::AttachmentLoadOp::CLEAR)
+            .store_op(vk::AttachmentStoreOp::STORE)];
+        let [width, height] = target.size();
+        let info = vk::RenderingInfo::default()
+            .render_area(vk::Rect2D {
+                offset: vk::Offset2D::default(),
+                extent: vk::Extent2D { width, height },
+            })
+            .layer_count(1)
+            .color_attachments(&colors);
+        // SAFETY: the command buffer is recording; `transition` brought the target to this layout.
+        unsafe {
+            self.context
+                .raw()
+                .cmd_begin_rendering(recorder.command, &info)
+        };
+        let drawn = self.record(recorder.command, target.size(), frame);
+        recorder.end_timing(&mark);
+        // SAFETY: pairs with `cmd_begin_rendering`.
+        unsafe { self.context.raw().cmd_end_rendering(recorder.command) };
+        recorder.unlabel();
+        let mut traffic = Traffic::new(texels(target));
+        traffic.write(target, false);
+        recorder.end_work(&mark, 1, || traffic);
+        recorder.isolate(&mark);
+        drawn
+    }
+
+    fn record(
+        &mut self,
+        command: vk::CommandBuffer,
+        [width, height]: [u32; 2],
+        frame: &UiFrame,
+    ) -> Result<()> {
         let extent = vk::Extent2D { width, height };
         self.renderer
             .cmd_draw(command, extent, frame.pixels_per_point, &frame.primitives)

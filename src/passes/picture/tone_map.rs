@@ -2,6 +2,9 @@
 //!
 //! The shader encodes, by the sRGB curve or by a power law (the lecture's (s R)^(1/γ)): a device that encodes for a format may be off by 0.6 steps of 8 bits,
 //! more than the dither leaves. Light is dithered by a step of 8 bits after the tone curve; false colours and other quantities are not.
+//!
+//! For an HDR screen the display values stay linear, and no curve bends them: up to the screen's peak they are the exposed picture
+//! ([`crate::daylight::hdr`]).
 
 use std::sync::Arc;
 
@@ -25,6 +28,7 @@ gpu_struct! {
         white: f32,
         inverse_gamma: f32,
         least: f32,
+        peak: f32,
         origin: UVec2,
     }
 }
@@ -61,6 +65,8 @@ pub struct ToneSettings {
     /// False colours, with their range in cd/m² (lux for irradiance). They replace exposure and tone curve and are always
     /// sRGB-encoded.
     pub false_colour: Option<Colours>,
+    /// Highest display value of an HDR screen: the display values are linear then, without tone curve, gamma and dither. `None`: encoded, 0..=1.
+    pub peak: Option<f64>,
 }
 
 /// The tone mapping pass and its picture.
@@ -68,6 +74,15 @@ pub struct ToneMap {
     settings: ToneSettings,
     pipeline: Pipeline,
     display: Image,
+}
+
+/// Format of display values, encoded, and linear for an HDR screen.
+const ENCODED: Format = Format::R8G8B8A8_UNORM;
+const LINEAR: Format = Format::R16G16B16A16_SFLOAT;
+
+/// Whether the display values of this image are linear ([`ToneSettings::peak`]).
+pub fn is_linear(display: &Image) -> bool {
+    display.format() == LINEAR
 }
 
 /// Whether a quantity is light, which is exposed and tone mapped.
@@ -98,10 +113,11 @@ impl ToneMap {
     pub fn new(context: &Arc<Context>, size: [u32; 2], settings: ToneSettings) -> Result<Self> {
         let false_colour = settings.false_colour.is_some();
         let light = is_light(settings.show) && !false_colour;
-        let curve = |c: ToneCurve| u32::from(light && settings.curve == c);
+        let hdr = settings.peak.is_some();
+        let curve = |c: ToneCurve| u32::from(light && !hdr && settings.curve == c);
         let average = light && matches!(settings.scale, Scale::Average { .. });
         let gamma = settings.gamma.is_some() && !false_colour;
-        let format = Format::R8G8B8A8_UNORM;
+        let format = if hdr { LINEAR } else { ENCODED };
         let pipeline = fullscreen(
             context,
             "tone map",
@@ -117,13 +133,14 @@ impl ToneMap {
                 ("AGX", curve(ToneCurve::Agx)),
                 ("NEUTRAL", curve(ToneCurve::Neutral)),
                 ("ACES", curve(ToneCurve::Aces)),
-                ("GAMMA", gamma.into()),
-                ("SRGB", (!gamma).into()),
+                ("GAMMA", (gamma && !hdr).into()),
+                ("SRGB", (!gamma && !hdr).into()),
                 ("AUTO", average.into()),
                 ("GREY", (settings.show == Show::Luminance).into()),
                 ("FALSE_COLOUR", false_colour.into()),
                 ("COLOUR_MAP", colour_map(settings.false_colour)),
-                ("DITHER", light.into()),
+                ("DITHER", (light && !hdr).into()),
+                ("HDR", (light && hdr).into()),
             ],
         )?;
         let display = Image::new(context, &ImageDesc::flat("display", format, size))?;
@@ -167,6 +184,7 @@ impl ToneMap {
                 Scale::Average { least, .. } => (least * 1e-3) as f32,
                 Scale::Fixed(_) => 0.0,
             },
+            peak: s.peak.unwrap_or(1.0) as f32,
             origin,
         }
     }

@@ -8,6 +8,7 @@ use super::numbers::{field, slider};
 use super::{UiRequest, choice};
 use crate::commands::view::document::Document;
 use crate::commands::view::keys::Action;
+use crate::daylight::hdr::PQ_PEAK;
 use crate::options::{Choice, Options, Quantity, Range, Show};
 
 /// Range of the exposure slider, EV100: from starlight to sunlit snow.
@@ -18,10 +19,23 @@ const SUNNY_EV100: f64 = 14.0;
 const MOONLIT_EV100: f64 = -2.0;
 
 pub(super) fn show(ui: &mut Ui, document: &mut Document, requests: &mut Vec<UiRequest>) {
+    let screen = document.screen();
     let settings = &mut document.job.settings;
     choice(ui, "show", &mut settings.show);
     false_colours(ui, settings);
-    choice(ui, "tone curve", &mut settings.tonemap);
+    ui.add_enabled_ui(!screen.is_hdr, |ui| {
+        choice(ui, "tone curve", &mut settings.tonemap)
+    })
+    .response
+    .on_disabled_hover_text("an HDR screen shows cd/m² in proportion");
+    if screen.offers_hdr {
+        choice(ui, "HDR", &mut settings.hdr);
+        if screen.is_hdr {
+            let peak = slider(&mut settings.hdr_peak, 100.0..=PQ_PEAK);
+            ui.add(peak.logarithmic(true).text("peak, cd/m²"))
+                .on_hover_text("peak luminance of the screen; white paper has 203 cd/m²");
+        }
+    }
     exposure(ui, &mut settings.ev100, &mut settings.min_ev100);
     ui.horizontal(|ui| {
         for (text, action) in [

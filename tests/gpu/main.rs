@@ -31,6 +31,7 @@ mod rays;
 mod reflections;
 mod shadow;
 mod sky;
+mod specular;
 mod ssao;
 mod stars;
 mod steady_frame;

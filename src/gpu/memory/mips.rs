@@ -1,4 +1,4 @@
-//! Mip generation by repeated halving.
+//! Mip levels: by repeated halving, or copied from images of their own.
 
 use ash::vk;
 
@@ -32,6 +32,53 @@ impl Recorder {
         self.end_timing(&mark);
         self.unlabel();
         self.end_work(&mark, u64::from(image.levels() - 1), || mip_traffic(image));
+        self.isolate(&mark);
+    }
+
+    /// Copies an image of one level to a level of another with as many layers. The other levels are kept.
+    pub fn copy_level(&mut self, name: &'static str, from: &Image, to: &Image, level: u32) {
+        self.label(name);
+        let mark = self.begin_timing(name);
+        let accesses = [
+            (from, ImageAccess::CopySource),
+            (to, ImageAccess::CopyTarget),
+        ];
+        self.transition(accesses.into_iter());
+        let layers = |mip_level| vk::ImageSubresourceLayers {
+            aspect_mask: from.aspect(),
+            mip_level,
+            base_array_layer: 0,
+            layer_count: from.layers(),
+        };
+        let [width, height] = from.size();
+        let region = [vk::ImageCopy::default()
+            .src_subresource(layers(0))
+            .dst_subresource(layers(level))
+            .extent(vk::Extent3D {
+                width,
+                height,
+                depth: 1,
+            })];
+        // SAFETY: `transition` brought both images to these layouts.
+        unsafe {
+            self.context.raw().cmd_copy_image(
+                self.command,
+                from.raw(),
+                vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+                to.raw(),
+                vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+                &region,
+            );
+        }
+        self.end_timing(&mark);
+        self.unlabel();
+        let bytes = texels(from) * texel_bytes(from.format());
+        let traffic = Traffic {
+            bytes_read: bytes,
+            bytes_written: bytes,
+            ..Traffic::new(texels(from))
+        };
+        self.end_work(&mark, 1, || traffic);
         self.isolate(&mark);
     }
 

@@ -5,3 +5,4 @@ pub mod atmosphere;
 pub mod cube;
 pub mod irradiance;
 pub mod route;
+pub mod specular;

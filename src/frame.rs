@@ -20,6 +20,7 @@ use crate::passes::bounces::cells::{Cells, Surroundings, Work};
 use crate::passes::bounces::tree::Tree;
 use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{Light, Show};
+use crate::passes::light::lobes::{self, Lobes, RoughSky};
 use crate::passes::light::panes::{BeforePicture, Panes};
 use crate::passes::light::probe::{Probe, Reading};
 use crate::passes::occlusion::ssao::Ssao;
@@ -65,6 +66,10 @@ pub struct Frame {
     gbuffer: Gbuffer,
     /// Panes of glass, if the scene has any.
     panes: Option<Panes>,
+    /// The sky of materials that reflect by GGX, if the scene has any.
+    rough: Option<RoughSky>,
+    /// Light in their lobes, if it is shown.
+    lobes: Option<Lobes>,
     ambient: AmbientPasses,
     /// Shadow map and lighting of previews and of frames that the dome does not light.
     preview: Lit,
@@ -129,6 +134,11 @@ impl Frame {
                 ambient: AmbientPasses::new(device, &settings)?,
                 gbuffer: settings.gbuffer(device, &geometry)?,
                 panes: settings.panes(device, &tree)?,
+                rough: geometry
+                    .is_rough()
+                    .then(|| RoughSky::new(recorder))
+                    .transpose()?,
+                lobes: settings.lobes(device, &tree)?,
                 average: Average::new(device, &geometry, &tree, &settings)?,
                 cells: settings.cells(device, &tree, &geometry)?,
                 tree,
@@ -180,7 +190,7 @@ impl Frame {
         let (old, device, geometry) = (&self.settings, &self.context, &self.geometry);
         let is_resized = new.size != old.size;
         let is_lit = is_resized || new.lighting != old.lighting;
-        let is_new_gbuffer = is_resized || new.converges() != old.converges();
+        let is_new_gbuffer = is_resized || new.has_faces() != old.has_faces();
         let is_new_shadow = new.shadow_map() != old.shadow_map();
         let is_new_average = Average::is_changed(old, &new);
         let sky_edge = new.sky_edge;
@@ -190,6 +200,8 @@ impl Frame {
         let panes = remade(is_resized || is_other_mirror, || {
             new.panes(device, &self.tree)
         })?;
+        let is_other_lobes = is_resized || new.lobes_need() != old.lobes_need();
+        let lobes = remade(is_other_lobes, || new.lobes(device, &self.tree))?;
         let is_new_ambient = is_resized || AmbientNeed::of(&new) != AmbientNeed::of(old);
         let ambient = remade(is_new_ambient, || AmbientPasses::new(device, &new))?;
         let shadow = remade(is_new_shadow, || new.shadow(device, geometry))?;
@@ -211,6 +223,7 @@ impl Frame {
         replace(&mut self.air, air);
         replace(&mut self.gbuffer, gbuffer);
         replace(&mut self.panes, panes);
+        replace(&mut self.lobes, lobes);
         replace(&mut self.ambient, ambient);
         replace(&mut self.preview.shadow, shadow);
         replace(&mut self.preview.lighting, lighting);
@@ -257,7 +270,8 @@ impl Frame {
         let surfaces = self.gbuffer.record(rec, geometry, &view);
         let is_dome = resolve.is_dome();
         let cells = self.cells.as_mut();
-        if let Some(cells) = cells.filter(|_| resolve.gathers() || !is_dome) {
+        let are_seen = resolve.gathers() || !is_dome || self.lobes.is_some();
+        if let Some(cells) = cells.filter(|_| are_seen) {
             let around = Surroundings {
                 tree: &self.tree,
                 view: &view,
@@ -282,6 +296,21 @@ impl Frame {
             };
             self.ambient.record(rec, &inputs)
         };
+        let of_lobes = self.lobes.as_mut().zip(self.rough.as_mut());
+        let lobes = of_lobes.and_then(|(lobes, rough)| {
+            let inputs = lobes::Inputs {
+                surfaces,
+                materials: geometry.materials(),
+                tree: &self.tree,
+                cells: self.cells.as_ref(),
+                sky: &sky,
+                sky_irradiance,
+                ambient,
+                daylight,
+                view: &view,
+            };
+            lobes.record(rec, rough, &inputs, index.filter(|_| is_dome))
+        });
         let light = Light {
             daylight,
             sun_direction: sample.sun_direction,
@@ -292,6 +321,8 @@ impl Frame {
             air: air.unwrap_or_default(),
             panes: BeforePicture(self.panes.as_ref()),
             sun_glass,
+            rough: self.rough.as_ref(),
+            lobes,
         };
         if let Some(panes) = &self.panes {
             let (scene, around) = ((geometry, &self.tree), light.surroundings());

@@ -19,7 +19,7 @@ use crate::daylight::sunlight::LIMB_DARKENING;
 use crate::error::Result;
 use crate::frame::{FrameSettings, Sampling};
 use crate::gpu::{Context, ContextOptions};
-use crate::options::{Fresnel, Mirrors, OptionValues, Options, Penumbra, Preset};
+use crate::options::{Fresnel, Mirrors, OptionValues, Options, Penumbra, Phong, Preset};
 use crate::passes::dome::gather::DomeSettings;
 use crate::passes::light::lighting::{Precision, Show};
 use crate::passes::occlusion::ssao::SsaoSettings;
@@ -113,6 +113,9 @@ impl Job {
         let daylight = Daylight::new(&conditions(&settings, &sun));
         let mut scene = std::mem::take(&mut loaded.scene);
         scene.scale_emission(settings.emission_scale as f32);
+        if settings.phong != Phong::ByFormat {
+            scene.use_phong();
+        }
         let camera = settings.camera(&scene.bounds, scene.origin);
         let name = path.map_or("bundled".to_owned(), |p| p.display().to_string());
         Ok(Self {

@@ -51,6 +51,7 @@ pub mod glass;
 pub mod grey_sky;
 pub mod hosek;
 pub mod irradiance;
+pub mod microfacet;
 pub mod moment;
 pub mod moon;
 pub mod perez;

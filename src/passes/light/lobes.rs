@@ -1,0 +1,224 @@
+//! Light of the sky and of surfaces in the lobes of materials that reflect by GGX ([`crate::daylight::microfacet`]).
+//!
+//! Converging frames trace a ray in a direction of the lobe. Single frames take the split sum of a prefiltered sky, with the sky's
+//! visibility and the bounces of the diffuse light, and the ray of a mirror where the surface is smooth.
+
+use std::sync::Arc;
+
+use glam::IVec2;
+
+use crate::daylight::microfacet::{LEAST_ALPHA, TABLE, table};
+use crate::gpu::{
+    Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, Recorder, Result, Sampler,
+    shaders, upload_texture,
+};
+use crate::gpu_struct;
+
+use crate::daylight::sky::Daylight;
+use crate::passes::bounces::cells::{Bounces, Cells};
+use crate::passes::bounces::tree::Tree;
+use crate::passes::fullscreen_at;
+use crate::passes::light::lighting::{Ambient, LightingSettings};
+use crate::passes::sky::cube::SkyImages;
+use crate::passes::sky::specular::SpecularCube;
+use crate::passes::surfaces::gbuffer::Surfaces;
+use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
+use crate::passes::view::View;
+
+gpu_struct! {
+    /// Position of the picture, number of the frame, seed.
+    pub struct Push: push of LOBES_FRAG, LOBES_FRAG_CELLS {
+        origin: IVec2,
+        index: u32,
+        seed: u32,
+    }
+}
+
+/// Samples of a texel of the prefiltered sky.
+const SAMPLES: u32 = 64;
+
+const FORMAT: Format = Format::R32G32B32A32_SFLOAT;
+
+/// What all lobes of a scene share: their albedo, and the prefiltered sky.
+pub struct RoughSky {
+    albedo: Image,
+    cube: SpecularCube,
+}
+
+impl RoughSky {
+    /// Uploads the albedo; `recorder` must be recording.
+    ///
+    /// # Errors
+    /// Fails when the device is out of memory.
+    pub fn new(recorder: &mut Recorder) -> Result<Self> {
+        let desc = ImageDesc::flat("albedo of lobes", Format::R32G32B32A32_SFLOAT, TABLE);
+        let texels: Vec<[f32; 4]> = table().into_iter().map(|[a, b]| [a, b, 0.0, 0.0]).collect();
+        Ok(Self {
+            albedo: upload_texture(recorder, &desc, &[bytemuck::cast_slice(&texels)])?,
+            cube: SpecularCube::new(recorder, SAMPLES, None)?,
+        })
+    }
+
+    /// Samples the albedo in a pass with `include/microfacet.glsl`. Without lobes the pipeline reads none, but the binding must be written:
+    /// `other` takes its place.
+    pub fn sampled_by<'r>(this: Option<&'r Self>, pass: Pass<'r>, other: &'r Image) -> Pass<'r> {
+        let albedo = this.map_or(other, |sky| &sky.albedo);
+        pass.sample("lobe_albedo", albedo, Sampler::Linear)
+    }
+}
+
+/// Constants of pipelines with `include/microfacet.glsl`.
+pub(in crate::passes) fn constants(lighting: &LightingSettings) -> [(&'static str, u32); 3] {
+    [
+        ("ROUGH", lighting.rough.into()),
+        ("LOBE_SCALE", lighting.specular_scale.to_bits()),
+        ("LEAST_ALPHA", (LEAST_ALPHA as f32).to_bits()),
+    ]
+}
+
+/// What the pass reads.
+pub struct Inputs<'a> {
+    /// The surfaces in view.
+    pub surfaces: &'a Surfaces,
+    /// The table of materials.
+    pub materials: &'a Image,
+    /// The scene's hierarchy.
+    pub tree: &'a Tree,
+    /// Light on surfaces that rays meet.
+    pub cells: Option<&'a Cells>,
+    /// The sky.
+    pub sky: &'a SkyImages<'a>,
+    /// Irradiance E of sky and ground, klx.
+    pub sky_irradiance: &'a Image,
+    /// Light of the sky and of the bounces in single frames, or their occlusion, as the lighting reads it.
+    pub ambient: &'a Image,
+    /// Sun and sky.
+    pub daylight: &'a Daylight,
+    /// The view.
+    pub view: &'a View,
+}
+
+/// The pass, for single frames and for converging ones, and its image.
+pub struct Lobes {
+    single: Option<Variant>,
+    converging: Option<Variant>,
+    seed: u32,
+    /// Alternating: of this frame and of the one before.
+    light: [Image; 2],
+}
+
+/// A pipeline, and whether it looks up the cells.
+struct Variant {
+    pipeline: Pipeline,
+    has_cells: bool,
+}
+
+/// What the pass depends on besides the size of the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LobesNeed {
+    /// Settings of the lighting.
+    pub lighting: LightingSettings,
+    /// Bounces of the surfaces that rays meet.
+    pub bounces: Bounces,
+    /// Seed of the random numbers.
+    pub seed: u32,
+    /// Whether there are single frames.
+    pub is_single: bool,
+    /// Whether there are converging frames.
+    pub converges: bool,
+}
+
+impl Lobes {
+    /// Creates the pass for pictures of `size` pixels.
+    ///
+    /// # Errors
+    /// Fails when the device cannot create the resources.
+    pub fn new(
+        context: &Arc<Context>,
+        tree: &Tree,
+        size: [u32; 2],
+        need: &LobesNeed,
+    ) -> Result<Self> {
+        let lighting = &need.lighting;
+        let variant = |name, has_cells: bool, converging: bool| {
+            let shader = if has_cells {
+                &shaders::LOBES_FRAG_CELLS
+            } else {
+                &shaders::LOBES_FRAG
+            };
+            let mut all = tree.constants().to_vec();
+            all.extend(constants(lighting));
+            all.extend([
+                ("CONVERGING", converging.into()),
+                ("ALBEDO_IMAGE", lighting.has_albedo.into()),
+                ("LIT", need.bounces.is_any().into()),
+                ("OCCLUSION_DOWNSCALE", lighting.occlusion_downscale),
+                ("MATERIAL_COLUMNS", MATERIAL_COLUMNS),
+            ]);
+            let depth = Depth::Surface(Format::D32_SFLOAT);
+            Ok(Variant {
+                pipeline: fullscreen_at(context, name, shader, &[FORMAT], depth, &all)?,
+                has_cells,
+            })
+        };
+        let image = |name| Image::new(context, &ImageDesc::flat(name, FORMAT, size));
+        let single = || variant("lobes", lighting.ambient == Ambient::Cells, false);
+        let converging = || variant("lobes: rays", need.bounces.is_any(), true);
+        Ok(Self {
+            single: need.is_single.then(single).transpose()?,
+            converging: need.converges.then(converging).transpose()?,
+            seed: need.seed,
+            light: [image("light in lobes 0")?, image("light in lobes 1")?],
+        })
+    }
+
+    /// Draws the light in the lobes of the surfaces in view, kcd/m². `converging`: number of the frame, if it is one of those whose mean
+    /// converges; 0 starts a new mean. `None` for frames of a kind that the settings exclude.
+    pub fn record(
+        &mut self,
+        recorder: &mut Recorder,
+        rough: &mut RoughSky,
+        inputs: &Inputs<'_>,
+        converging: Option<u32>,
+    ) -> Option<&Image> {
+        let variant = match converging {
+            Some(_) => &self.converging,
+            None => &self.single,
+        };
+        let Variant {
+            pipeline,
+            has_cells,
+        } = variant.as_ref()?;
+        self.light.swap(0, 1);
+        let [new, old] = &self.light;
+        let filtered = rough.cube.record(recorder, inputs.sky);
+        let pass = inputs.tree.bound_to(recorder.pass("lobes", pipeline));
+        let pass = inputs.surfaces.sampled_by(pass, inputs.materials);
+        let mut pass = pass
+            .sample("lobe_albedo", &rough.albedo, Sampler::Linear)
+            .sample("sky_radiance", inputs.sky.radiance, Sampler::Linear)
+            .sample("sky_prefiltered", filtered, Sampler::Linear)
+            .sample("sky_irradiance", inputs.sky_irradiance, Sampler::Linear)
+            .sample("ambient", inputs.ambient, Sampler::Nearest)
+            .sample("previous", old, Sampler::Nearest)
+            .uniform("view", &inputs.view.block());
+        if let Some(cells) = inputs.cells.filter(|_| *has_cells) {
+            pass = cells
+                .bound_to(pass)
+                .uniform("scene", &cells.block(inputs.view, inputs.daylight));
+        }
+        let origin = inputs
+            .view
+            .window
+            .map_or(IVec2::ZERO, |w| w.origin.as_ivec2());
+        pass.push(&Push {
+            origin,
+            index: converging.unwrap_or(0),
+            seed: self.seed,
+        })
+        .color(new, Load::Clear([0.0; 4]))
+        .depth_test(&inputs.surfaces.depth)
+        .draw();
+        Some(new)
+    }
+}

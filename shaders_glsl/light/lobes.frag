@@ -59,8 +59,10 @@ layout(push_constant, scalar) uniform Push {
 const uint PERIOD = 8u;
 // Pixels of a square that takes its turn: neighbours are computed together.
 const int SQUARE = 8;
-// Least reflectance of lobes that trace a ray in every frame.
+// Least reflectance of lobes that trace rays in every frame; how many they trace, and the roughness from which it is more than one.
 const float STRONG = 0.15;
+const uint RAYS = 4u;
+const float WIDE = 0.2;
 // Roughnesses between which single frames fade from the mirror direction to the mean of the lobe.
 const float SHARP = 0.3, BLURRED = 0.6;
 
@@ -94,7 +96,7 @@ vec3 seen(Point p, vec3 l, vec3 sky, uint state) {
 #endif
 }
 
-/// The light of one direction of the lobe.
+/// The light of a direction of the lobe.
 vec3 of_direction(Point p, Microfacet m, uint number, uint seed) {
     mat3 frame = frame_from_normal(p.n);
     vec3 v = -p.toward * frame;
@@ -104,7 +106,7 @@ vec3 of_direction(Point p, Microfacet m, uint number, uint seed) {
     vec3 l = 2.0 * along * h - v;
     if (l.z <= 0.0) return vec3(0.0);
     vec3 toward = above(p, frame * l);
-    return lobe_weight(m, v.z, l.z, along) * seen(p, toward, textureLod(sky_radiance, toward, 0.0).rgb, tea(seed, push.index));
+    return lobe_weight(m, v.z, l.z, along) * seen(p, toward, textureLod(sky_radiance, toward, 0.0).rgb, tea(seed, number));
 }
 
 /// The sky about a direction, prefiltered for the roughness.
@@ -126,10 +128,13 @@ vec3 of_lobe(Point p, Microfacet m, ivec2 pixel, uint seed) {
     Ambient here = half_size_at(ambient, pixel, ivec2(0), p.distance, p.n);
     float visible = clamp(luminance(here.sky) / max(luminance(open), 1e-9), 0.0, 1.0);
     vec3 blurred = visible * sky + here.bounce / PI;
-#else
-    vec3 blurred = ambient_occlusion(ambient, OCCLUSION_DOWNSCALE, pixel + push.origin, p.distance) * sky;
-#endif
     float share = 1.0 - smoothstep(SHARP, BLURRED, m.roughness);
+#else
+    vec3 blurred = vec3(0.0);
+    // Occlusion in screen space knows what is near: what hides the sky from a room, only the ray meets.
+    sky *= ambient_occlusion(ambient, OCCLUSION_DOWNSCALE, pixel + push.origin, p.distance);
+    float share = 1.0;
+#endif
     if (share > 0.0) blurred = mix(blurred, seen(p, above(p, r), sky, seed), share);
     return m.reflectance * blurred;
 }
@@ -143,11 +148,13 @@ bool is_turn(ivec2 whole) {
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec2 size = vec2(textureSize(depth, 0)), uv = gl_FragCoord.xy / size;
+    float d = textureLod(depth, uv, 0.0).r;
     uvec3 own = textureLod(normal_material, uv, 0.0).xyz;
     light = vec4(0.0);
-    if (!is_rough(material_specular(materials, own.y))) return;
+    // Software devices compute pixels that fail the depth test beside those that pass: a ray from nowhere would meet every node.
+    if (d == 0.0 || !is_rough(material_specular(materials, own.y))) return;
     vec3 ray = view_ray(uv, view.ray_scale, view.ray_offset);
-    float distance = view.near / textureLod(depth, uv, 0.0).r;
+    float distance = view.near / d;
     vec3 from_eye = view.world_from_view * (ray * distance);
     vec3 face = view.world_from_view * face_normal(own.z, ray.xy, 0.5 * size / view.ray_scale);
     Point p = Point(view.eye + from_eye, normalize(from_eye), normal_unpack(own.x), face, distance);
@@ -165,5 +172,8 @@ void main() {
         light = textureLod(previous, uv, 0.0);
         if (light.a == mark) return;
     }
-    light = vec4(of_direction(p, m, is_strong ? push.index : (push.index + PERIOD - 1u) / PERIOD, seed), mark);
+    uint count = is_strong && m.roughness > WIDE ? RAYS : 1u;
+    uint number = is_strong ? count * push.index : (push.index + PERIOD - 1u) / PERIOD;
+    light = vec4(0.0, 0.0, 0.0, mark);
+    for (uint k = 0u; k < count; ++k) light.rgb += of_direction(p, m, number + k, seed) / float(count);
 }

@@ -23,6 +23,7 @@ mod glass;
 mod golden;
 mod irradiance;
 mod lighting;
+mod lobes;
 mod moon;
 mod moving_light;
 mod penumbra;

@@ -59,12 +59,16 @@ layout(push_constant, scalar) uniform Push {
 const uint PERIOD = 8u;
 // Pixels of a square that takes its turn: neighbours are computed together.
 const int SQUARE = 8;
-// Least reflectance of lobes that trace rays in every frame; how many they trace, and the roughness from which it is more than one.
-const float STRONG = 0.15;
+// Least reflectance of lobes that trace rays in every frame: of rough ones, and of those below a roughness, whose light has edges.
+const float STRONG = 0.15, CLEAR = 0.05;
+const float CLEAR_ROUGHNESS = 0.4;
+// Rays that such a lobe traces in a frame from a roughness on.
 const uint RAYS = 4u;
-const float WIDE = 0.2;
-// Roughnesses between which single frames fade from the mirror direction to the mean of the lobe.
-const float SHARP = 0.3, BLURRED = 0.6;
+const float SOFT = 0.15;
+// Rays that have the same weight as the mean from the cells.
+const float EVEN = 12.0;
+// Roughnesses between which lobes become wide: single frames fade from the mirror direction to the mean of the lobe.
+const float SHARP = 0.25, BLURRED = 0.6;
 
 struct Point {
     vec3 world;
@@ -117,26 +121,59 @@ vec3 filtered_sky(vec3 r, float roughness) {
     return textureLod(sky_prefiltered, r, level).rgb;
 }
 
+/// The open sky in the lobe.
+vec3 open_sky(Point p, Microfacet m) {
+    // Lagarde and de Rousiers 2014, "Moving Frostbite to PBR": the middle of a rough lobe is nearer the normal than the mirror direction.
+    float bent = (1.0 - m.alpha) * (sqrt(1.0 - m.alpha) + m.alpha);
+    return filtered_sky(normalize(mix(p.n, reflect(p.toward, p.n), bent)), m.roughness);
+}
+
+/// How far a lobe is so wide that the light about the normal stands for that about the mirror direction, 0..1.
+float wideness(Microfacet m) {
+    return smoothstep(SHARP, BLURRED, m.roughness);
+}
+
+#ifdef CELLS
+/// Mean radiance in a wide lobe, of the sky as far as it is visible and of the bounces, by the irradiances of both, klx.
+vec3 blurred(Point p, vec3 open, vec3 sky, vec3 bounce) {
+    float whole = luminance(textureLod(sky_irradiance, p.n, 0.0).rgb);
+    return open * clamp(luminance(sky) / max(whole, 1e-9), 0.0, 1.0) + bounce / PI;
+}
+#endif
+
 /// The light of the whole lobe, by the split sum.
 vec3 of_lobe(Point p, Microfacet m, ivec2 pixel, uint seed) {
-    vec3 r = reflect(p.toward, p.n);
-    // Lagarde and de Rousiers 2014, "Moving Frostbite to PBR": the middle of a rough lobe is nearer the normal.
-    float bent = (1.0 - m.alpha) * (sqrt(1.0 - m.alpha) + m.alpha);
-    vec3 sky = filtered_sky(normalize(mix(p.n, r, bent)), m.roughness);
-    vec3 open = textureLod(sky_irradiance, p.n, 0.0).rgb;
+    vec3 open = open_sky(p, m), mean = vec3(0.0);
 #ifdef CELLS
     Ambient here = half_size_at(ambient, pixel, ivec2(0), p.distance, p.n);
-    float visible = clamp(luminance(here.sky) / max(luminance(open), 1e-9), 0.0, 1.0);
-    vec3 blurred = visible * sky + here.bounce / PI;
-    float share = 1.0 - smoothstep(SHARP, BLURRED, m.roughness);
+    mean = blurred(p, open, here.sky, here.bounce);
+    float share = 1.0 - wideness(m);
 #else
-    vec3 blurred = vec3(0.0);
     // Occlusion in screen space knows what is near: what hides the sky from a room, only the ray meets.
-    sky *= ambient_occlusion(ambient, OCCLUSION_DOWNSCALE, pixel + push.origin, p.distance);
+    open *= ambient_occlusion(ambient, OCCLUSION_DOWNSCALE, pixel + push.origin, p.distance);
     float share = 1.0;
 #endif
-    if (share > 0.0) blurred = mix(blurred, seen(p, above(p, r), sky, seed), share);
-    return m.reflectance * blurred;
+    if (share > 0.0) mean = mix(mean, seen(p, above(p, reflect(p.toward, p.n)), open, seed), share);
+    return m.reflectance * mean;
+}
+
+/// The light of rays in the lobe. The light of wide lobes starts with the mean from the cells, which is smooth, and ends with that of the
+/// rays, which is exact: over n frames the share of `count` rays a frame is n / (n + EVEN / count).
+vec3 of_rays(Point p, Microfacet m, uint number, uint count, float frames, uint seed) {
+    float share = 1.0;
+    vec3 light = vec3(0.0);
+#ifdef CELLS
+    float n = float(push.index), even = EVEN * frames / float(count);
+    Cached here = Cached(vec3(0.0), vec3(0.0), false);
+    if (m.roughness > SHARP) here = interpolated(p.world, p.n);
+    if (here.is_found) {
+        share = mix(1.0, n * (n + 2.0 * even) / ((n + even) * (n + even)), wideness(m));
+        light = (1.0 - share) * m.reflectance * blurred(p, open_sky(p, m), here.sky, here.bounce);
+    }
+    if (share == 0.0) return light;
+#endif
+    for (uint k = 0u; k < count; ++k) light += share / float(count) * of_direction(p, m, number + k, seed);
+    return light;
 }
 
 /// Whether the square of a pixel traces rays in this frame.
@@ -167,13 +204,12 @@ void main() {
         light = vec4(of_lobe(p, m, pixel, seed), mark);
         return;
     }
-    bool is_strong = luminance(m.reflectance) >= STRONG;
+    bool is_strong = luminance(m.reflectance) >= (m.roughness < CLEAR_ROUGHNESS ? CLEAR : STRONG);
     if (!is_strong && !is_turn(whole)) {
         light = textureLod(previous, uv, 0.0);
         if (light.a == mark) return;
     }
-    uint count = is_strong && m.roughness > WIDE ? RAYS : 1u;
+    uint count = is_strong && m.roughness > SOFT ? RAYS : 1u;
     uint number = is_strong ? count * push.index : (push.index + PERIOD - 1u) / PERIOD;
-    light = vec4(0.0, 0.0, 0.0, mark);
-    for (uint k = 0u; k < count; ++k) light.rgb += of_direction(p, m, number + k, seed) / float(count);
+    light = vec4(of_rays(p, m, number, count, is_strong ? 1.0 : float(PERIOD), seed), mark);
 }

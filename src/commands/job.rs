@@ -337,6 +337,38 @@ mod tests {
     use crate::options::tests::{each_set, exposed_scene};
 
     #[test]
+    fn phong_replaces_microfacets_if_it_is_asked_for() {
+        let kept = |options: &[(&str, &str)]| {
+            let mut loaded = exposed_scene();
+            loaded.scene.materials = vec![crate::scene::Material {
+                microfacet: Some(crate::scene::Microfacet {
+                    base: [0.5; 3],
+                    f0: [0.04; 3],
+                    f90: 1.0,
+                    metallic: 1.0,
+                    roughness: 0.5,
+                    texture: None,
+                }),
+                ..Default::default()
+            }];
+            let pairs = options
+                .iter()
+                .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()));
+            let user = OptionValues::from(pairs.collect::<Vec<_>>());
+            let job = Job::of(None, loaded, &user).expect("a job");
+            job.scene.materials[0].microfacet.is_some()
+        };
+        assert!(kept(&[]) && kept(&[("phong", "by-format")]));
+        for options in [
+            ("phong", "lecture"),
+            ("phong", "normalized"),
+            ("preset", "lecture"),
+        ] {
+            assert!(!kept(&[options]), "{options:?}");
+        }
+    }
+
+    #[test]
     fn metadata_give_every_option_again() {
         let all = each_set(&exposed_scene());
         let mut seen = 0;

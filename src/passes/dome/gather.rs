@@ -24,8 +24,8 @@ use crate::passes::bounces::cells::Bounces;
 use crate::passes::bounces::gather::HalfSize;
 use crate::passes::dome::specular::SpecularSky;
 use crate::passes::light::lighting::{LightingSettings, Show};
-use crate::passes::light::lobes::{self, RoughSky};
 use crate::passes::light::panes::BeforePicture;
+use crate::passes::light::rough::RoughSky;
 use crate::passes::sky::air::AirBefore;
 use crate::passes::sun_shadow::fit::ShadowView;
 use crate::passes::sun_shadow::map::{Casters, Tile};
@@ -424,7 +424,7 @@ fn gather_pipeline(
     } else {
         (&shaders::DOME_GATHER_FRAG, 2)
     };
-    let mut constants = lobes::constants(&lighting).to_vec();
+    let mut constants = lighting.lobe_constants().to_vec();
     constants.extend([
         ("SHOW_IRRADIANCE", (show == Show::Irradiance).into()),
         ("SHOW_OCCLUSION", (show == Show::Occlusion).into()),

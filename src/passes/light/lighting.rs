@@ -19,8 +19,8 @@ use crate::gpu_struct;
 
 use crate::passes::dome::gather::BIAS_TEXELS;
 use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
-use crate::passes::light::lobes::{self, RoughSky};
 use crate::passes::light::panes::{self, BeforePicture};
+use crate::passes::light::rough::{self, RoughSky};
 use crate::passes::sky::air::AirBefore;
 pub use crate::passes::sun_shadow::cascades::Shadows;
 use crate::passes::sun_shadow::cascades::{BLEND, MAX_RADIUS, NORMAL_OFFSET_TEXELS, SunViews};
@@ -236,6 +236,11 @@ impl LightingSettings {
     pub fn has_lobes(&self) -> bool {
         self.rough && self.specular_scale > 0.0 && self.show.is_mirrored()
     }
+
+    /// Constants of pipelines with `include/microfacet.glsl`.
+    pub(in crate::passes) fn lobe_constants(&self) -> [(&'static str, u32); 3] {
+        rough::constants(self.rough, self.specular_scale)
+    }
 }
 
 /// Light sources at a moment: parameters and images.
@@ -344,7 +349,7 @@ impl Lighting {
         constants.push(("MAX_RADIUS", MAX_RADIUS.to_bits()));
         constants.push(("MATERIAL_COLUMNS", MATERIAL_COLUMNS));
         constants.push(("LOBES", settings.has_lobes().into()));
-        constants.extend(lobes::constants(&settings));
+        constants.extend(settings.lobe_constants());
         let pipeline = fullscreen_at(
             context,
             "lighting",

@@ -7,10 +7,8 @@ use std::sync::Arc;
 
 use glam::IVec2;
 
-use crate::daylight::microfacet::{LEAST_ALPHA, TABLE, table};
 use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pass, Pipeline, Recorder, Result, Sampler,
-    shaders, upload_texture,
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
 };
 use crate::gpu_struct;
 
@@ -19,8 +17,8 @@ use crate::passes::bounces::cells::{Bounces, Cells};
 use crate::passes::bounces::tree::Tree;
 use crate::passes::fullscreen_at;
 use crate::passes::light::lighting::{Ambient, LightingSettings};
+use crate::passes::light::rough::RoughSky;
 use crate::passes::sky::cube::SkyImages;
-use crate::passes::sky::specular::SpecularCube;
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
@@ -34,47 +32,7 @@ gpu_struct! {
     }
 }
 
-/// Samples of a texel of the prefiltered sky.
-const SAMPLES: u32 = 64;
-
 const FORMAT: Format = Format::R32G32B32A32_SFLOAT;
-
-/// What all lobes of a scene share: their albedo, and the prefiltered sky.
-pub struct RoughSky {
-    albedo: Image,
-    cube: SpecularCube,
-}
-
-impl RoughSky {
-    /// Uploads the albedo; `recorder` must be recording.
-    ///
-    /// # Errors
-    /// Fails when the device is out of memory.
-    pub fn new(recorder: &mut Recorder) -> Result<Self> {
-        let desc = ImageDesc::flat("albedo of lobes", Format::R32G32B32A32_SFLOAT, TABLE);
-        let texels: Vec<[f32; 4]> = table().into_iter().map(|[a, b]| [a, b, 0.0, 0.0]).collect();
-        Ok(Self {
-            albedo: upload_texture(recorder, &desc, &[bytemuck::cast_slice(&texels)])?,
-            cube: SpecularCube::new(recorder, SAMPLES, None)?,
-        })
-    }
-
-    /// Samples the albedo in a pass with `include/microfacet.glsl`. Without lobes the pipeline reads none, but the binding must be written:
-    /// `other` takes its place.
-    pub fn sampled_by<'r>(this: Option<&'r Self>, pass: Pass<'r>, other: &'r Image) -> Pass<'r> {
-        let albedo = this.map_or(other, |sky| &sky.albedo);
-        pass.sample("lobe_albedo", albedo, Sampler::Linear)
-    }
-}
-
-/// Constants of pipelines with `include/microfacet.glsl`.
-pub(in crate::passes) fn constants(lighting: &LightingSettings) -> [(&'static str, u32); 3] {
-    [
-        ("ROUGH", lighting.rough.into()),
-        ("LOBE_SCALE", lighting.specular_scale.to_bits()),
-        ("LEAST_ALPHA", (LEAST_ALPHA as f32).to_bits()),
-    ]
-}
 
 /// What the pass reads.
 pub struct Inputs<'a> {
@@ -147,7 +105,7 @@ impl Lobes {
                 &shaders::LOBES_FRAG
             };
             let mut all = tree.constants().to_vec();
-            all.extend(constants(lighting));
+            all.extend(lighting.lobe_constants());
             all.extend([
                 ("CONVERGING", converging.into()),
                 ("ALBEDO_IMAGE", lighting.has_albedo.into()),
@@ -191,11 +149,11 @@ impl Lobes {
         } = variant.as_ref()?;
         self.light.swap(0, 1);
         let [new, old] = &self.light;
-        let filtered = rough.cube.record(recorder, inputs.sky);
+        let (albedo, filtered) = rough.record(recorder, inputs.sky);
         let pass = inputs.tree.bound_to(recorder.pass("lobes", pipeline));
         let pass = inputs.surfaces.sampled_by(pass, inputs.materials);
         let mut pass = pass
-            .sample("lobe_albedo", &rough.albedo, Sampler::Linear)
+            .sample("lobe_albedo", albedo, Sampler::Linear)
             .sample("sky_radiance", inputs.sky.radiance, Sampler::Linear)
             .sample("sky_prefiltered", filtered, Sampler::Linear)
             .sample("sky_irradiance", inputs.sky_irradiance, Sampler::Linear)

@@ -5,4 +5,5 @@ pub mod lighting;
 pub mod lobes;
 pub mod panes;
 pub mod probe;
+pub mod rough;
 pub mod stars;

@@ -157,23 +157,30 @@ vec3 of_lobe(Point p, Microfacet m, ivec2 pixel, uint seed) {
     return m.reflectance * mean;
 }
 
-/// The light of rays in the lobe. The light of wide lobes starts with the mean from the cells, which is smooth, and ends with that of the
-/// rays, which is exact: over n frames the share of `count` rays a frame is n / (n + EVEN / count).
-vec3 of_rays(Point p, Microfacet m, uint number, uint count, float frames, uint seed) {
+/// The light of rays in a strong lobe.
+vec3 of_rays(Point p, Microfacet m, uint seed) {
+    uint count = m.roughness > SOFT ? RAYS : 1u;
+    vec3 sum = vec3(0.0);
+    for (uint k = 0u; k < count; ++k) sum += of_direction(p, m, count * push.index + k, seed);
+    return sum / float(count);
+}
+
+/// The light of a ray in a weak lobe. That of a wide one starts with the mean from the cells, which is smooth, and ends with that of the
+/// rays, which is exact: over n rays their share is n / (n + EVEN).
+vec3 of_rare_rays(Point p, Microfacet m, uint seed) {
+    uint number = (push.index + PERIOD - 1u) / PERIOD;
     float share = 1.0;
     vec3 light = vec3(0.0);
 #ifdef CELLS
-    float n = float(push.index), even = EVEN * frames / float(count);
     Cached here = Cached(vec3(0.0), vec3(0.0), false);
     if (m.roughness > SHARP) here = interpolated(p.world, p.n);
     if (here.is_found) {
-        share = mix(1.0, n * (n + 2.0 * even) / ((n + even) * (n + even)), wideness(m));
+        float n = float(number);
+        share = mix(1.0, n * (n + 2.0 * EVEN) / ((n + EVEN) * (n + EVEN)), wideness(m));
         light = (1.0 - share) * m.reflectance * blurred(p, open_sky(p, m), here.sky, here.bounce);
     }
-    if (share == 0.0) return light;
 #endif
-    for (uint k = 0u; k < count; ++k) light += share / float(count) * of_direction(p, m, number + k, seed);
-    return light;
+    return share > 0.0 ? light + share * of_direction(p, m, number, seed) : light;
 }
 
 /// Whether the square of a pixel traces rays in this frame.
@@ -209,7 +216,5 @@ void main() {
         light = textureLod(previous, uv, 0.0);
         if (light.a == mark) return;
     }
-    uint count = is_strong && m.roughness > SOFT ? RAYS : 1u;
-    uint number = is_strong ? count * push.index : (push.index + PERIOD - 1u) / PERIOD;
-    light = vec4(of_rays(p, m, number, count, is_strong ? 1.0 : float(PERIOD), seed), mark);
+    light = vec4(is_strong ? of_rays(p, m, seed) : of_rare_rays(p, m, seed), mark);
 }

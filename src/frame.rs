@@ -20,7 +20,7 @@ use crate::passes::bounces::cells::{Cells, Surroundings, Work};
 use crate::passes::bounces::tree::Tree;
 use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{Light, Show};
-use crate::passes::light::lobes::{self, Lobes};
+use crate::passes::light::lobes::Lobes;
 use crate::passes::light::panes::{BeforePicture, Panes};
 use crate::passes::light::probe::{Probe, Reading};
 use crate::passes::light::rough::RoughSky;
@@ -42,11 +42,12 @@ use self::sample::Sample;
 /// Frames of an average after which a round of the cells follows.
 const FRAMES_OF_ROUND: u32 = 4;
 
-/// The work for the cells in frame number `index` of an average. `is_new`: it does not follow a preview. The same seed gives the
-/// same picture, so such an average starts with new cells.
-fn cell_work(index: Option<u32>, is_new: bool, refine: u32) -> Work {
+/// The work for the cells in frame number `index` of an average, after the frame `before`. The same seed gives the same picture, so an
+/// average that does not follow a preview starts with new cells.
+fn cell_work(index: Option<u32>, before: Option<Drawn>, refine: u32) -> Work {
+    let follows_average = before.is_none_or(|drawn| drawn.index.is_some());
     match index {
-        _ if is_new => Work::Anew,
+        Some(0) if follows_average => Work::Anew,
         Some(index) => Work::Rounds(u32::from(index.is_multiple_of(FRAMES_OF_ROUND))),
         None => Work::Paths(refine),
     }
@@ -264,55 +265,31 @@ impl Frame {
         // None of these passes reads another's images, so without a barrier in between they may overlap.
         rec.prepare(self.gbuffer.surfaces().images().chain(shadow.target()));
         let sky = self.sky_cube.record(rec, daylight);
+        if let Some(rough) = &mut self.rough {
+            rough.record(rec, &sky);
+        }
         let air = self.air.as_mut();
         let air = air.map(|air| air.record(rec, daylight, view.camera.eye.y));
         let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
         let (sun_views, shadow_map, sun_glass) = shadow.record(rec, geometry);
         let surfaces = self.gbuffer.record(rec, geometry, &view);
         let is_dome = resolve.is_dome();
-        let cells = self.cells.as_mut();
         let are_seen = resolve.gathers() || !is_dome || self.lobes.is_some();
-        if let Some(cells) = cells.filter(|_| are_seen) {
-            let around = Surroundings {
-                tree: &self.tree,
-                view: &view,
-                daylight,
-                sky_radiance: sky.radiance,
-            };
-            let follows_average = self.drawn.is_none_or(|drawn| drawn.index.is_some());
-            let work = cell_work(index, index == Some(0) && follows_average, settings.refine);
+        if let Some(cells) = self.cells.as_mut().filter(|_| are_seen) {
+            let around = Surroundings::new(&self.tree, &view, daylight, sky.radiance);
+            let work = cell_work(index, self.drawn, settings.refine);
             cells.record(rec, &around, settings.cell_bounces(is_dome), work);
         }
-        let ambient = if is_dome {
-            // Bound but not read.
-            &surfaces.normal_material
-        } else {
-            let inputs = AmbientInputs {
-                surfaces,
-                daylight,
-                view: &view,
-                cells: self.cells.as_ref(),
-                of_picture: self.tiling.occlusion(index),
-                phase: sample.phase,
-            };
-            self.ambient.record(rec, &inputs)
+        let inputs = AmbientInputs {
+            surfaces,
+            daylight,
+            view: &view,
+            cells: self.cells.as_ref(),
+            of_picture: self.tiling.occlusion(index),
+            phase: sample.phase,
         };
-        let of_lobes = self.lobes.as_mut().zip(self.rough.as_mut());
-        let lobes = of_lobes.and_then(|(lobes, rough)| {
-            let inputs = lobes::Inputs {
-                surfaces,
-                materials: geometry.materials(),
-                tree: &self.tree,
-                cells: self.cells.as_ref(),
-                sky: &sky,
-                sky_irradiance,
-                ambient,
-                daylight,
-                view: &view,
-            };
-            lobes.record(rec, rough, &inputs, index.filter(|_| is_dome))
-        });
-        let light = Light {
+        let ambient = self.ambient.record(rec, &inputs, is_dome);
+        let mut light = Light {
             daylight,
             sun_direction: sample.sun_direction,
             sun_views,
@@ -323,16 +300,20 @@ impl Frame {
             panes: BeforePicture(self.panes.as_ref()),
             sun_glass,
             rough: self.rough.as_ref(),
-            lobes,
+            lobes: None,
         };
+        let scene = (geometry, &self.tree, self.cells.as_ref());
+        if let Some(lobes) = &mut self.lobes {
+            let number = index.filter(|_| is_dome);
+            light.lobes = lobes.record(rec, scene, (surfaces, ambient), &light, &view, number);
+        }
         if let Some(panes) = &self.panes {
-            let (scene, around) = ((geometry, &self.tree), light.surroundings());
-            panes.record(rec, scene, &surfaces.depth, &around, &view);
+            let (solid, around) = ((geometry, &self.tree), light.surroundings());
+            panes.record(rec, solid, &surfaces.depth, &around, &view);
         }
         let frame = lighting.record(rec, surfaces, geometry.materials(), ambient, &light, &view);
         self.background
             .record(rec, &surfaces.depth, &light, &view, frame);
-        let scene = (geometry, &self.tree, self.cells.as_ref());
         resolve.record(rec, scene, frame, surfaces, &light, &view);
         self.drawn = Some(Drawn { index, view });
         self.expose(rec);

@@ -199,6 +199,18 @@ pub struct Surroundings<'a> {
     pub sky_radiance: &'a Image,
 }
 
+impl<'a> Surroundings<'a> {
+    /// A scene, its view, sun and sky, and the radiance of the sky, kcd/m².
+    pub fn new(tree: &'a Tree, view: &'a View, daylight: &'a Daylight, sky: &'a Image) -> Self {
+        Self {
+            tree,
+            view,
+            daylight,
+            sky_radiance: sky,
+        }
+    }
+}
+
 impl Cells {
     /// Creates the passes for a scene.
     ///

@@ -12,14 +12,13 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
-use crate::daylight::sky::Daylight;
 use crate::passes::bounces::cells::{Bounces, Cells};
 use crate::passes::bounces::tree::Tree;
 use crate::passes::fullscreen_at;
-use crate::passes::light::lighting::{Ambient, LightingSettings};
+use crate::passes::light::lighting::{Ambient, Light, LightingSettings};
 use crate::passes::light::rough::RoughSky;
-use crate::passes::sky::cube::SkyImages;
 use crate::passes::surfaces::gbuffer::Surfaces;
+use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
 
@@ -33,28 +32,6 @@ gpu_struct! {
 }
 
 const FORMAT: Format = Format::R32G32B32A32_SFLOAT;
-
-/// What the pass reads.
-pub struct Inputs<'a> {
-    /// The surfaces in view.
-    pub surfaces: &'a Surfaces,
-    /// The table of materials.
-    pub materials: &'a Image,
-    /// The scene's hierarchy.
-    pub tree: &'a Tree,
-    /// Light on surfaces that rays meet.
-    pub cells: Option<&'a Cells>,
-    /// The sky.
-    pub sky: &'a SkyImages<'a>,
-    /// Irradiance E of sky and ground, klx.
-    pub sky_irradiance: &'a Image,
-    /// Light of the sky and of the bounces in single frames, or their occlusion, as the lighting reads it.
-    pub ambient: &'a Image,
-    /// Sun and sky.
-    pub daylight: &'a Daylight,
-    /// The view.
-    pub view: &'a View,
-}
 
 /// The pass, for single frames and for converging ones, and its image.
 pub struct Lobes {
@@ -130,13 +107,16 @@ impl Lobes {
         })
     }
 
-    /// Draws the light in the lobes of the surfaces in view, kcd/m². `converging`: number of the frame, if it is one of those whose mean
-    /// converges; 0 starts a new mean. `None` for frames of a kind that the settings exclude.
+    /// Draws the light in the lobes of the surfaces in view, kcd/m². `ambient`: light of the sky and of the bounces, or occlusion, as the
+    /// lighting reads it in single frames. `converging`: number of the frame, if it is one of those whose mean converges; 0 starts a new
+    /// mean. `None` for frames of a kind that the settings exclude, and without lobes.
     pub fn record(
         &mut self,
         recorder: &mut Recorder,
-        rough: &mut RoughSky,
-        inputs: &Inputs<'_>,
+        (geometry, tree, cells): (&Geometry, &Tree, Option<&Cells>),
+        (surfaces, ambient): (&Surfaces, &Image),
+        light: &Light<'_>,
+        view: &View,
         converging: Option<u32>,
     ) -> Option<&Image> {
         let variant = match converging {
@@ -147,35 +127,30 @@ impl Lobes {
             pipeline,
             has_cells,
         } = variant.as_ref()?;
+        let rough = light.rough?;
         self.light.swap(0, 1);
         let [new, old] = &self.light;
-        let (albedo, filtered) = rough.record(recorder, inputs.sky);
-        let pass = inputs.tree.bound_to(recorder.pass("lobes", pipeline));
-        let pass = inputs.surfaces.sampled_by(pass, inputs.materials);
-        let mut pass = pass
-            .sample("lobe_albedo", albedo, Sampler::Linear)
-            .sample("sky_radiance", inputs.sky.radiance, Sampler::Linear)
-            .sample("sky_prefiltered", filtered, Sampler::Linear)
-            .sample("sky_irradiance", inputs.sky_irradiance, Sampler::Linear)
-            .sample("ambient", inputs.ambient, Sampler::Nearest)
+        let pass = tree.bound_to(recorder.pass("lobes", pipeline));
+        let pass = surfaces.sampled_by(pass, geometry.materials());
+        let mut pass = RoughSky::sampled_by(Some(rough), pass, old)
+            .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
+            .sample("sky_prefiltered", rough.prefiltered(), Sampler::Linear)
+            .sample("sky_irradiance", light.sky_irradiance, Sampler::Linear)
+            .sample("ambient", ambient, Sampler::Nearest)
             .sample("previous", old, Sampler::Nearest)
-            .uniform("view", &inputs.view.block());
-        if let Some(cells) = inputs.cells.filter(|_| *has_cells) {
+            .uniform("view", &view.block());
+        if let Some(cells) = cells.filter(|_| *has_cells) {
             pass = cells
                 .bound_to(pass)
-                .uniform("scene", &cells.block(inputs.view, inputs.daylight));
+                .uniform("scene", &cells.block(view, light.daylight));
         }
-        let origin = inputs
-            .view
-            .window
-            .map_or(IVec2::ZERO, |w| w.origin.as_ivec2());
         pass.push(&Push {
-            origin,
+            origin: view.window.map_or(IVec2::ZERO, |w| w.origin.as_ivec2()),
             index: converging.unwrap_or(0),
             seed: self.seed,
         })
         .color(new, Load::Clear([0.0; 4]))
-        .depth_test(&inputs.surfaces.depth)
+        .depth_test(&surfaces.depth)
         .draw();
         Some(new)
     }

@@ -30,9 +30,14 @@ impl RoughSky {
         })
     }
 
-    /// Prefilters the sky if it is new. Returns the albedo and the sky, kcd/m².
-    pub fn record(&mut self, recorder: &mut Recorder, sky: &SkyImages<'_>) -> (&Image, &Image) {
-        (&self.albedo, self.cube.record(recorder, sky))
+    /// Prefilters the sky if it is new.
+    pub fn record(&mut self, recorder: &mut Recorder, sky: &SkyImages<'_>) {
+        self.cube.record(recorder, sky);
+    }
+
+    /// The prefiltered sky, kcd/m².
+    pub fn prefiltered(&self) -> &Image {
+        self.cube.image()
     }
 
     /// Samples the albedo in a pass with `include/microfacet.glsl`. Without lobes the pipeline reads none, but the binding must be

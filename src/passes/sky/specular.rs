@@ -91,6 +91,11 @@ impl SpecularCube {
         &self.cube
     }
 
+    /// The cube as last filtered, with [`ggx::levels`] levels, kcd/m².
+    pub fn image(&self) -> &Image {
+        &self.cube
+    }
+
     /// The cube of one level, kcd/m².
     pub fn level(&self, level: usize) -> Option<&Image> {
         self.levels.get(level).map(|level| &level.image)

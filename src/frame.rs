@@ -20,8 +20,10 @@ use crate::passes::bounces::cells::{Cells, Surroundings, Work};
 use crate::passes::bounces::tree::Tree;
 use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{Light, Show};
+use crate::passes::light::lobes::Lobes;
 use crate::passes::light::panes::{BeforePicture, Panes};
 use crate::passes::light::probe::{Probe, Reading};
+use crate::passes::light::rough::RoughSky;
 use crate::passes::occlusion::ssao::Ssao;
 use crate::passes::picture::exposure::Exposure;
 use crate::passes::picture::tone_map::{ToneMap, ToneSettings};
@@ -40,11 +42,12 @@ use self::sample::Sample;
 /// Frames of an average after which a round of the cells follows.
 const FRAMES_OF_ROUND: u32 = 4;
 
-/// The work for the cells in frame number `index` of an average. `is_new`: it does not follow a preview. The same seed gives the
-/// same picture, so such an average starts with new cells.
-fn cell_work(index: Option<u32>, is_new: bool, refine: u32) -> Work {
+/// The work for the cells in frame number `index` of an average, after the frame `before`. The same seed gives the same picture, so an
+/// average that does not follow a preview starts with new cells.
+fn cell_work(index: Option<u32>, before: Option<Drawn>, refine: u32) -> Work {
+    let follows_average = before.is_none_or(|drawn| drawn.index.is_some());
     match index {
-        _ if is_new => Work::Anew,
+        Some(0) if follows_average => Work::Anew,
         Some(index) => Work::Rounds(u32::from(index.is_multiple_of(FRAMES_OF_ROUND))),
         None => Work::Paths(refine),
     }
@@ -65,6 +68,10 @@ pub struct Frame {
     gbuffer: Gbuffer,
     /// Panes of glass, if the scene has any.
     panes: Option<Panes>,
+    /// The sky of materials that reflect by GGX, if the scene has any.
+    rough: Option<RoughSky>,
+    /// Light in their lobes, if it is shown.
+    lobes: Option<Lobes>,
     ambient: AmbientPasses,
     /// Shadow map and lighting of previews and of frames that the dome does not light.
     preview: Lit,
@@ -129,6 +136,11 @@ impl Frame {
                 ambient: AmbientPasses::new(device, &settings)?,
                 gbuffer: settings.gbuffer(device, &geometry)?,
                 panes: settings.panes(device, &tree)?,
+                rough: geometry
+                    .is_rough()
+                    .then(|| RoughSky::new(recorder))
+                    .transpose()?,
+                lobes: settings.lobes(device, &tree)?,
                 average: Average::new(device, &geometry, &tree, &settings)?,
                 cells: settings.cells(device, &tree, &geometry)?,
                 tree,
@@ -180,7 +192,7 @@ impl Frame {
         let (old, device, geometry) = (&self.settings, &self.context, &self.geometry);
         let is_resized = new.size != old.size;
         let is_lit = is_resized || new.lighting != old.lighting;
-        let is_new_gbuffer = is_resized || new.converges() != old.converges();
+        let is_new_gbuffer = is_resized || new.has_faces() != old.has_faces();
         let is_new_shadow = new.shadow_map() != old.shadow_map();
         let is_new_average = Average::is_changed(old, &new);
         let sky_edge = new.sky_edge;
@@ -190,6 +202,8 @@ impl Frame {
         let panes = remade(is_resized || is_other_mirror, || {
             new.panes(device, &self.tree)
         })?;
+        let is_other_lobes = is_resized || new.lobes_need() != old.lobes_need();
+        let lobes = remade(is_other_lobes, || new.lobes(device, &self.tree))?;
         let is_new_ambient = is_resized || AmbientNeed::of(&new) != AmbientNeed::of(old);
         let ambient = remade(is_new_ambient, || AmbientPasses::new(device, &new))?;
         let shadow = remade(is_new_shadow, || new.shadow(device, geometry))?;
@@ -211,6 +225,7 @@ impl Frame {
         replace(&mut self.air, air);
         replace(&mut self.gbuffer, gbuffer);
         replace(&mut self.panes, panes);
+        replace(&mut self.lobes, lobes);
         replace(&mut self.ambient, ambient);
         replace(&mut self.preview.shadow, shadow);
         replace(&mut self.preview.lighting, lighting);
@@ -250,39 +265,31 @@ impl Frame {
         // None of these passes reads another's images, so without a barrier in between they may overlap.
         rec.prepare(self.gbuffer.surfaces().images().chain(shadow.target()));
         let sky = self.sky_cube.record(rec, daylight);
+        if let Some(rough) = &mut self.rough {
+            rough.record(rec, &sky);
+        }
         let air = self.air.as_mut();
         let air = air.map(|air| air.record(rec, daylight, view.camera.eye.y));
         let sky_irradiance = self.irradiance.record(rec, &sky, daylight);
         let (sun_views, shadow_map, sun_glass) = shadow.record(rec, geometry);
         let surfaces = self.gbuffer.record(rec, geometry, &view);
         let is_dome = resolve.is_dome();
-        let cells = self.cells.as_mut();
-        if let Some(cells) = cells.filter(|_| resolve.gathers() || !is_dome) {
-            let around = Surroundings {
-                tree: &self.tree,
-                view: &view,
-                daylight,
-                sky_radiance: sky.radiance,
-            };
-            let follows_average = self.drawn.is_none_or(|drawn| drawn.index.is_some());
-            let work = cell_work(index, index == Some(0) && follows_average, settings.refine);
+        let are_seen = resolve.gathers() || !is_dome || self.lobes.is_some();
+        if let Some(cells) = self.cells.as_mut().filter(|_| are_seen) {
+            let around = Surroundings::new(&self.tree, &view, daylight, sky.radiance);
+            let work = cell_work(index, self.drawn, settings.refine);
             cells.record(rec, &around, settings.cell_bounces(is_dome), work);
         }
-        let ambient = if is_dome {
-            // Bound but not read.
-            &surfaces.normal_material
-        } else {
-            let inputs = AmbientInputs {
-                surfaces,
-                daylight,
-                view: &view,
-                cells: self.cells.as_ref(),
-                of_picture: self.tiling.occlusion(index),
-                phase: sample.phase,
-            };
-            self.ambient.record(rec, &inputs)
+        let inputs = AmbientInputs {
+            surfaces,
+            daylight,
+            view: &view,
+            cells: self.cells.as_ref(),
+            of_picture: self.tiling.occlusion(index),
+            phase: sample.phase,
         };
-        let light = Light {
+        let ambient = self.ambient.record(rec, &inputs, is_dome);
+        let mut light = Light {
             daylight,
             sun_direction: sample.sun_direction,
             sun_views,
@@ -292,15 +299,21 @@ impl Frame {
             air: air.unwrap_or_default(),
             panes: BeforePicture(self.panes.as_ref()),
             sun_glass,
+            rough: self.rough.as_ref(),
+            lobes: None,
         };
+        let scene = (geometry, &self.tree, self.cells.as_ref());
+        if let Some(lobes) = &mut self.lobes {
+            let number = index.filter(|_| is_dome);
+            light.lobes = lobes.record(rec, scene, (surfaces, ambient), &light, &view, number);
+        }
         if let Some(panes) = &self.panes {
-            let (scene, around) = ((geometry, &self.tree), light.surroundings());
-            panes.record(rec, scene, &surfaces.depth, &around, &view);
+            let (solid, around) = ((geometry, &self.tree), light.surroundings());
+            panes.record(rec, solid, &surfaces.depth, &around, &view);
         }
         let frame = lighting.record(rec, surfaces, geometry.materials(), ambient, &light, &view);
         self.background
             .record(rec, &surfaces.depth, &light, &view, frame);
-        let scene = (geometry, &self.tree, self.cells.as_ref());
         resolve.record(rec, scene, frame, surfaces, &light, &view);
         self.drawn = Some(Drawn { index, view });
         self.expose(rec);

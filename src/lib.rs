@@ -27,11 +27,12 @@
 //! | L_e | what a surface emits; sky, ground and the sun's disc where no surface is | material; sky cube, disc | the same |
 //! | L_sun | (ρ_d/π (n·l) + ρ_s (r·l)^p) V E_sun | V by the shadow map | V by shadow maps of points of the disc |
 //! | L_sky | ρ_d/π ∫ V(ω) L_sky(ω) cos θ dω + ρ_s L_sky(r) | diffuse: cells | diffuse: dome |
+//! | | lobes of GGX ([`daylight::microfacet`]) instead of ρ_s (..), of what reflects by it | prefiltered sky, cells, a ray | rays |
 //! | L_bounces | ρ_d/π E_bounces | cells | gathered rays |
 //! | T, L_air | the air between surface and eye: transmittance, scattered light; 1 and 0 in scenes below 200 m, and with `--aerial off` | table of the air | the same, for each sample |
 //!
 //! with E_sun the sun's illuminance at normal incidence, V visibility, L_sky(ω) the sky cube without the sun's disc, and E_bounces the
-//! irradiance of the light that other surfaces emit and reflect. Only diffuse reflection bounces.
+//! irradiance of the light that other surfaces emit and reflect. Only diffuse reflection bounces; lobes of GGX show surfaces too.
 //!
 //! `--ambient ssao --bounces 0`, part of `--preset lecture`, shows the lecture's illumination model in single frames:
 //!

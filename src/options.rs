@@ -335,7 +335,7 @@ options! {
             #[arg(value_name = "SCALE", value_parser = values::specular, allow_hyphen_values = true,
                   default_value_t = FrameSettings::default().lighting.specular_scale.into())]
             specular: f64,
-            /// Whether specular reflectance grows toward grazing angles.
+            /// Whether specular reflectance of Phong's lobe grows toward grazing angles. That of GGX does.
             #[arg(value_name = "HOW", value_parser = choice::<Fresnel>(), default_value_t)]
             fresnel: Fresnel,
             /// Edge of the shadow map, texels, 64 to 16384.
@@ -348,10 +348,11 @@ options! {
         }
 
         "Light" [] {
-            /// Specular lobe: the lecture's (r·l)^p beside a perfect mirror of the sky, or one energy-conserving reflectance for both.
+            /// Specular lobe: by the model's format, or for every material the lecture's (r·l)^p beside a perfect mirror of the sky, or one
+            /// energy-conserving reflectance for both.
             #[arg(value_name = "FORM", value_parser = choice::<Phong>(), default_value_t)]
             phong: Phong,
-            /// Whether geometry occludes the sky in reflections (hidden needs --visibility dome).
+            /// Whether geometry occludes the sky in reflections of Phong's lobe (hidden needs --visibility dome). It does in those of GGX.
             #[arg(value_name = "HOW", value_parser = choice::<Reflections>(), default_value_t)]
             reflections: Reflections,
             /// Draw the sun's disc darker toward its limb, as it is (same illuminance).

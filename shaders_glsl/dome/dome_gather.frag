@@ -6,6 +6,7 @@
 #include "constants.glsl"
 #include "dome.glsl"
 #include "materials.glsl"
+#include "microfacet.glsl"
 #include "octahedral.glsl"
 #include "half_size.glsl"
 #include "panes.glsl"
@@ -96,6 +97,14 @@ void gather(vec2 uv, float d, uvec3 own, vec3 reflected) {
     rest.a = luminance(open) * luminance(reflected);
 }
 
+/// rho_d of a pixel.
+vec3 diffuse_at(vec2 uv, uvec3 own) {
+    vec4 texel = pixel_albedo(ALBEDO_IMAGE, albedo, materials, own.y, uv);
+    if (!ROUGH) return texel.rgb;
+    vec3 toward = normalize(view.world_from_view * view_ray(uv, view.ray_scale, view.ray_offset));
+    return pixel_diffuse(ALBEDO_IMAGE, texel, materials, own.y, -dot(toward, normal_unpack(own.x)));
+}
+
 void main() {
     vec2 uv = gl_FragCoord.xy / vec2(textureSize(depth, 0));
     float d = textureLod(depth, uv, 0.0).r;
@@ -105,7 +114,7 @@ void main() {
     if (d > 0.0) {
         uvec3 own = textureLod(normal_material, uv, 0.0).xyz;
         vec3 reflected = vec3(1.0);
-        if (!SHOW_IRRADIANCE) reflected = through_panes(ivec2(gl_FragCoord.xy)) * pixel_albedo(ALBEDO_IMAGE, albedo, materials, own.y, uv).rgb / PI;
+        if (!SHOW_IRRADIANCE) reflected = through_panes(ivec2(gl_FragCoord.xy)) * diffuse_at(uv, own) / PI;
         if (AIR) {
             vec3 toward = view.world_from_view * view_ray(uv, view.ray_scale, view.ray_offset) * (view.near / d);
             reflected *= air_transmittance(air_ray(normalize(toward), length(toward) * 1e-3));

@@ -50,6 +50,7 @@ void gather(vec2 uv, float d) {
     vec3 ray = view_ray(uv, view.ray_scale, view.ray_offset);
     uvec3 own = textureLod(normal_material, uv, 0.0).xyz;
     vec4 m = material_specular(materials, own.y);
+    if (m.a < 0.0) return; // GGX, see lobes.frag
     vec3 rho_s = m.rgb * (pixel_albedo(ALBEDO_IMAGE, albedo, materials, own.y, uv).a * push.specular_scale);
     if (all(lessThanEqual(rho_s, vec3(0.0)))) return;
     vec3 n = normal_unpack(own.x);

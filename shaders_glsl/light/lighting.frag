@@ -5,6 +5,7 @@
 #include "colour.glsl"
 #include "constants.glsl"
 #include "materials.glsl"
+#include "microfacet.glsl"
 #include "occlusion.glsl"
 #include "octahedral.glsl"
 #include "half_size.glsl"
@@ -57,6 +58,8 @@ layout(constant_id = 25) const bool AIR = false;
 layout(constant_id = 26) const bool INSCATTER = true;
 // Energy-conserving specular lobe for both sun and sky.
 layout(constant_id = 17) const bool NORMALIZED = false;
+// Light of sky and surfaces in the lobes of GGX.
+layout(constant_id = 28) const bool LOBES = false;
 
 layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform usampler2D normal_material;
@@ -82,6 +85,9 @@ layout(set = 0, binding = 10) uniform sampler2D emission;  // with EMISSION_IMAG
 
 // What panes of glass let through of the sun's light: rgb: products, a: depth of the pane nearest the sun; with PANES, else any.
 layout(set = 0, binding = 28) uniform sampler2D sun_glass;
+
+// With LOBES, see lobes.frag; else any.
+layout(set = 0, binding = 30) uniform sampler2D lobes; // kcd/m^2
 
 #include "sun_shadow.glsl"
 
@@ -113,6 +119,16 @@ void main() {
     vec3 n = normal_unpack(own.x);
     uint material = own.y;
     vec4 surface = pixel_albedo(ALBEDO_IMAGE, albedo, materials, material, uv);
+    vec4 specular = vec4(0.0);
+    if (SUN_SPECULAR || SKY_SPECULAR || ROUGH) specular = material_specular(materials, material);
+    bool rough = is_rough(specular);
+    vec3 toward = normalize(world_ray);
+    Microfacet facets;
+    vec3 rho_d = surface.rgb;
+    if (rough) {
+        facets = microfacet_of(ALBEDO_IMAGE, surface, materials, material, -dot(toward, n));
+        rho_d = under_lobe(facets);
+    }
     float n_dot_l = dot(n, sun.direction);
 
     float V = 0.0;
@@ -138,23 +154,25 @@ void main() {
     if (SHOW_VISIBILITY) { radiance = vec4(vec3(V), illuminance); return; }
     if (SHOW_OCCLUSION) { radiance = vec4(vec3(A), illuminance); return; }
     if (SHOW_IRRADIANCE) { radiance = vec4(sun_irradiance + irradiance, illuminance); return; }
-    if (SHOW_ALBEDO) { radiance = vec4(surface.rgb, illuminance); return; }
+    if (SHOW_ALBEDO) { radiance = vec4(rough ? facets.diffuse : surface.rgb, illuminance); return; }
     if (SHOW_NORMAL) { radiance = vec4(n, illuminance); return; }
     if (SHOW_DEPTH) { radiance = vec4(vec3(distance), illuminance); return; }
 
     vec3 sum = vec3(0.0);
-    if (SUN) sum += surface.rgb / PI * sun_irradiance;
-    if (SKY) sum += surface.rgb / PI * light.sky;
-    if (BOUNCES) sum += surface.rgb / PI * light.bounce;
+    if (SUN) sum += rho_d / PI * sun_irradiance;
+    if (SKY) sum += rho_d / PI * light.sky;
+    if (BOUNCES) sum += rho_d / PI * light.bounce;
     if (EMISSION) {
         vec3 emitted = material_emission(materials, material);
         if (EMISSION_IMAGE) emitted *= textureLod(emission, uv, 0.0).rgb;
         sum += emitted;
     }
-    if (SUN_SPECULAR || SKY_SPECULAR) {
-        vec4 m = material_specular(materials, material);
+    if (rough) {
+        if (SUN_SPECULAR && V > 0.0) sum += lobe_toward(facets, n, -toward, sun.direction) * V * sun_illuminance;
+        if (LOBES) sum += textureLod(lobes, uv, 0.0).rgb;
+    } else if (SUN_SPECULAR || SKY_SPECULAR) {
+        vec4 m = specular;
         vec3 rho_s = m.rgb * (surface.a * sun.specular_scale);
-        vec3 toward = normalize(world_ray);
         if (FRESNEL && any(greaterThan(rho_s, vec3(0.0)))) rho_s = grazing(rho_s, m.a, -dot(toward, n));
         vec3 r = reflect(toward, n);
         float r_dot_l = max(dot(r, sun.direction), 0.0);
@@ -165,7 +183,6 @@ void main() {
         else if (SKY_SPECULAR) sum += rho_s * filtered(sky_radiance, r, 0.0).rgb;
     }
     if (AIR) {
-        vec3 toward = normalize(world_ray);
         AirRay through = air_ray(toward, distance * length(world_ray) * 1e-3);
         sum *= air_transmittance(through);
         if (INSCATTER) sum += air_inscatter(through, toward);

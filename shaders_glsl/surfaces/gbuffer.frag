@@ -11,15 +11,16 @@
 #include "gbuffer.glsl"
 #include "face_of_fragment.glsl"
 #include "octahedral.glsl"
+#include "smoothness.glsl"
 
 layout(location = 0) in vec3 from_eye;
 layout(location = 1) in vec3 shading_normal;
 layout(location = 2) in vec2 surface_uv;
 
-// x: world normal, octahedral; y: number of the material; z: slopes of the face, see face.glsl
+// x: world normal, octahedral; y: number of the material, roughness (see materials.glsl); z: slopes of the face, see face.glsl
 layout(location = 0) out uvec4 normal_material;
 #ifdef ALBEDO
-layout(location = 1) out vec4 albedo; // rgb: rho_d; a: factor on rho_s
+layout(location = 1) out vec4 albedo; // rgb: rho_d; a: factor on rho_s. With GGX, base colour and metalness
 #endif
 #ifdef EMISSION
 layout(location = 2) out vec4 emission; // rgb: factor on L_e
@@ -82,9 +83,15 @@ void main() {
     }
 #endif
     if (DIFFUSE_MAP) diffuse *= texture(diffuse_map, surface_uv, -camera.sharpen);
+    uint smoothness = 0u;
 #ifdef ALBEDO
-    float gloss = 1.0;
-    if (SPECULAR_MAP) gloss = dot(texture(specular_map, surface_uv, -camera.sharpen).rgb, vec3(1.0 / 3.0));
+    bool is_rough = push.metallic >= 0.0;
+    float gloss = is_rough ? push.metallic : 1.0;
+    if (SPECULAR_MAP) {
+        vec3 texel = texture(specular_map, surface_uv, -camera.sharpen).rgb;
+        if (is_rough) smoothness = smoothness_pack(texel.g);
+        gloss = is_rough ? gloss * texel.b : dot(texel, vec3(1.0 / 3.0));
+    }
     albedo = vec4(diffuse.rgb, gloss);
 #endif
 #ifdef EMISSION
@@ -92,5 +99,5 @@ void main() {
     if (EMISSIVE_MAP) emission = texture(emissive_map, surface_uv, -camera.sharpen);
 #endif
     if (CUT_OUT && diffuse.a < push.cutoff) discard;
-    normal_material = uvec4(normal_pack(n), push.material, FACES ? face_slopes() : 0u, 0u);
+    normal_material = uvec4(normal_pack(n), push.material | smoothness, FACES ? face_slopes() : 0u, 0u);
 }

@@ -20,7 +20,7 @@ use crate::daylight::sunlight::LIMB_DARKENING;
 use crate::error::Result;
 use crate::frame::{FrameSettings, Sampling};
 use crate::gpu::{Context, ContextOptions};
-use crate::options::{Fresnel, Mirrors, OptionValues, Options, Penumbra, Preset};
+use crate::options::{Fresnel, Mirrors, OptionValues, Options, Penumbra, Phong, Preset};
 use crate::passes::dome::gather::DomeSettings;
 use crate::passes::light::lighting::{Precision, Show};
 use crate::passes::occlusion::ssao::SsaoSettings;
@@ -119,6 +119,9 @@ impl Job {
         let daylight = Daylight::new(&conditions(&settings, &sun));
         let mut scene = std::mem::take(&mut loaded.scene);
         scene.scale_emission(settings.emission_scale as f32);
+        if settings.phong != Phong::ByFormat {
+            scene.use_phong();
+        }
         let mut subject = Subject::of(&scene);
         if settings.eye.is_none() && settings.target.is_none() {
             subject = subject.entered(&mut scene);
@@ -345,6 +348,38 @@ mod tests {
     use super::*;
     use crate::options::is_option;
     use crate::options::tests::{each_set, exposed_scene};
+
+    #[test]
+    fn phong_replaces_microfacets_if_it_is_asked_for() {
+        let kept = |options: &[(&str, &str)]| {
+            let mut loaded = exposed_scene();
+            loaded.scene.materials = vec![crate::scene::Material {
+                microfacet: Some(crate::scene::Microfacet {
+                    base: [0.5; 3],
+                    f0: [0.04; 3],
+                    f90: 1.0,
+                    metallic: 1.0,
+                    roughness: 0.5,
+                    texture: None,
+                }),
+                ..Default::default()
+            }];
+            let pairs = options
+                .iter()
+                .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()));
+            let user = OptionValues::from(pairs.collect::<Vec<_>>());
+            let job = Job::of(None, loaded, &user).expect("a job");
+            job.scene.materials[0].microfacet.is_some()
+        };
+        assert!(kept(&[]) && kept(&[("phong", "by-format")]));
+        for options in [
+            ("phong", "lecture"),
+            ("phong", "normalized"),
+            ("preset", "lecture"),
+        ] {
+            assert!(!kept(&[options]), "{options:?}");
+        }
+    }
 
     #[test]
     fn metadata_give_every_option_again() {

@@ -53,6 +53,7 @@ pub mod grey_sky;
 pub mod hdr;
 pub mod hosek;
 pub mod irradiance;
+pub mod microfacet;
 pub mod moment;
 pub mod moon;
 pub mod perez;

@@ -56,9 +56,17 @@ pub(super) struct AmbientInputs<'a> {
 }
 
 impl AmbientPasses {
-    /// Records the passes and returns what the lighting reads; any image if it reads none.
-    pub fn record<'a>(&'a mut self, rec: &mut Recorder, inputs: &AmbientInputs<'a>) -> &'a Image {
+    /// Records the passes and returns what the lighting reads; any image if it reads none, as in frames of the dome.
+    pub fn record<'a>(
+        &'a mut self,
+        rec: &mut Recorder,
+        inputs: &AmbientInputs<'a>,
+        is_dome: bool,
+    ) -> &'a Image {
         let (surfaces, view) = (inputs.surfaces, inputs.view);
+        if is_dome {
+            return &surfaces.normal_material;
+        }
         match (self, inputs.cells) {
             (Self::Cells(pass), Some(cells)) => {
                 pass.record(rec, cells, surfaces, inputs.daylight, view)

@@ -16,6 +16,7 @@ use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{
     Ambient, EmissionSource, Lighting, LightingSettings, Precision, Shadows, Show,
 };
+use crate::passes::light::lobes::{Lobes, LobesNeed};
 use crate::passes::light::panes::Panes;
 use crate::passes::occlusion::ssao::SsaoSettings;
 use crate::passes::picture::tone_map::{Scale, ToneMap, ToneSettings};
@@ -73,6 +74,7 @@ impl Default for FrameSettings {
                 ambient: Ambient::default(),
                 specular_scale: 1.0,
                 limb_darkening: 0.0,
+                rough: false,
                 has_albedo: true,
                 panes: None,
                 emission: EmissionSource::None,
@@ -146,7 +148,9 @@ impl FrameSettings {
 
     /// The seed of the cells; `None` if no light is looked up in them.
     pub(super) fn cells_need(&self) -> Option<u32> {
-        let is_needed = self.gathered().is_any() || AmbientNeed::of(self) == AmbientNeed::Cells;
+        let is_mirrored = self.converges() && self.lighting.has_lobes() && self.bounces.is_any();
+        let is_needed =
+            self.gathered().is_any() || AmbientNeed::of(self) == AmbientNeed::Cells || is_mirrored;
         is_needed.then_some(self.sampling.dome.seed)
     }
 
@@ -173,9 +177,33 @@ impl FrameSettings {
         Shadow::cascades(context, geometry, resolution, shadows)
     }
 
+    /// Whether the G-buffer has the slopes of faces.
+    pub(super) fn has_faces(&self) -> bool {
+        self.converges() || self.lighting.has_lobes()
+    }
+
     /// The G-buffer.
     pub(super) fn gbuffer(&self, context: &Arc<Context>, geometry: &Geometry) -> Result<Gbuffer> {
-        Gbuffer::new(context, geometry, self.size.to_array(), self.converges())
+        Gbuffer::new(context, geometry, self.size.to_array(), self.has_faces())
+    }
+
+    /// What the light in the lobes of GGX depends on; `None` if it is not shown.
+    pub(super) fn lobes_need(&self) -> Option<LobesNeed> {
+        self.lighting.has_lobes().then_some(LobesNeed {
+            lighting: self.lighting,
+            bounces: self.bounces,
+            seed: self.sampling.dome.seed,
+            is_single: self.sampling.visibility != Visibility::Dome,
+            converges: self.converges(),
+        })
+    }
+
+    /// The light in the lobes of GGX, if it is shown.
+    pub(super) fn lobes(&self, context: &Arc<Context>, tree: &Tree) -> Result<Option<Lobes>> {
+        let size = self.size.to_array();
+        let need = self.lobes_need();
+        need.map(|need| Lobes::new(context, tree, size, &need))
+            .transpose()
     }
 
     /// Lighting of single frames.
@@ -224,6 +252,7 @@ impl FrameSettings {
         }
         let panes = geometry.has_panes();
         self.lighting.panes = panes.then_some(self.lighting.specular_scale);
+        self.lighting.rough = geometry.is_rough();
         if !geometry.is_specular() {
             self.lighting.specular_scale = 0.0;
         }

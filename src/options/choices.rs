@@ -155,6 +155,7 @@ choices! {
         Timestamps = "timestamps": "Timestamps of the queue; each pass is submitted alone and timed by the wall clock otherwise",
     }
     Phong {
+        ByFormat = "by-format": "GGX and a sky hidden by what stands before it for glTF, the lecture's for MTL",
         Lecture = "lecture": "(r·l)^p for the sun, a perfect mirror for the sky",
         Normalized = "normalized": "Energy-conserving, ρ_s (p + 2)/(2π) (r·l)^p cos θ, for sun and sky alike",
     }
@@ -177,8 +178,8 @@ choices! {
         Sky = "sky": "ρ_d/π A E_sky(n), the light of the visible sky, cd/m²",
         Bounces = "bounces": "ρ_d/π E_bounces, the light of other surfaces, cd/m²",
         Emission = "emission": "L_e, the light that surfaces emit, cd/m²",
-        SunSpecular = "sun-specular": "ρ_s (r·l)^p V E_sun, cd/m²",
-        SkySpecular = "sky-specular": "ρ_s L_sky(r), and what panes of glass mirror, cd/m²",
+        SunSpecular = "sun-specular": "ρ_s (r·l)^p V E_sun, or the sun in the lobe of GGX, cd/m²",
+        SkySpecular = "sky-specular": "ρ_s L_sky(r), sky and surfaces in lobes of GGX, and what panes of glass mirror, cd/m²",
         Air = "air": "L_air, the light that the air scatters between surfaces and the eye, cd/m²",
         Background = "background": "Sky, ground and the sun's disc where no surface is, cd/m²",
         Visibility = "visibility": "V, 0..1",

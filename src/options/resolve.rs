@@ -17,7 +17,7 @@ use crate::scene::{
 const DOME_SAMPLES: u32 = 16;
 
 /// The values of `--preset lecture`: the defaults of the course.
-const LECTURE: [(&str, &str); 18] = [
+const LECTURE: [(&str, &str); 19] = [
     ("place", "45,0"),
     ("solar", "200,10"),
     ("sun-position", "lecture"),
@@ -36,6 +36,7 @@ const LECTURE: [(&str, &str); 18] = [
     ("bounces", "0"),
     ("ao-resolution", "half"),
     ("shadow-size", "4096"),
+    ("phong", "lecture"),
 ];
 
 /// Options that cannot be used.

@@ -21,7 +21,7 @@ use crate::scene::texture::{Encoding, Texture, Wrap};
 use crate::scene::{Bvh, Layout, LoadOptions, Loaded, Node, Part, Scene};
 
 /// Version of the entry format and of the result of loading a model.
-const VERSION: u32 = 7;
+const VERSION: u32 = 8;
 /// Minimum size of a cached model, bytes. Smaller models load as fast as a cache entry.
 pub(super) const MIN_MODEL_BYTES: u64 = 4 << 20;
 /// Limit on the total size of all entries, bytes.
@@ -308,12 +308,7 @@ fn is_valid(scene: &Scene) -> bool {
         end <= scene.indices.len() as u64 && (p.material as usize) < scene.materials.len()
     };
     let material = |m: &Material| {
-        let maps = [
-            m.diffuse_texture,
-            m.specular_texture,
-            m.normal_texture,
-            m.emissive_texture,
-        ];
+        let maps = m.textures();
         maps.iter().flatten().all(|i| *i < scene.textures.len())
     };
     streams

@@ -1,8 +1,10 @@
-//! Materials with ρ_d, ρ_s and p of the lecture, L_e, and the conversion from metallic-roughness.
+//! Materials with ρ_d, ρ_s and p of the lecture, L_e, and the conversion to them from metallic-roughness.
 
 use serde::{Deserialize, Serialize};
 
-/// Reflectance of a surface, Lambertian plus a Phong lobe, and the light that it emits. All surfaces are two-sided.
+use crate::scene::microfacet::{Microfacet, dielectric};
+
+/// Reflectance of a surface, Lambertian plus a lobe of Phong or GGX, and the light that it emits. All surfaces are two-sided.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// Name in the source file.
@@ -33,6 +35,8 @@ pub struct Material {
     /// A pane of clear glass: its transmittance at normal incidence, linear RGB, 0..1, see [`crate::daylight::glass`]. It lets sun, sky
     /// and view through and mirrors the sky; it has no ρ_d.
     pub glass: Option<[f32; 3]>,
+    /// Reflection by GGX instead of `diffuse`, `specular` and `shininess`, which are the same surface as the lecture's model has it.
+    pub microfacet: Option<Microfacet>,
 }
 
 /// Largest emitted radiance, cd/m²: the largest number of the device's colours of 32 bits, and a twentieth of the sun.
@@ -64,6 +68,7 @@ pub(super) const MTL_DEFAULT: Material = Material {
     emission: [0.0; 3],
     emissive_texture: None,
     glass: None,
+    microfacet: None,
 };
 
 impl Default for Material {
@@ -78,7 +83,9 @@ pub(super) struct MaterialKey {
     name: String,
     /// ρ_d, ρ_s, p, opacity, cut-off (negative if none), normal map factor, L_e, transmittance of glass (negative if none).
     values: [u32; 16],
-    textures: [Option<usize>; 4],
+    /// Base colour, F0, F90, metalness, roughness (negative if none).
+    microfacet: [u32; 9],
+    textures: [Option<usize>; 5],
 }
 
 impl Material {
@@ -99,6 +106,7 @@ impl Material {
             emission: [er, eg, eb],
             emissive_texture,
             glass,
+            microfacet,
         } = self;
         let cutoff = alpha_cutoff.unwrap_or(-1.0);
         let [tr, tg, tb] = glass.unwrap_or([-1.0; 3]);
@@ -120,16 +128,38 @@ impl Material {
             tg,
             tb,
         ];
+        let facets = microfacet.map_or([-1.0; 9], |m| {
+            let ([r, g, b], [x, y, z]) = (m.base, m.f0);
+            [r, g, b, x, y, z, m.f90, m.metallic, m.roughness]
+        });
         MaterialKey {
             name: name.clone(),
             values: values.map(f32::to_bits),
+            microfacet: facets.map(f32::to_bits),
             textures: [
                 *diffuse_texture,
                 *specular_texture,
                 *normal_texture,
                 *emissive_texture,
+                microfacet.and_then(|m| m.texture),
             ],
         }
+    }
+
+    /// The diffuse reflectance by which it lights other surfaces, linear RGB, 0..1, without its texture.
+    pub fn scattered(&self) -> [f32; 3] {
+        self.microfacet.map_or(self.diffuse, |m| m.scattered())
+    }
+
+    /// Indices of its textures: ρ_d, ρ_s, normals, L_e, metalness and roughness.
+    pub(super) fn textures(&self) -> [Option<usize>; 5] {
+        [
+            self.diffuse_texture,
+            self.specular_texture,
+            self.normal_texture,
+            self.emissive_texture,
+            self.microfacet.and_then(|m| m.texture),
+        ]
     }
 
     /// Whether it emits light.
@@ -140,6 +170,15 @@ impl Material {
     /// Whether it is opaque enough to be drawn.
     pub(super) fn is_drawn(&self) -> bool {
         self.glass.is_some() || self.dissolve >= self.alpha_cutoff.unwrap_or(0.5)
+    }
+}
+
+/// A number within 0..1; 0 if it is none.
+pub(super) fn unit(v: f32) -> f32 {
+    if v.is_finite() {
+        v.clamp(0.0, 1.0)
+    } else {
+        0.0
     }
 }
 
@@ -169,17 +208,9 @@ pub(super) struct MetallicRoughness {
 /// - p = 2/α² − 2 with α = roughness² (Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces": the
 ///   Phong lobe of the same width), 1..100 000.
 pub(super) fn phong_of(surface: &MetallicRoughness) -> ([f32; 3], [f32; 3], f32) {
-    let unit = |v: f32| {
-        if v.is_finite() {
-            v.clamp(0.0, 1.0)
-        } else {
-            0.0
-        }
-    };
     let (metallic, roughness) = (unit(surface.metallic), unit(surface.roughness));
     let gloss = (1.0 - roughness) * (1.0 - roughness);
-    let ior = if surface.ior >= 1.0 { surface.ior } else { 1.5 };
-    let dielectric = ((ior - 1.0) / (ior + 1.0)).powi(2);
+    let dielectric = dielectric(surface.ior);
     let base = surface.base.map(unit);
     let diffuse = base.map(|b| b * (1.0 - metallic * gloss));
     let specular = std::array::from_fn(|i| {
@@ -203,22 +234,22 @@ pub(super) struct SpecularGlossiness {
 }
 
 /// Reflectance at normal incidence of a dielectric of index 1.5.
-const DIELECTRIC: f32 = 0.04;
+pub(super) const DIELECTRIC: f32 = 0.04;
+
+impl SpecularGlossiness {
+    /// The share of the diffuse colour that is left beside the specular one: the specification has c_diff = diffuse (1 − max F0), and its
+    /// conversion to a base colour divides by 1 − 0.04.
+    pub fn diffuse_share(&self) -> f32 {
+        let strongest = self.specular.into_iter().map(unit).fold(0.0, f32::max);
+        ((1.0 - strongest) / (1.0 - DIELECTRIC)).min(1.0)
+    }
+}
 
 /// Converts a specular-glossiness surface to ρ_d, ρ_s and p, by the rules of [`phong_of`]: ρ_s = g F0, and the diffuse colour
-/// loses what is reflected beyond the reflectance of a dielectric (the specification: c_diff = diffuse (1 − max F0); its conversion
-/// to a base colour divides by 1 − 0.04). What a rough surface does not reflect specularly it scatters.
+/// loses what is reflected beyond the reflectance of a dielectric. What a rough surface does not reflect specularly it scatters.
 pub(super) fn phong_of_glossiness(surface: &SpecularGlossiness) -> ([f32; 3], [f32; 3], f32) {
-    let unit = |v: f32| {
-        if v.is_finite() {
-            v.clamp(0.0, 1.0)
-        } else {
-            0.0
-        }
-    };
     let specular = surface.specular.map(unit);
-    let strongest = specular.into_iter().fold(0.0, f32::max);
-    let kept = ((1.0 - strongest) / (1.0 - DIELECTRIC)).min(1.0);
+    let kept = surface.diffuse_share();
     let gloss = unit(surface.glossiness) * unit(surface.glossiness);
     let rough = MetallicRoughness {
         base: [0.0; 3],

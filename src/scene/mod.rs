@@ -21,6 +21,7 @@ mod load;
 mod losses;
 mod material;
 mod mesh;
+mod microfacet;
 mod names;
 mod number;
 mod obj;
@@ -52,6 +53,7 @@ pub use hills::hills;
 pub use load::{LoadOptions, Loaded, load, load_with_progress};
 pub(crate) use losses::shortened;
 pub use material::{MAX_EMISSION, Material};
+pub use microfacet::Microfacet;
 pub use placement::{Unit, Up};
 pub use progress::Progress;
 pub use reflectance::{Mean, Reflectances};
@@ -232,6 +234,13 @@ impl Scene {
     /// Whether any surface emits light.
     pub fn is_emissive(&self) -> bool {
         self.materials.iter().any(Material::is_emissive)
+    }
+
+    /// Gives all materials the lecture's model: Phong's lobe instead of GGX.
+    pub fn use_phong(&mut self) {
+        for material in &mut self.materials {
+            material.microfacet = None;
+        }
     }
 
     /// Multiplies the light that surfaces emit. What becomes brighter than [`MAX_EMISSION`] is cut, with a warning. Without a factor,

@@ -72,13 +72,14 @@ impl<'a> Reflectances<'a> {
         let maps = [material.diffuse_texture, material.emissive_texture];
         if maps == [None; 2] && self.scene.colours.is_empty() {
             return Mean {
-                diffuse: material.diffuse,
+                diffuse: material.scattered(),
                 emission: material.emission,
                 opacity: 1.0,
                 glass: None,
             };
         }
         let maps = maps.map(|map| map.map(|number| self.level(number, material, corners)));
+        let diffuse = material.scattered();
         let (mut sum, mut emitted) = ([0.0; 3], [0.0; 3]);
         let (mut solid, mut count) = (0.0, 0.0);
         let is_cut_out = material.alpha_cutoff.is_some();
@@ -93,7 +94,7 @@ impl<'a> Reflectances<'a> {
             }
             solid += 1.0;
             for i in 0..3 {
-                sum[i] += material.diffuse[i] * map[i] * colour[i];
+                sum[i] += diffuse[i] * map[i] * colour[i];
                 emitted[i] += material.emission[i] * glow[i];
             }
         }

@@ -283,8 +283,8 @@ impl<'a> TracedScene<'a> {
     fn reflectance(&self, hit: &Hit) -> DVec3 {
         let material = self.material(hit);
         let (map, vertex) = (self.map(material, hit), self.vertex_colour(hit));
-        let [r, g, b] =
-            std::array::from_fn(|i| f64::from(material.diffuse[i] * map[i] * vertex[i]));
+        let diffuse = material.scattered();
+        let [r, g, b] = std::array::from_fn(|i| f64::from(diffuse[i] * map[i] * vertex[i]));
         DVec3::new(r, g, b)
     }
 

@@ -11,7 +11,7 @@ const LAMP: &[u8] = &[
 ];
 
 /// Loads a triangle with texture coordinates and a material.
-fn with_material(folder: &Path, material: &str) -> Scene {
+pub fn with_material(folder: &Path, material: &str) -> Scene {
     let corners = [0f32, 0., 0., 1., 0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 1.];
     let bytes: Vec<u8> = corners.iter().flat_map(|v| v.to_le_bytes()).collect();
     let gltf = format!(

@@ -9,6 +9,7 @@ mod emission;
 mod files;
 mod fuzz;
 mod hostile;
+mod microfacets;
 mod models;
 mod support;
 mod tobj_oracle;

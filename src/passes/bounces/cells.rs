@@ -96,7 +96,8 @@ impl Bounces {
 gpu_struct! {
     /// The light of a moment and the grid of cells, see `include/scene_light.glsl`.
     pub struct SceneBlock: scene of
-        CELLS_SEED_COMP, CELLS_PLACE_COMP, CELLS_UPDATE_COMP, CELLS_PUBLISH_COMP, BOUNCES_GATHER_COMP, CELLS_AMBIENT_FRAG {
+        CELLS_SEED_COMP, CELLS_PLACE_COMP, CELLS_UPDATE_COMP, CELLS_PUBLISH_COMP, BOUNCES_GATHER_COMP, CELLS_AMBIENT_FRAG,
+        LOBES_FRAG_CELLS {
         eye: Vec3,
         cell: f32,
         near: f32,
@@ -193,6 +194,18 @@ pub struct Surroundings<'a> {
     pub daylight: &'a Daylight,
     /// Radiance L of sky and ground, kcd/m².
     pub sky_radiance: &'a Image,
+}
+
+impl<'a> Surroundings<'a> {
+    /// A scene, its view, sun and sky, and the radiance of the sky, kcd/m².
+    pub fn new(tree: &'a Tree, view: &'a View, daylight: &'a Daylight, sky: &'a Image) -> Self {
+        Self {
+            tree,
+            view,
+            daylight,
+            sky_radiance: sky,
+        }
+    }
 }
 
 impl Cells {

@@ -25,6 +25,7 @@ use crate::passes::bounces::gather::HalfSize;
 use crate::passes::dome::specular::SpecularSky;
 use crate::passes::light::lighting::{LightingSettings, Show};
 use crate::passes::light::panes::BeforePicture;
+use crate::passes::light::rough::RoughSky;
 use crate::passes::sky::air::AirBefore;
 use crate::passes::sun_shadow::fit::ShadowView;
 use crate::passes::sun_shadow::map::{Casters, Tile};
@@ -129,6 +130,8 @@ pub struct Gathered<'a> {
     pub panes: BeforePicture<'a>,
     /// The air before the eye.
     pub air: AirBefore<'a>,
+    /// The albedo of lobes of GGX, if there are any.
+    pub rough: Option<&'a RoughSky>,
     /// Irradiance from other surfaces, klx; `None` without bounces.
     pub bounced: Option<HalfSize<'a>>,
 }
@@ -365,6 +368,7 @@ impl Dome {
         let pass = recorder.pass("dome: gather", &self.gather);
         let pass = gathered.panes.sampled_by(pass, gathered.materials);
         let pass = surfaces.sampled_by(pass, gathered.materials);
+        let pass = RoughSky::sampled_by(gathered.rough, pass, gathered.materials);
         let pass = gathered
             .air
             .sampled_by(pass, gathered.materials)
@@ -420,26 +424,29 @@ fn gather_pipeline(
     } else {
         (&shaders::DOME_GATHER_FRAG, 2)
     };
+    let mut constants = lighting.lobe_constants().to_vec();
+    constants.extend([
+        ("SHOW_IRRADIANCE", (show == Show::Irradiance).into()),
+        ("SHOW_OCCLUSION", (show == Show::Occlusion).into()),
+        ("SKY", shows_sky(show).into()),
+        ("DIRECTIONS", settings.directions),
+        ("AIR", air.into()),
+        ("ALBEDO_IMAGE", geometry.has_albedo().into()),
+        ("PANES", geometry.has_panes().into()),
+        ("BOUNCES", bounces.is_any().into()),
+        (
+            "SHOW_BOUNCES",
+            (bounces.is_any() && show.has_bounces()).into(),
+        ),
+        ("MATERIAL_COLUMNS", MATERIAL_COLUMNS),
+    ]);
+    let formats = &[FORMAT; 3][..targets];
     fullscreen_at(
         context,
         "dome: gather",
         shader,
-        &[FORMAT; 3][..targets],
+        formats,
         Depth::Off,
-        &[
-            ("SHOW_IRRADIANCE", (show == Show::Irradiance).into()),
-            ("SHOW_OCCLUSION", (show == Show::Occlusion).into()),
-            ("SKY", shows_sky(show).into()),
-            ("DIRECTIONS", settings.directions),
-            ("AIR", air.into()),
-            ("ALBEDO_IMAGE", geometry.has_albedo().into()),
-            ("PANES", geometry.has_panes().into()),
-            ("BOUNCES", bounces.is_any().into()),
-            (
-                "SHOW_BOUNCES",
-                (bounces.is_any() && show.has_bounces()).into(),
-            ),
-            ("MATERIAL_COLUMNS", MATERIAL_COLUMNS),
-        ],
+        &constants,
     )
 }

@@ -23,8 +23,10 @@ use crate::passes::{fullscreen, fullscreen_at};
 /// The specular lobe.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Phong {
-    /// The lecture's: (r·l)^p for the sun, and a perfect mirror for the sky.
+    /// By the format of the model: GGX for glTF, whose materials it describes, and the lecture's for MTL.
     #[default]
+    ByFormat,
+    /// The lecture's: (r·l)^p for the sun, and a perfect mirror for the sky.
     Lecture,
     /// Energy-conserving: ρ_s (p + 2)/(2π) (r·l)^p cos θ for both sun and sky.
     Normalized,

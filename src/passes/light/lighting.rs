@@ -20,6 +20,7 @@ use crate::gpu_struct;
 use crate::passes::dome::gather::BIAS_TEXELS;
 use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
 use crate::passes::light::panes::{self, BeforePicture};
+use crate::passes::light::rough::{self, RoughSky};
 use crate::passes::sky::air::AirBefore;
 pub use crate::passes::sun_shadow::cascades::Shadows;
 use crate::passes::sun_shadow::cascades::{BLEND, MAX_RADIUS, NORMAL_OFFSET_TEXELS, SunViews};
@@ -57,9 +58,9 @@ pub enum Show {
     Bounces,
     /// L_e, the light that surfaces emit, cd/m².
     Emission,
-    /// ρ_s (r·l)^p V E_sun, cd/m².
+    /// ρ_s (r·l)^p V E_sun, or that in the lobe of GGX, cd/m².
     SunSpecular,
-    /// ρ_s L_sky(r), and what panes of glass mirror, cd/m².
+    /// ρ_s L_sky(r), the light of sky and surfaces in lobes of GGX, and what panes of glass mirror, cd/m².
     SkySpecular,
     /// L_air, the light that the air scatters between surface and eye, cd/m².
     Air,
@@ -212,6 +213,8 @@ pub struct LightingSettings {
     pub ambient: Ambient,
     /// Pixels per texel of A, along each axis: [`crate::passes::occlusion::ssao::SsaoSettings::pixels_per_texel`].
     pub occlusion_downscale: u32,
+    /// Whether the scene has materials that reflect by GGX. Set by [`crate::frame::Frame`].
+    pub rough: bool,
     /// Whether ρ_d is stored per pixel. Set by [`crate::frame::Frame`]; false for scenes without maps.
     pub has_albedo: bool,
     /// Where L_e of surfaces is. Set by [`crate::frame::Frame`].
@@ -226,6 +229,18 @@ pub struct LightingSettings {
     pub shadows: Shadows,
     /// Settings of the specular terms.
     pub mirrors: Mirrors,
+}
+
+impl LightingSettings {
+    /// Whether light in the lobes of GGX is shown, other than that of the sun.
+    pub fn has_lobes(&self) -> bool {
+        self.rough && self.specular_scale > 0.0 && self.show.is_mirrored()
+    }
+
+    /// Constants of pipelines with `include/microfacet.glsl`.
+    pub(in crate::passes) fn lobe_constants(&self) -> [(&'static str, u32); 3] {
+        rough::constants(self.rough, self.specular_scale)
+    }
 }
 
 /// Light sources at a moment: parameters and images.
@@ -249,6 +264,10 @@ pub struct Light<'a> {
     pub sun_glass: Option<&'a Image>,
     /// The air before the eye.
     pub air: AirBefore<'a>,
+    /// The albedo of lobes of GGX, if there are any.
+    pub rough: Option<&'a RoughSky>,
+    /// Light of sky and surfaces in those lobes, kcd/m², if it is shown.
+    pub lobes: Option<&'a Image>,
 }
 
 impl<'a> Light<'a> {
@@ -329,6 +348,8 @@ impl Lighting {
         constants.push(("BLEND", BLEND.to_bits()));
         constants.push(("MAX_RADIUS", MAX_RADIUS.to_bits()));
         constants.push(("MATERIAL_COLUMNS", MATERIAL_COLUMNS));
+        constants.push(("LOBES", settings.has_lobes().into()));
+        constants.extend(settings.lobe_constants());
         let pipeline = fullscreen_at(
             context,
             "lighting",
@@ -360,6 +381,7 @@ impl Lighting {
         let pass = light.panes.sampled_by(pass, materials);
         let sun_glass = light.sun_glass.unwrap_or(materials);
         let pass = surfaces.sampled_by(pass, materials);
+        let pass = RoughSky::sampled_by(light.rough, pass, materials);
         light
             .air
             .sampled_by(pass, materials)
@@ -371,6 +393,7 @@ impl Lighting {
             .sample("ambient", ambient, Sampler::Nearest)
             .sample("shadow_map", light.shadow_map, Sampler::Nearest)
             .sample("sun_glass", sun_glass, Sampler::Nearest)
+            .sample("lobes", light.lobes.unwrap_or(materials), Sampler::Nearest)
             .sample("sky_irradiance", light.sky_irradiance, Sampler::Linear)
             .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
             .uniform("view", &view.block())

@@ -105,8 +105,8 @@ impl Probe {
         let read = |texel: Texel| texel.read(&self.buffer);
         let [r, g, b, illuminance] = read(picked.picture);
         let (words, depth) = (read(picked.words), read(picked.depth)[0]);
-        // `words` holds the halves of the 32-bit words.
-        let material = words[2] as u32 | (words[3] as u32) << 16;
+        // `words` holds the halves of the 32-bit words; the number of the material has 24 bits.
+        let material = words[2] as u32 | (words[3] as u32 & 0xff) << 16;
         let [diffuse, emission] = of_material(material);
         let texel = |texel: Texel| Vec3::from_slice(&read(texel));
         let albedo = picked.albedo.map_or(diffuse, texel);

@@ -6,3 +6,4 @@ pub mod cube;
 pub mod irradiance;
 mod mips;
 pub mod route;
+pub mod specular;

@@ -38,6 +38,7 @@ gpu_struct! {
         cutoff: f32,
         normal_scale: f32,
         is_specular: u32,
+        metallic: f32,
     }
 }
 
@@ -49,6 +50,7 @@ impl Push {
             cutoff: bound.cutoff,
             normal_scale: bound.normal_scale,
             is_specular: bound.is_specular.into(),
+            metallic: bound.metallic.unwrap_or(-1.0),
         }
     }
 }
@@ -56,10 +58,10 @@ impl Push {
 /// The images of the G-buffer.
 pub struct Surfaces {
     /// First word: the world normal on the viewer's side (octahedral encoding, 16 bits per component). Second word: the number of
-    /// the material. Converging frames have a third word, the slopes of the face, see `include/face.glsl`, and a fourth as
+    /// the material in 24 bits, and how far a map lowers its roughness. Frames that trace rays from faces, as converging frames have a third word, the slopes of the face, see `include/face.glsl`, and a fourth as
     /// padding.
     pub normal_material: Image,
-    /// ρ_d, and a factor on ρ_s; `None` for a scene without maps, where the table of materials has ρ_d.
+    /// ρ_d, and a factor on ρ_s, or base colour and metalness; `None` for a scene without maps, where the table of materials has ρ_d.
     pub albedo: Option<Image>,
     /// Factor on L_e of the table of materials; `None` for a scene without emissive textures.
     pub emission: Option<Image>,

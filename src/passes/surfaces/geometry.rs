@@ -42,7 +42,7 @@ pub struct Kind {
     pub cut_out: bool,
     /// Read a texture of ρ_d.
     pub diffuse_map: bool,
-    /// Read a texture of the factor on ρ_s.
+    /// Read a texture of the factor on ρ_s, or of roughness and metalness.
     pub specular_map: bool,
     /// Read a texture of the factor on L_e.
     pub emissive_map: bool,
@@ -77,6 +77,8 @@ pub(in crate::passes) struct Surface {
     pub emissive_map: Option<usize>,
     pub normal_scale: f32,
     pub is_specular: bool,
+    /// Metalness, if it reflects by GGX.
+    pub metallic: Option<f32>,
     /// L_e, cd/m².
     pub emission: Vec3,
     pub cutoff: Option<f32>,
@@ -89,11 +91,11 @@ pub struct Bound<'g> {
     pub kind: Kind,
     /// Number of the material.
     pub material: u32,
-    /// ρ_d, 0..1; a factor on its map.
+    /// ρ_d, or the base colour of a surface that reflects by GGX, 0..1; a factor on its map.
     pub diffuse: Vec3,
     /// Map of ρ_d.
     pub diffuse_map: Option<Map<'g>>,
-    /// Map of the factor on ρ_s.
+    /// Map of the factor on ρ_s, or of roughness (green) and metalness (blue).
     pub specular_map: Option<Map<'g>>,
     /// Normal map.
     pub normal_map: Option<Map<'g>>,
@@ -103,6 +105,8 @@ pub struct Bound<'g> {
     pub normal_scale: f32,
     /// Whether it has a ρ_s.
     pub is_specular: bool,
+    /// Metalness, if it reflects by GGX.
+    pub metallic: Option<f32>,
     /// Alpha of the map of ρ_d below which fragments are discarded; 0: no alpha test.
     pub cutoff: f32,
     /// Placeholder for missing maps.
@@ -138,6 +142,7 @@ pub struct Geometry {
     textures: Vec<(Image, Sampler)>,
     white: Image,
     is_specular: bool,
+    is_rough: bool,
     materials: Image,
     bounds: Bounds,
     casters: Bounds,
@@ -192,6 +197,7 @@ impl Geometry {
             parts,
             panes,
             is_specular: surfaces.iter().any(|s| s.is_specular),
+            is_rough: surfaces.iter().any(|s| s.metallic.is_some()),
             surfaces,
             textures: textures?,
             white: upload(recorder, &white())?,
@@ -228,7 +234,7 @@ impl Geometry {
         &self.materials
     }
 
-    /// ρ_d of a material, 0..1, without its map.
+    /// ρ_d of a material, or the base colour of one that reflects by GGX, 0..1, without its map.
     pub fn diffuse(&self, material: u32) -> Vec3 {
         self.surfaces
             .get(material as usize)
@@ -242,7 +248,7 @@ impl Geometry {
             .map_or(Vec3::ZERO, |s| s.emission)
     }
 
-    /// Whether ρ_d or the factor on ρ_s varies within any material, or L_e does, which is stored beside them.
+    /// Whether ρ_d, the factor on ρ_s or metalness and roughness vary within any material, or L_e does, which is stored beside them.
     pub fn has_albedo(&self) -> bool {
         let varies = |k: Kind| k.diffuse_map || k.specular_map || k.emissive_map || k.colours;
         self.kinds().any(varies)
@@ -283,7 +289,12 @@ impl Geometry {
 
     /// Whether any material has a ρ_s.
     pub fn is_specular(&self) -> bool {
-        self.is_specular
+        self.is_specular || self.is_rough
+    }
+
+    /// Whether any material reflects by GGX.
+    pub fn is_rough(&self) -> bool {
+        self.is_rough
     }
 
     /// Draws surfaces without maps whose normals match their winding. `bind` is called for each new material.
@@ -402,6 +413,7 @@ impl Geometry {
             emissive_map: map(s.emissive_map),
             normal_scale: s.normal_scale,
             is_specular: s.is_specular,
+            metallic: s.metallic,
             cutoff: s.cutoff.unwrap_or(0.0),
             white: Map {
                 image: &self.white,

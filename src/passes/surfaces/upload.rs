@@ -52,22 +52,41 @@ pub(in crate::passes) fn upload_materials(
     let mut table = vec![[0.0f32; 4]; rows * columns];
     for (i, material) in materials.iter().enumerate() {
         let at = i / columns * MATERIAL_ROWS * columns + i % columns;
-        let ([r, g, b], [x, y, z]) = (material.diffuse, material.specular);
-        table[at] = [r, g, b, 0.0];
-        table[at + columns] = [x, y, z, material.shininess];
-        let emission = kilo(Vec3::from(material.emission).as_dvec3());
-        table[at + 2 * columns] = emission.extend(0.0).to_array();
+        let [diffuse, specular, emission] = texels(material);
+        table[at] = diffuse;
+        table[at + columns] = specular;
+        table[at + 2 * columns] = emission;
     }
     let size = [MATERIAL_COLUMNS, rows as u32];
     let desc = ImageDesc::texture("materials", Format::R32G32B32A32_SFLOAT, size);
     upload_texture(recorder, &desc, &[bytemuck::cast_slice(&table)])
 }
 
+/// The rows of a material in the table.
+fn texels(material: &Material) -> [[f32; 4]; 3] {
+    let row = |[r, g, b]: [f32; 3], a: f32| [r, g, b, a];
+    let emission = kilo(Vec3::from(material.emission).as_dvec3()).to_array();
+    match material.microfacet {
+        Some(facets) => [
+            row(facets.base, facets.f90),
+            row(facets.f0, -1.0 - facets.roughness),
+            row(emission, facets.metallic),
+        ],
+        None => [
+            row(material.diffuse, 0.0),
+            row(material.specular, material.shininess),
+            row(emission, 0.0),
+        ],
+    }
+}
+
 pub(in crate::passes) fn surface(material: &Material) -> Surface {
+    let facets = material.microfacet;
     Surface {
-        diffuse: material.diffuse.into(),
+        diffuse: facets.map_or(material.diffuse, |m| m.base).into(),
         diffuse_map: material.diffuse_texture,
-        specular_map: material.specular_texture,
+        specular_map: facets.map_or(material.specular_texture, |m| m.texture),
+        metallic: facets.map(|m| m.metallic),
         normal_map: material.normal_texture,
         emissive_map: material.emissive_texture.filter(|_| material.is_emissive()),
         emission: material.emission.into(),

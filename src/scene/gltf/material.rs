@@ -1,4 +1,4 @@
-//! glTF materials, converted to ρ_d, ρ_s and p by [`phong_of`], and L_e.
+//! glTF materials: reflection by GGX, the same as ρ_d, ρ_s and p by [`phong_of`], and L_e.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -17,6 +17,7 @@ use crate::scene::material::{
     MTL_DEFAULT, Material, MetallicRoughness, SpecularGlossiness, phong_of, phong_of_glossiness,
 };
 use crate::scene::mesh::soup::{MaterialUse, NONE};
+use crate::scene::microfacet::Microfacet;
 use crate::scene::texture::Wrap;
 use crate::scene::texture::picture::{EmbeddedImage, TextureKey, TextureKind};
 
@@ -89,12 +90,13 @@ struct Reader<'r, 'p, 'j> {
 impl<'j> Reader<'_, '_, 'j> {
     fn surface(&mut self) -> Surface {
         self.source.told.see(self.item);
-        let (material, colour) = self.material();
+        let (material, [colour, roughness]) = self.material();
         let emissive = self.item.get("emissiveTexture");
         let maps = [
             (colour, material.diffuse_texture),
             (self.item.get("normalTexture"), material.normal_texture),
             (emissive, material.emissive_texture),
+            (roughness, material.microfacet.and_then(|m| m.texture)),
         ];
         let mut placed = maps.iter().filter(|(_, texture)| texture.is_some());
         let first = placed.next().map(|(info, _)| transform(*info));
@@ -120,8 +122,8 @@ impl<'j> Reader<'_, '_, 'j> {
         }
     }
 
-    /// The material, and the texture of its ρ_d as the file gives it.
-    fn material(&mut self) -> (Material, Item<'j>) {
+    /// The material, and the textures of its colour and its roughness as the file gives them.
+    fn material(&mut self) -> (Material, [Item<'j>; 2]) {
         let cutoff = match self.item.get("alphaMode").text() {
             Some("MASK") => Some(self.item.get("alphaCutoff").float(0.5)),
             Some("BLEND") => Some(0.5),
@@ -136,10 +138,14 @@ impl<'j> Reader<'_, '_, 'j> {
         };
         let [r, g, b, alpha] = factor.floats([1.0; 4]);
         let base = [r, g, b];
-        let (diffuse, specular, shininess) = if gloss.is_object() {
-            phong_of_glossiness(&self.specular_glossiness(gloss, base))
+        let roughness = pbr.get("metallicRoughnessTexture");
+        let ((diffuse, specular, shininess), microfacet) = if gloss.is_object() {
+            let surface = self.specular_glossiness(gloss, base);
+            let microfacet = Microfacet::of_glossiness(&surface);
+            (phong_of_glossiness(&surface), microfacet)
         } else {
-            phong_of(&self.metallic_roughness(pbr, base))
+            let surface = self.metallic_roughness(pbr, base);
+            (phong_of(&surface), self.microfacet(pbr, &surface))
         };
         let kind = match cutoff {
             None => TextureKind::Colour,
@@ -169,8 +175,39 @@ impl<'j> Reader<'_, '_, 'j> {
             emission,
             emissive_texture,
             glass: self.glass(base, alpha, map),
+            microfacet: Some(microfacet),
         };
-        (material, map)
+        (material, [map, roughness])
+    }
+
+    /// The surface for GGX, with the texture of its roughness and metalness instead of their means.
+    fn microfacet(&mut self, pbr: Item<'_>, surface: &MetallicRoughness) -> Microfacet {
+        let specular = self.item.extension("KHR_materials_specular");
+        let f90 = if surface.specular == [0.0; 3] {
+            0.0
+        } else {
+            specular.get("specularFactor").float(1.0)
+        };
+        if self.item.extension("KHR_materials_unlit").exists() {
+            return Microfacet::of_metallic_roughness(surface, f90);
+        }
+        let texture = self.texture(pbr.get("metallicRoughnessTexture"), TextureKind::Numbers);
+        let (metallic, roughness) = match texture {
+            Some(_) => (
+                pbr.get("metallicFactor").float(1.0),
+                pbr.get("roughnessFactor").float(1.0),
+            ),
+            None => (surface.metallic, surface.roughness),
+        };
+        let surface = MetallicRoughness {
+            metallic,
+            roughness,
+            ..*surface
+        };
+        Microfacet {
+            texture,
+            ..Microfacet::of_metallic_roughness(&surface, f90)
+        }
     }
 
     /// The glass of a transmitting material, or of one that is blended without a texture: with one it is a cut-out.
@@ -202,7 +239,7 @@ impl<'j> Reader<'_, '_, 'j> {
         (emission, self.texture(texture, TextureKind::Colour))
     }
 
-    /// Roughness and metalness textures are replaced by their means, because p is constant over a material.
+    /// Roughness and metalness textures are replaced by their means, because the lecture's p is constant over a material.
     fn metallic_roughness(&mut self, pbr: Item<'_>, base: [f32; 3]) -> MetallicRoughness {
         let [_, roughness, metallic, _] = self.mean(pbr.get("metallicRoughnessTexture"));
         let specular = self.item.extension("KHR_materials_specular");

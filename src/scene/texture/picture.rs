@@ -45,6 +45,8 @@ pub enum TextureKind {
     Masked(Option<PathBuf>, PathBuf, Channel),
     /// A normal map, or a height map to convert into one. The `u32` holds the bits of an `f32`, a factor on its slopes.
     Normals(PathBuf, u32),
+    /// Numbers: roughness and metalness.
+    Numbers(PathBuf),
 }
 
 /// Creates each texture once, and limits memory and decoding work.
@@ -147,6 +149,11 @@ impl TextureStore {
             TextureKind::Normals(path, strength) => {
                 let image = self.decode(files, path)?;
                 Ok(normals(name_of(path), image, f32::from_bits(*strength)))
+            }
+            TextureKind::Numbers(path) => {
+                let mut texture = self.colours(files, path)?;
+                texture.encoding = Encoding::Linear;
+                Ok(texture)
             }
         }
     }

@@ -1,4 +1,5 @@
 // Reflection by GGX, the counterpart of `daylight::microfacet` on the CPU; there are the sources. Needs constants.glsl, materials.glsl.
+#include "filtered.glsl"
 
 // Whether the scene has materials that reflect by GGX, set by every pipeline that shows radiance; otherwise any image is bound.
 layout(constant_id = 42) const bool ROUGH = false;
@@ -41,7 +42,7 @@ Microfacet microfacet_of(bool from_image, vec4 texel, sampler2D materials, uint 
     m.alpha = m.roughness * m.roughness;
     vec2 size = vec2(textureSize(lobe_albedo, 0));
     vec2 at = clamp(vec2(sqrt(max(facing, LEAST_FACING)), m.roughness), 0.0, 1.0);
-    vec2 parts = textureLod(lobe_albedo, (at * (size - 1.0) + 0.5) / size, 0.0).rg;
+    vec2 parts = filtered(lobe_albedo, at * (size - 1.0)).rg;
     m.gain = 1.0 + m.f0 * (1.0 / (parts.x + parts.y) - 1.0);
     m.reflectance = LOBE_SCALE * m.gain * (m.f0 * parts.x + m.f90 * parts.y);
     return m;

@@ -110,15 +110,15 @@ vec3 of_direction(Point p, Microfacet m, uint number, uint seed) {
     vec3 l = 2.0 * along * h - v;
     if (l.z <= 0.0) return vec3(0.0);
     vec3 toward = above(p, frame * l);
-    return lobe_weight(m, v.z, l.z, along) * seen(p, toward, textureLod(sky_radiance, toward, 0.0).rgb, tea(seed, number));
+    return lobe_weight(m, v.z, l.z, along) * seen(p, toward, filtered(sky_radiance, toward, 0.0).rgb, tea(seed, number));
 }
 
 /// The sky about a direction, prefiltered for the roughness.
 vec3 filtered_sky(vec3 r, float roughness) {
     float level = roughness * float(textureQueryLevels(sky_prefiltered) - 1);
     // The first level is the sky itself, which is finer.
-    if (level < 1.0) return mix(textureLod(sky_radiance, r, 0.0).rgb, textureLod(sky_prefiltered, r, 1.0).rgb, level);
-    return textureLod(sky_prefiltered, r, level).rgb;
+    if (level < 1.0) return mix(filtered(sky_radiance, r, 0.0).rgb, filtered(sky_prefiltered, r, 1.0).rgb, level);
+    return filtered(sky_prefiltered, r, level).rgb;
 }
 
 /// The open sky in the lobe.
@@ -136,7 +136,7 @@ float wideness(Microfacet m) {
 #ifdef CELLS
 /// Mean radiance in a wide lobe, of the sky as far as it is visible and of the bounces, by the irradiances of both, klx.
 vec3 blurred(Point p, vec3 open, vec3 sky, vec3 bounce) {
-    float whole = luminance(textureLod(sky_irradiance, p.n, 0.0).rgb);
+    float whole = luminance(filtered(sky_irradiance, p.n, 0.0).rgb);
     return open * clamp(luminance(sky) / max(whole, 1e-9), 0.0, 1.0) + bounce / PI;
 }
 #endif

@@ -4,7 +4,7 @@
 #include "specular.glsl"
 #include "cube_compute.glsl"
 
-layout(set = 0, binding = 2) uniform writeonly image2DArray specular_radiance; // kcd/m^2
+layout(set = 0, binding = 2, rgba32f) uniform writeonly image2DArray specular_radiance; // kcd/m^2
 
 void main() {
     ivec2 size = imageSize(specular_radiance).xy;

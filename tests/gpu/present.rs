@@ -107,7 +107,7 @@ fn shown(device: &mut Device, display: &Image, output: Output, is_empty: bool) -
 
 /// Whether a device can draw to images of this format, which windows may have and others need not.
 fn is_known(device: &Device, format: Format) -> bool {
-    let known = device.context.supported_format(&[format]).is_ok();
+    let known = device.context.can_draw(format);
     if !known {
         println!("{format:?}: skipped, the device does not draw to it");
     }

@@ -263,6 +263,12 @@ impl Context {
         is_offered && self.can(format, vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND)
     }
 
+    /// Whether the device can draw to images of `format` and sample them.
+    pub fn can_draw(&self, format: vk::Format) -> bool {
+        let target = vk::FormatFeatureFlags::COLOR_ATTACHMENT;
+        self.can(format, target | vk::FormatFeatureFlags::SAMPLED_IMAGE)
+    }
+
     /// The sampler to bind for a sampler that is asked for: shaders filter 32-bit floats where the device cannot, see
     /// `include/filtered.glsl`.
     pub(in crate::gpu) fn sampler_of(&self, format: vk::Format, asked: Sampler) -> vk::Sampler {

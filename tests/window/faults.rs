@@ -148,7 +148,8 @@ fn a_window_lives_on_without_its_surface() {
 #[test]
 fn a_window_opens_a_lost_device_once_more_and_shows_the_same() {
     let _machine = shared_machine();
-    let view = ["colonnade", "--size", "320x180", "--samples", "2"];
+    // One sample: a picture taken before it is at rest is nearly the same.
+    let view = ["colonnade", "--size", "320x180", "--samples", "1"];
     let view = [&view[..], &DIRECT, &["--validate"]].concat();
     let sound = Running::bare(&view);
     let expected = sound.picture();

@@ -152,7 +152,7 @@ fn a_window_opens_a_lost_device_once_more_and_shows_the_same() {
     let view = ["colonnade", "--size", "320x180", "--samples", "1"];
     let view = [&view[..], &DIRECT, &["--validate"]].concat();
     let sound = Running::bare(&view);
-    let expected = sound.picture();
+    let expected = sound.daylit();
     sound.close_well();
     // Before there is a scene, while it is uploaded, and at rest.
     for number in [2, 6, 40] {

@@ -49,7 +49,7 @@ fn a_screen_of_30_bits_shows_the_picture_and_the_panel() {
         let presents = library(folder.path(), "depth_of_window.c", &define);
         let variables = [("LD_PRELOAD", presents.as_path())];
         let running = Running::on(Display::of_depth(bits), &words, &variables).bared();
-        let shown = running.picture();
+        let shown = running.daylit();
         let panel = running.after(|d| d.key(keysym::TAB, false));
         running.close_well();
         (shown, panel)
@@ -75,7 +75,7 @@ fn hdr_is_refused_where_there_is_none_and_auto_goes_without() {
     );
     let [off, auto] = ["off", "auto"].map(|hdr| {
         let running = Running::bare(&[&view()[..], &["--hdr", hdr, "--validate"]].concat());
-        let shown = running.picture();
+        let shown = running.daylit();
         running.close_well();
         shown
     });

@@ -132,6 +132,15 @@ impl Running {
             .still_picture(self.window, || self.cpu_seconds())
     }
 
+    /// The picture of a scene by day once it no longer changes: on a busy machine the dark window before it may stand still too.
+    pub fn daylit(&self) -> Picture {
+        until("a bright picture", || {
+            let shown = self.picture();
+            let green = shown.rgb.iter().map(|colour| colour[1]).sum::<f32>();
+            (green / shown.rgb.len() as f32 > 0.1).then_some(shown)
+        })
+    }
+
     /// CPU time of the program so far, seconds.
     pub fn cpu_seconds(&self) -> f64 {
         let text = fs::read_to_string(format!("/proc/{}/stat", self.pid())).expect("it runs");

@@ -5,18 +5,16 @@ use std::process::{Command, Output};
 use std::thread::sleep;
 use std::time::Duration;
 
-use skylight::compare::read;
-
 use crate::running::{DIRECT, Running, difference, program, shared_machine};
 use crate::x::{Display, keysym};
 
-/// A small view that is quickly at rest.
+/// A small view of one sample: a picture taken before it is at rest is nearly the same.
 const SMALL: [&str; 7] = [
     "colonnade",
     "--size",
     "320x180",
     "--samples",
-    "2",
+    "1",
     "--sky",
     "preetham",
 ];
@@ -51,7 +49,7 @@ fn a_screen_of_30_bits_shows_the_picture_and_the_panel() {
         let presents = library(folder.path(), "depth_of_window.c", &define);
         let variables = [("LD_PRELOAD", presents.as_path())];
         let running = Running::on(Display::of_depth(bits), &words, &variables).bared();
-        let shown = running.picture();
+        let shown = running.daylit();
         let panel = running.after(|d| d.key(keysym::TAB, false));
         running.close_well();
         (shown, panel)
@@ -64,20 +62,6 @@ fn a_screen_of_30_bits_shows_the_picture_and_the_panel() {
     println!("FLIP of 30 bits against 24: the picture, the panel; between these two: {flips:.5?}");
     assert!(flips[0] < 0.002 && flips[1] < 0.02, "{flips:?}");
     assert!(flips[2] > 0.1, "the panel is there: {flips:?}");
-
-    let folder = tempfile::tempdir().expect("a scratch folder");
-    let file = folder.path().join("rendered.png");
-    let rendered = program(folder.path())
-        .arg("render")
-        .args(view())
-        .arg("-o")
-        .arg(&file)
-        .output()
-        .expect("the program starts");
-    assert!(rendered.status.success(), "{rendered:?}");
-    let flip = difference(&read(&file).expect("a picture"), &ten.0);
-    println!("FLIP of 30 bits against a file: {flip:.5}");
-    assert!(flip <= 0.02, "{flip}");
 }
 
 #[test]
@@ -91,11 +75,12 @@ fn hdr_is_refused_where_there_is_none_and_auto_goes_without() {
     );
     let [off, auto] = ["off", "auto"].map(|hdr| {
         let running = Running::bare(&[&view()[..], &["--hdr", hdr, "--validate"]].concat());
-        let shown = running.picture();
+        let shown = running.daylit();
         running.close_well();
         shown
     });
-    assert!(off == auto, "{}", difference(&off, &auto));
+    let flip = difference(&off, &auto);
+    assert!(flip < 0.002, "{flip}");
 }
 
 /// The only line on stderr, an error with exit code 1.

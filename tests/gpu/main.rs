@@ -33,6 +33,7 @@ mod probe;
 mod rays;
 mod reflections;
 mod shadow;
+mod sheets;
 mod sky;
 mod specular;
 mod ssao;

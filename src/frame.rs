@@ -123,7 +123,8 @@ impl Frame {
             let geometry = Geometry::new(recorder, scene)?;
             let tree = Tree::new(recorder, scene)?;
             let settings = asked.for_scene(device, &geometry);
-            let lighting = scope.spawn(move || settings.lighting(device));
+            let rays = tree.constants();
+            let lighting = scope.spawn(move || settings.lighting(device, rays));
             let background = scope.spawn(move || settings.background(device));
             Ok(Self {
                 ambient: AmbientPasses::new(device, &settings)?,
@@ -193,7 +194,7 @@ impl Frame {
         let is_new_ambient = is_resized || AmbientNeed::of(&new) != AmbientNeed::of(old);
         let ambient = remade(is_new_ambient, || AmbientPasses::new(device, &new))?;
         let shadow = remade(is_new_shadow, || new.shadow(device, geometry))?;
-        let lighting = remade(is_lit, || new.lighting(device))?;
+        let lighting = remade(is_lit, || new.lighting(device, self.tree.constants()))?;
         let background = remade(new.lighting != old.lighting, || new.background(device))?;
         let average = remade(is_new_average, || {
             Average::new(device, geometry, &self.tree, &new)
@@ -287,6 +288,7 @@ impl Frame {
             sun_direction: sample.sun_direction,
             sun_views,
             shadow_map,
+            traces: index.is_some(),
             sky_irradiance,
             sky_radiance: sky.radiance,
             air: air.unwrap_or_default(),
@@ -297,7 +299,15 @@ impl Frame {
             let (scene, around) = ((geometry, &self.tree), light.surroundings());
             panes.record(rec, scene, &surfaces.depth, &around, &view);
         }
-        let frame = lighting.record(rec, surfaces, geometry.materials(), ambient, &light, &view);
+        let frame = lighting.record(
+            rec,
+            &self.tree,
+            surfaces,
+            geometry.materials(),
+            ambient,
+            &light,
+            &view,
+        );
         self.background
             .record(rec, &surfaces.depth, &light, &view, frame);
         let scene = (geometry, &self.tree, self.cells.as_ref());

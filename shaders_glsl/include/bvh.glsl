@@ -27,13 +27,32 @@ const uint OPACITY = 0xffu;
 const uint PANE = 1u << 31;
 // Mark of a pane that is a slab: only the face where light enters counts.
 const uint SLAB = 1u << 30;
-// What panes are to a ray: in the way of light by chance, walls, or nothing.
-const uint PANES_DIM = 0u, PANES_BLOCK = 1u, PANES_ARE_OPEN = 2u;
+// What panes are to a ray: in the way of light by chance, walls, or nothing. In the last two, cut-outs are nothing or walls.
+const uint PANES_DIM = 0u, PANES_BLOCK = 1u, PANES_ARE_OPEN = 2u, OPAQUE_ONLY = 3u, CUT_OUTS_BLOCK = 4u;
 // Most children that wait, as `tree.rs` checks.
 const int STACK = 64;
 const float FAR = 1e30;
 // Smallest magnitude of a component of a direction: its inverse must be finite.
 const float TINY = 1e-20;
+
+// Offset of ray origins from their surface, relative to the largest coordinate: covers the rounding of float32.
+const float LIFT = 3e-5;
+
+float lift_at(vec3 position) {
+    vec3 size = abs(position);
+    return LIFT * (1.0 + max(size.x, max(size.y, size.z)));
+}
+
+vec3 lifted(vec3 position, vec3 normal) {
+    return position + lift_at(position) * normal;
+}
+
+/// A point that is seen from `eye`, lifted off its surface toward it: nothing is in between, not even another wall of an acute corner.
+vec3 lifted_to_eye(vec3 position, vec3 normal, vec3 eye) {
+    vec3 away = eye - position;
+    float height = max(dot(away, normal), 0.05 * length(away));
+    return position + away * min(lift_at(position) / height, 0.5);
+}
 
 struct Hit {
     float distance;    // FAR: nothing was hit
@@ -122,6 +141,7 @@ float stopped(uint word, vec3 edge1, vec3 edge2, vec3 toward) {
 /// Whether a hit is on a surface and not in a hole of a cut-out or through glass: by chance, in proportion to the opacity.
 bool is_solid(uint word, uint triangle, vec2 barycentrics, vec3 edge1, vec3 edge2, vec3 toward, uint panes) {
     bool is_pane = (word & PANE) != 0u;
+    if (panes >= OPAQUE_ONLY) return panes == CUT_OUTS_BLOCK && !is_pane;
     if ((word & SLAB) != 0u && dot(cross(edge1, edge2), toward) > 0.0) return false;
     if (is_pane && panes != PANES_DIM) return panes == PANES_BLOCK;
     float opacity = is_pane ? stopped(word, edge1, edge2, toward) : float(word & OPACITY) / 255.0;

@@ -39,3 +39,32 @@ bool is_lit_in_plane(sampler2D map, mat4 clip, mat4 planes, vec4 window, float b
     vec2 last = window.xy + window.zw - 1.0;
     return texel_at(map, clamp(floor(at), window.xy, last)).r <= p.z + rise + bias + RISE_ERROR * abs(rise);
 }
+
+/// Whether a point of a face is lit, and whether the texels around it do not agree.
+struct LitInPlane {
+    bool is_lit;
+    bool is_edge;
+};
+
+// Part of the bias that the texels around the point have: it must not hide the foot of a wall.
+const float BIAS_AROUND = 0.0;
+
+/// As `is_lit_in_plane`, with the eight texels around.
+LitInPlane lit_in_plane(sampler2D map, mat4 clip, mat4 planes, vec4 window, float bias, vec3 world, vec3 face) {
+    vec4 c = clip * vec4(world, 1.0);
+    vec3 p = c.xyz / c.w;
+    vec2 at = window.xy + (p.xy * 0.5 + 0.5) * window.zw;
+    vec4 plane = planes * vec4(face, -dot(face, world));
+    vec2 slope = -plane.xy / plane.z * 2.0 / window.zw;
+    vec2 last = window.xy + window.zw - 1.0;
+    bool is_lit = false, any_lit = false, any_dark = false;
+    for (int i = 0; i < 9; ++i) {
+        vec2 texel = floor(at) + vec2(i % 3 - 1, i / 3 - 1);
+        float rise = dot(slope, texel + 0.5 - at);
+        float before = texel_at(map, clamp(texel, window.xy, last)).r - p.z - rise - RISE_ERROR * abs(rise);
+        if (i == 4) is_lit = before <= bias;
+        any_lit = any_lit || before <= bias;
+        any_dark = any_dark || before > BIAS_AROUND * bias;
+    }
+    return LitInPlane(is_lit, any_lit && any_dark);
+}

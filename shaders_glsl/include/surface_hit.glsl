@@ -9,14 +9,6 @@ struct Surface {
     vec3 emission;   // radiance L_e, kcd/m^2, mean over the triangle
 };
 
-// Offset of ray origins from their surface, relative to the largest coordinate: covers the rounding of float32.
-const float LIFT = 3e-5;
-
-vec3 lifted(vec3 position, vec3 normal) {
-    vec3 size = abs(position);
-    return position + LIFT * (1.0 + max(size.x, max(size.y, size.z))) * normal;
-}
-
 /// Reflectance from 10 + 11 + 11 bits.
 vec3 albedo_unpack(uint word) {
     return vec3(word & 0x7ffu, (word >> 11) & 0x7ffu, word >> 22) / vec3(2047.0, 2047.0, 1023.0);

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "air.glsl"
+#include "bvh.glsl"
 #include "colour.glsl"
 #include "constants.glsl"
 #include "materials.glsl"
@@ -75,6 +76,7 @@ layout(set = 0, binding = 8, scalar) uniform Sun {
     float specular_scale; // factor on every rho_s
     mat4 planes;          // inverse transpose of shadow_from_world
     ivec2 occlusion_from; // origin of this picture in the occlusion's picture, pixels
+    uint traces;          // whether rays decide at the edges of shadows
 } sun;
 
 layout(set = 0, binding = 9) uniform sampler2D materials; // see materials.glsl
@@ -85,11 +87,15 @@ layout(set = 0, binding = 28) uniform sampler2D sun_glass;
 
 #include "sun_shadow.glsl"
 
-/// V of one point of the sun's disc. Shadow edges are off by up to a texel; the mean over many maps averages this out.
+/// V of one point of the sun's disc. Where the texels around it do not agree, a ray decides: the edge of a wall is within a texel.
 float plane_visibility(vec3 world, vec3 n, vec3 face) {
     if (is_turned_away(face, n, sun.direction)) return 0.0;
     vec4 window = vec4(vec2(0.0), vec2(textureSize(shadow_map, 0)));
-    return float(is_lit_in_plane(shadow_map, sun.shadow_from_world, sun.planes, window, sun.depth_bias, world, face));
+    LitInPlane lit = lit_in_plane(shadow_map, sun.shadow_from_world, sun.planes, window, sun.depth_bias, world, face);
+    if (!lit.is_edge || dot(face, sun.direction) <= 0.0) return float(lit.is_lit);
+    // Rays do not know the holes of cut-outs: they overrule the map only where those do not count.
+    bool is_stopped = traced(lifted_to_eye(world, face, view.eye), sun.direction, FAR, true, lit.is_lit ? OPAQUE_ONLY : CUT_OUTS_BLOCK).distance < FAR;
+    return float(!is_stopped);
 }
 
 /// What panes let through of the light of one point of the sun's disc.
@@ -118,7 +124,7 @@ void main() {
     float V = 0.0;
     if (n_dot_l > 0.0) {
         if (PLANE_SHADOW) V = plane_visibility(world, n, view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale));
-        else V = sun_visibility(world, n, n_dot_l);
+        else V = sun_visibility(world, n, n_dot_l, sun.traces != 0u);
     }
     float A = 0.0;
     Ambient light = Ambient(vec3(0.0), vec3(0.0));

@@ -69,7 +69,7 @@ impl Average {
         Ok(Self::Dome(Box::new(Converging {
             lit: Lit {
                 shadow: Shadow::perspective(context, geometry, settings.shadow_resolution)?,
-                lighting: Lighting::converging(context, size, lighting)?,
+                lighting: Lighting::converging(context, tree.constants(), size, lighting)?,
             },
             gather: bounces
                 .is_any()

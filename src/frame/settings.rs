@@ -10,7 +10,7 @@ use crate::daylight::exposure::KEY;
 use crate::daylight::tone_curve::{REINHARD_WHITE, ToneCurve};
 use crate::gpu::{Context, Result};
 use crate::passes::bounces::cells::{Bounces, Cells};
-use crate::passes::bounces::tree::Tree;
+use crate::passes::bounces::tree::{RayConstants, Tree};
 use crate::passes::dome::specular::Mirrors;
 use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{
@@ -178,8 +178,8 @@ impl FrameSettings {
     }
 
     /// Lighting of single frames.
-    pub(super) fn lighting(&self, context: &Arc<Context>) -> Result<Lighting> {
-        Lighting::new(context, self.size.to_array(), self.lighting)
+    pub(super) fn lighting(&self, context: &Arc<Context>, rays: RayConstants) -> Result<Lighting> {
+        Lighting::new(context, rays, self.size.to_array(), self.lighting)
     }
 
     /// The background.

@@ -30,6 +30,7 @@ mod probe;
 mod rays;
 mod reflections;
 mod shadow;
+mod sheets;
 mod sky;
 mod ssao;
 mod stars;

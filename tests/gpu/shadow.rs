@@ -11,12 +11,11 @@ use skylight::passes::view::View;
 use skylight::scene::{Camera, Scene};
 
 /// Width of the untested band around a shadow's edge, texels: 2 for the map, 1.5 for the half width of the 3x3 tent filter
-/// (four bilinear taps), which is shifted by the normal offset of up to 1.5 texels.
+/// (four bilinear taps).
 const EDGE_TEXELS: f64 = 3.5;
 
-/// Width of wrongly lit ground (light leak) allowed at a wall's foot, texels across the light: the normal offset moves the
-/// receiver by up to 1.5 texels, the filter reaches 1.5 texels.
-const FOOT_TEXELS: f64 = 3.0;
+/// Width of wrongly lit ground (light leak) allowed at a wall's foot, texels across the light: none, rays decide.
+const FOOT_TEXELS: f64 = 0.01;
 
 const SIZE: (u32, u32) = (240, 180);
 

@@ -32,10 +32,7 @@ fn draw_uploaded_quad(device: &mut Device, size: u32, opaque: u32) -> Vec<f32> {
         vertex: &formats,
         colors: &[],
         blend: skylight::gpu::Blend::Off,
-        depth: Depth::Write {
-            format: depth_format,
-            slope_bias: 0.0,
-        },
+        depth: Depth::Write(depth_format),
         constants: &[],
     };
     let pipeline = Pipeline::new(&device.context, &desc).expect("a pipeline");

@@ -29,12 +29,7 @@ pub enum Depth {
     /// Passes nearer (greater) fragments; no depth writes. For surfaces that let light through.
     Test(vk::Format),
     /// Passes nearer (greater) fragments and writes their depth.
-    Write {
-        /// Format of the attachment.
-        format: vk::Format,
-        /// Slope-scaled depth bias away from the viewer, as a factor on the maximum depth slope.
-        slope_bias: f32,
-    },
+    Write(vk::Format),
 }
 
 impl Depth {
@@ -45,12 +40,12 @@ impl Depth {
             Self::Surface(format)
             | Self::Background(format)
             | Self::Test(format)
-            | Self::Write { format, .. } => Some(format),
+            | Self::Write(format) => Some(format),
         }
     }
 
     fn is_written(self) -> bool {
-        matches!(self, Self::Write { .. })
+        matches!(self, Self::Write(_))
     }
 }
 

@@ -41,7 +41,7 @@ pub(super) fn graphics(
         .scissor_count(1);
     let multisample = vk::PipelineMultisampleStateCreateInfo::default()
         .rasterization_samples(vk::SampleCountFlags::TYPE_1);
-    let rasterization = rasterization(desc.depth);
+    let rasterization = rasterization();
     let depth = depth_state(desc.depth);
     let blends = vec![blend_state(desc.blend); desc.colors.len()];
     let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
@@ -139,19 +139,11 @@ fn vertex_size(format: vk::Format) -> u32 {
     }
 }
 
-fn rasterization(depth: Depth) -> vk::PipelineRasterizationStateCreateInfo<'static> {
-    let base = vk::PipelineRasterizationStateCreateInfo::default()
+fn rasterization() -> vk::PipelineRasterizationStateCreateInfo<'static> {
+    vk::PipelineRasterizationStateCreateInfo::default()
         .polygon_mode(vk::PolygonMode::FILL)
         .cull_mode(vk::CullModeFlags::NONE)
-        .line_width(1.0);
-    match depth {
-        Depth::Write { slope_bias, .. } if slope_bias != 0.0 => {
-            // Depth is reversed: a negative bias moves fragments away from the viewer.
-            base.depth_bias_enable(true)
-                .depth_bias_slope_factor(-slope_bias)
-        }
-        _ => base,
-    }
+        .line_width(1.0)
 }
 
 fn depth_state(depth: Depth) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
@@ -159,10 +151,10 @@ fn depth_state(depth: Depth) -> vk::PipelineDepthStencilStateCreateInfo<'static>
         // A full-screen triangle has depth 0, less than any surface.
         Depth::Surface(_) => vk::CompareOp::LESS,
         Depth::Background(_) => vk::CompareOp::EQUAL,
-        Depth::Off | Depth::Test(_) | Depth::Write { .. } => vk::CompareOp::GREATER,
+        Depth::Off | Depth::Test(_) | Depth::Write(_) => vk::CompareOp::GREATER,
     };
     vk::PipelineDepthStencilStateCreateInfo::default()
         .depth_test_enable(depth != Depth::Off)
-        .depth_write_enable(matches!(depth, Depth::Write { .. }))
+        .depth_write_enable(matches!(depth, Depth::Write(_)))
         .depth_compare_op(compare)
 }

@@ -16,6 +16,9 @@ use crate::scene::{Emitter, Emitters, Mean, Reflectances, Scene, Triangle};
 /// Nodes and triangles in a row of their images; the rows are longer if there would be too many.
 const COLUMNS: usize = 1024;
 
+/// Constants of pipelines that trace rays.
+pub type RayConstants = [(&'static str, u32); 4];
+
 /// The hierarchy in images.
 pub struct Tree {
     nodes: Image,
@@ -83,7 +86,7 @@ impl Tree {
     }
 
     /// Constants of pipelines that trace rays.
-    pub fn constants(&self) -> [(&'static str, u32); 4] {
+    pub fn constants(&self) -> RayConstants {
         [
             glass_index(),
             ("NODE_COLUMNS", self.node_columns),

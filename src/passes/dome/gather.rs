@@ -196,7 +196,7 @@ impl Dome {
         let depth = Format::D32_SFLOAT;
         Ok(Self {
             settings,
-            casters: Casters::new(context, geometry, 0.0)?.with_panes(context, geometry)?,
+            casters: Casters::new(context, geometry)?.with_panes(context, geometry)?,
             gather: gather_pipeline(context, geometry, settings, lighting, bounces)?,
             resolve: fullscreen(
                 context,

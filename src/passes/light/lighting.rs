@@ -17,12 +17,13 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
+use crate::passes::bounces::tree::{RayConstants, Tree};
 use crate::passes::dome::gather::BIAS_TEXELS;
 use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
 use crate::passes::light::panes::{self, BeforePicture};
 use crate::passes::sky::air::AirBefore;
 pub use crate::passes::sun_shadow::cascades::Shadows;
-use crate::passes::sun_shadow::cascades::{BLEND, MAX_RADIUS, NORMAL_OFFSET_TEXELS, SunViews};
+use crate::passes::sun_shadow::cascades::{BLEND, MAX_RADIUS, PLANE_OFFSET_TEXELS, SunViews};
 use crate::passes::surfaces::gbuffer::Surfaces;
 pub use crate::passes::surfaces::geometry::EmissionSource;
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
@@ -40,6 +41,7 @@ gpu_struct! {
         specular_scale: f32,
         planes: [[f32; 4]; 4],
         occlusion_from: IVec2,
+        traces: u32,
     }
 }
 
@@ -243,6 +245,8 @@ pub struct Light<'a> {
     pub sky_irradiance: &'a Image,
     /// Radiance L of sky and ground, kcd/m².
     pub sky_radiance: &'a Image,
+    /// Whether rays decide at the edges of shadows: not while the view moves.
+    pub traces: bool,
     /// Panes of glass before the picture.
     pub panes: BeforePicture<'a>,
     /// What panes let through of the sun's light, in the views of its shadow map; `None` without panes.
@@ -275,8 +279,13 @@ impl Lighting {
     ///
     /// # Errors
     /// Fails when the device cannot create the resources.
-    pub fn new(context: &Arc<Context>, size: [u32; 2], settings: LightingSettings) -> Result<Self> {
-        Self::with(context, size, settings, false)
+    pub fn new(
+        context: &Arc<Context>,
+        rays: RayConstants,
+        size: [u32; 2],
+        settings: LightingSettings,
+    ) -> Result<Self> {
+        Self::with(context, rays, size, settings, false)
     }
 
     /// Creates the pass for converging frames: without diffuse sky light (A = 0), which [`crate::passes::dome::gather::Dome`] adds,
@@ -286,14 +295,16 @@ impl Lighting {
     /// Fails when the device cannot create the resources.
     pub fn converging(
         context: &Arc<Context>,
+        rays: RayConstants,
         size: [u32; 2],
         settings: LightingSettings,
     ) -> Result<Self> {
-        Self::with(context, size, settings, true)
+        Self::with(context, rays, size, settings, true)
     }
 
     fn with(
         context: &Arc<Context>,
+        rays: RayConstants,
         size: [u32; 2],
         settings: LightingSettings,
         is_converging: bool,
@@ -325,10 +336,11 @@ impl Lighting {
         constants.push(("PANES", settings.panes.is_some().into()));
         constants.push(("CASCADES", settings.shadows.cascades.max(1)));
         constants.push(("PCSS", settings.shadows.penumbrae.into()));
-        constants.push(("NORMAL_OFFSET", NORMAL_OFFSET_TEXELS.to_bits()));
+        constants.push(("PLANE_OFFSET", PLANE_OFFSET_TEXELS.to_bits()));
         constants.push(("BLEND", BLEND.to_bits()));
         constants.push(("MAX_RADIUS", MAX_RADIUS.to_bits()));
         constants.push(("MATERIAL_COLUMNS", MATERIAL_COLUMNS));
+        constants.extend(rays);
         let pipeline = fullscreen_at(
             context,
             "lighting",
@@ -350,13 +362,14 @@ impl Lighting {
     pub fn record(
         &mut self,
         recorder: &mut Recorder,
+        tree: &Tree,
         surfaces: &Surfaces,
         materials: &Image,
         ambient: &Image,
         light: &Light<'_>,
         view: &View,
     ) -> &Image {
-        let pass = recorder.pass("lighting", &self.pipeline);
+        let pass = tree.bound_to(recorder.pass("lighting", &self.pipeline));
         let pass = light.panes.sampled_by(pass, materials);
         let sun_glass = light.sun_glass.unwrap_or(materials);
         let pass = surfaces.sampled_by(pass, materials);
@@ -394,6 +407,7 @@ impl Lighting {
             planes: shadow.planes().to_cols_array_2d(),
             // Tiles share the occlusion image of the whole picture.
             occlusion_from: view.window.map_or(IVec2::ZERO, |w| w.origin.as_ivec2()),
+            traces: light.traces.into(),
         }
     }
 

@@ -85,10 +85,7 @@ impl Ssao {
         let constants = [("STEPS", settings.steps), spacing[0], spacing[1]];
         let points = size.map(|edge| edge.div_ceil(settings.pixels_per_texel()));
         let image = |name| Image::new(context, &ImageDesc::flat(name, FORMAT, points));
-        let writes = Depth::Write {
-            format: DEPTH,
-            slope_bias: 0.0,
-        };
+        let writes = Depth::Write(DEPTH);
         let on_points = |name, fragment, constants: &[_]| {
             let tests = Depth::Surface(DEPTH);
             fullscreen_at(context, name, fragment, &[FORMAT], tests, constants)

@@ -23,7 +23,7 @@ pub struct Shadows {
 }
 
 impl Shadows {
-    /// Radius of the lookups around a receiver, texels, including filter and normal offset.
+    /// Radius of the lookups around a receiver, texels, including filter and offset.
     pub(in crate::passes) fn filter_radius(&self) -> f32 {
         if self.penumbrae {
             MAX_RADIUS + 4.0
@@ -47,8 +47,8 @@ const MAX_TEXEL_RATIO: f32 = 0.75;
 pub(in crate::passes) const BLEND: f32 = 0.85;
 /// Largest penumbra radius, texels: with taps farther apart, thin casters would be missed.
 pub(in crate::passes) const MAX_RADIUS: f32 = 48.0;
-/// Normal offset of receivers at grazing light, texels.
-pub(in crate::passes) const NORMAL_OFFSET_TEXELS: f32 = 1.5;
+/// Nothing within this distance from a wall that stands upright on a receiver shadows it, texels: such a wall may be lit itself.
+pub(in crate::passes) const PLANE_OFFSET_TEXELS: f32 = 1.0;
 
 gpu_struct! {
     /// The cascades, for `include/sun_shadow.glsl`.

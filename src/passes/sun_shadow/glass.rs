@@ -41,10 +41,7 @@ pub(super) fn by_chance(context: &Arc<Context>) -> Result<Pipeline> {
             ],
             vertex: &VERTEX,
             colors: &[],
-            depth: Depth::Write {
-                format: Format::D32_SFLOAT,
-                slope_bias: 0.0,
-            },
+            depth: Depth::Write(Format::D32_SFLOAT),
             blend: Blend::Off,
             constants: &[glass_index()],
         },

@@ -34,9 +34,6 @@ gpu_struct! {
     }
 }
 
-/// Slope-scaled depth bias of casters, texels.
-const SLOPE_BIAS: f32 = 1.5;
-
 /// Draws casters into shadow maps.
 pub(in crate::passes) struct Casters {
     solid: Pipeline,
@@ -78,13 +75,13 @@ impl Tile {
 }
 
 impl Casters {
-    /// Creates the pipelines. `slope_bias` is the slope-scaled depth bias, texels. Panes of glass are not drawn.
-    pub fn new(context: &Arc<Context>, geometry: &Geometry, slope_bias: f32) -> Result<Self> {
+    /// Creates the pipelines. Panes of glass are not drawn.
+    pub fn new(context: &Arc<Context>, geometry: &Geometry) -> Result<Self> {
         let has_holes = geometry.kinds().any(|kind| kind.cut_out);
         Ok(Self {
-            solid: pipeline(context, "shadow map", slope_bias, false)?,
+            solid: pipeline(context, "shadow map", false)?,
             cut_outs: has_holes
-                .then(|| pipeline(context, "shadow map, cut-outs", slope_bias, true))
+                .then(|| pipeline(context, "shadow map, cut-outs", true))
                 .transpose()?,
             panes: None,
         })
@@ -166,7 +163,7 @@ fn record_cut_outs(
         });
 }
 
-fn pipeline(context: &Arc<Context>, name: &str, slope_bias: f32, holes: bool) -> Result<Pipeline> {
+fn pipeline(context: &Arc<Context>, name: &str, holes: bool) -> Result<Pipeline> {
     let solid: &[_] = &[&shaders::SHADOW_VERT];
     let cut_out: &[_] = &[&shaders::SHADOW_CUT_OUT_VERT, &shaders::SHADOW_CUT_OUT_FRAG];
     let streams = [Format::R32G32B32_SFLOAT, Format::R32G32_SFLOAT];
@@ -177,10 +174,7 @@ fn pipeline(context: &Arc<Context>, name: &str, slope_bias: f32, holes: bool) ->
             stages: if holes { cut_out } else { solid },
             vertex: &streams[..if holes { 2 } else { 1 }],
             colors: &[],
-            depth: Depth::Write {
-                format: Format::D32_SFLOAT,
-                slope_bias,
-            },
+            depth: Depth::Write(Format::D32_SFLOAT),
             blend: Blend::Off,
             constants: &[],
         },
@@ -221,11 +215,10 @@ impl Shadow {
     ) -> Result<Self> {
         let size = [resolution * shadows.cascades.max(1), resolution];
         let fit = Fit::Cascades(shadows);
-        Self::new(context, geometry, size, fit, SLOPE_BIAS)
+        Self::new(context, geometry, size, fit)
     }
 
-    /// One map for averaged frames, `resolution` texels on a side. Depth is compared in the receiver's plane, so casters need no
-    /// depth bias.
+    /// One map for averaged frames, `resolution` texels on a side.
     ///
     /// # Errors
     /// Fails when the device is out of memory.
@@ -235,21 +228,15 @@ impl Shadow {
         resolution: u32,
     ) -> Result<Self> {
         let size = [resolution; 2];
-        Self::new(context, geometry, size, Fit::Perspective, 0.0)
+        Self::new(context, geometry, size, Fit::Perspective)
     }
 
-    fn new(
-        context: &Arc<Context>,
-        geometry: &Geometry,
-        size: [u32; 2],
-        fit: Fit,
-        slope_bias: f32,
-    ) -> Result<Self> {
+    fn new(context: &Arc<Context>, geometry: &Geometry, size: [u32; 2], fit: Fit) -> Result<Self> {
         let desc = ImageDesc::flat("shadow map", Format::D32_SFLOAT, size);
         let all = fit_all(Vec3::Y, geometry.casters(), size[1]);
         Ok(Self {
             fit,
-            casters: Casters::new(context, geometry, slope_bias)?,
+            casters: Casters::new(context, geometry)?,
             depth: Image::new(context, &desc)?,
             glass: SunGlass::new(context, geometry, size)?,
             views: SunViews::one(all),

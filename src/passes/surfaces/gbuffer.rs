@@ -217,10 +217,7 @@ impl Targets {
                 stages: &stages,
                 vertex: &VERTEX[..streams],
                 colors: &self.formats,
-                depth: Depth::Write {
-                    format: Format::D32_SFLOAT,
-                    slope_bias: 0.0,
-                },
+                depth: Depth::Write(Format::D32_SFLOAT),
                 blend: Blend::Off,
                 constants: &constants,
             },

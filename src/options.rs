@@ -25,7 +25,7 @@ use std::sync::LazyLock;
 use clap::builder::ArgPredicate;
 use clap::{ArgAction, Args, Command, value_parser};
 
-pub use crate::daylight::false_colour::{Quantity, Range};
+pub use crate::daylight::false_colour::{ColourMap, Quantity, Range};
 pub use crate::daylight::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCurve};
 pub use crate::frame::{Filter, Visibility};
 pub use crate::gpu::Optional;
@@ -239,10 +239,10 @@ options! {
         }
 
         "Camera" ["camera"] {
-            /// Position of the camera, metres: east, up, south; by default the whole model is in view.
+            /// Position of the camera, metres: east, up, south; by default the model is in view, without a wide ground or what lies far off; a room is entered.
             #[arg(value_name = "X,Y,Z", value_parser = values::point, allow_hyphen_values = true)]
             eye: Option<[f64; 3]>,
-            /// Point that the camera looks at, metres; by default the middle of the model.
+            /// Point that the camera looks at, metres; by default the middle of what is in view.
             #[arg(value_name = "X,Y,Z", value_parser = values::point, allow_hyphen_values = true)]
             target: Option<[f64; 3]>,
             /// Vertical field of view, degrees, 1 to 170.
@@ -280,6 +280,9 @@ options! {
             /// Values of the first and the last false colour; by default from the picture, in the window those of a sunny day.
             #[arg(value_name = "MIN,MAX", value_parser = values::colour_range, allow_hyphen_values = true)]
             false_colour_range: Option<Range>,
+            /// Colours of false-colour pictures.
+            #[arg(value_name = "MAP", value_parser = choice::<ColourMap>(), default_value_t)]
+            colour_map: ColourMap,
         }
 
         "Light" ["sky", "moment"] {

@@ -27,6 +27,7 @@ layout(constant_id = 7) const bool GREY = false;
 layout(constant_id = 10) const bool DITHER = false;
 // Show false colours of the luminance instead of exposure and curve.
 layout(constant_id = 9) const bool FALSE_COLOUR = false;
+layout(constant_id = 12) const int COLOUR_MAP = TURBO;
 
 layout(set = 0, binding = 0) uniform sampler2D radiance;          // kcd/m^2
 layout(set = 0, binding = 1) uniform sampler2D average_luminance; // kcd/m^2, one texel
@@ -46,7 +47,7 @@ void main() {
     if (FALSE_COLOUR) {
         float l = luminance(c);
         float share = clamp(log2(max(l, 1e-30)) * push.exposure + push.offset, 0.0, 1.0);
-        vec3 colour = l > 0.0 ? turbo(share) : vec3(0.0);
+        vec3 colour = l > 0.0 ? mapped_colour(COLOUR_MAP, share) : vec3(0.0);
         display = vec4(SRGB ? srgb_from_linear(colour) : colour, 1.0);
         return;
     }

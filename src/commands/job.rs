@@ -11,6 +11,7 @@ use super::light::{conditions, sun_position};
 use super::{check_strict, tell};
 use crate::daylight::colour::luminance;
 use crate::daylight::exposure::{KEY, automatic, factor_from_ev100, least_average};
+use crate::daylight::false_colour::Colours;
 use crate::daylight::sample_count::ErrorEstimate;
 use crate::daylight::sky::Daylight;
 use crate::daylight::spectrum::LUMINOUS_EFFICACY;
@@ -26,7 +27,7 @@ use crate::passes::occlusion::ssao::SsaoSettings;
 use crate::passes::picture::tone_map::Scale;
 use crate::passes::sky::irradiance::IrradianceSettings;
 use crate::passes::sky::route::CubeRoute;
-use crate::scene::{self, Camera, LoadOptions, Loaded, Scene};
+use crate::scene::{self, Camera, LoadOptions, Loaded, Scene, Subject};
 
 /// Edge of a sky cube face with `--preset lecture`, texels.
 const LECTURE_SKY_EDGE: u32 = 512;
@@ -74,6 +75,8 @@ pub struct Job {
     pub settings: Options,
     /// Geometry and materials.
     pub scene: Scene,
+    /// What of the scene the default view shows.
+    pub subject: Subject,
     /// The camera.
     pub camera: Camera,
     /// Position of the sun.
@@ -113,11 +116,16 @@ impl Job {
         let daylight = Daylight::new(&conditions(&settings, &sun));
         let mut scene = std::mem::take(&mut loaded.scene);
         scene.scale_emission(settings.emission_scale as f32);
-        let camera = settings.camera(&scene.bounds, scene.origin);
+        let mut subject = Subject::of(&scene);
+        if settings.eye.is_none() && settings.target.is_none() {
+            subject = subject.entered(&mut scene);
+        }
+        let camera = settings.camera(&subject, scene.origin);
         let name = path.map_or("bundled".to_owned(), |p| p.display().to_string());
         Ok(Self {
             settings,
             scene,
+            subject,
             camera,
             sun,
             daylight,
@@ -208,8 +216,10 @@ impl Job {
         set.tone.gamma = s.gamma;
         set.tone.depth_scale = f64::from(self.scene.bounds.diagonal()).max(1e-3);
         let colours = s.false_colour.filter(|quantity| show.holds(*quantity));
-        let range = colours.map(|quantity| s.false_colour_range.unwrap_or(quantity.daytime()));
-        set.tone.false_colour = range;
+        set.tone.false_colour = colours.map(|quantity| Colours {
+            range: s.false_colour_range.unwrap_or(quantity.daytime()),
+            map: s.colour_map,
+        });
         set.showing(show).with_occlusion(SsaoSettings {
             radius: s.ao_radius as f32,
             downscale: s.ao_resolution.downscale(s.size.height),

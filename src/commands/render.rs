@@ -7,7 +7,7 @@ use super::job::Job;
 use super::samples::{self, Drawn, Progress, Rule};
 use super::tiled::Tiled;
 use crate::daylight::colour::luminance;
-use crate::daylight::false_colour::{Quantity, Range};
+use crate::daylight::false_colour::{Colours, Quantity, Range};
 use crate::error::Result;
 use crate::frame::Frame;
 use crate::gpu::{Recorder, Timing, read_back};
@@ -124,8 +124,9 @@ impl<'j> Renderer<'j> {
         let gamma = self.job.settings.gamma.filter(|_| colours.is_none());
         let encoding = gamma.map_or(Encoding::Srgb, Encoding::Gamma);
         let mut summary = ev100.map_or(String::new(), |ev| format!(", EV100 {ev:.2}"));
-        if let Some((quantity, range)) = colours {
-            draw_legend(&mut pixels.bytes, pixels.size, quantity, range);
+        if let Some((quantity, colours)) = colours {
+            draw_legend(&mut pixels.bytes, pixels.size, quantity, colours);
+            let range = colours.range;
             let used = format!("{},{}", range.min, range.max);
             metadata.push(("false-colour-range used".into(), used));
             summary = format!(", {range} {}", quantity.unit());
@@ -143,27 +144,29 @@ impl<'j> Renderer<'j> {
         Ok(format!("{width}x{height}{summary}{samples}"))
     }
 
-    /// Quantity and range of the false colours. Without a given range, it is taken from the image, which is then tone mapped
+    /// Quantity and colours of a false-colour picture. Without a given range, it is taken from the image, which is then tone mapped
     /// again.
-    fn false_colours(&mut self) -> Result<Option<(Quantity, Range)>> {
+    fn false_colours(&mut self) -> Result<Option<(Quantity, Colours)>> {
         let settings = &self.job.settings;
         let Some(quantity) = settings.false_colour else {
             return Ok(None);
         };
+        let map = settings.colour_map;
         if let Some(range) = settings.false_colour_range {
-            return Ok(Some((quantity, range)));
+            return Ok(Some((quantity, Colours { range, map })));
         }
         let texels = read_back(&mut self.recorder, self.frame.radiance())?.rgba();
         let luminance = |t: &[f32; 4]| luminance(glam::Vec3::from_slice(t).as_dvec3()) * 1e3;
         let range = Range::around(texels.iter().map(luminance)).unwrap_or(quantity.daytime());
+        let colours = Colours { range, map };
         let tone = ToneSettings {
-            false_colour: Some(range),
+            false_colour: Some(colours),
             ..self.frame.settings().tone
         };
         self.recorder.begin()?;
         self.frame.retone(&mut self.recorder, tone)?;
         self.recorder.finish()?;
-        Ok(Some((quantity, range)))
+        Ok(Some((quantity, colours)))
     }
 
     /// EV100 used; `None` for quantities that are not exposed.

@@ -144,11 +144,13 @@ impl<'j> Tiled<'j> {
             };
             tone.scale = Scale::Fixed(key / average * paper);
         }
-        if tone.false_colour.is_some() && self.job.settings.false_colour_range.is_none() {
+        if let Some(colours) = &mut tone.false_colour
+            && self.job.settings.false_colour_range.is_none()
+        {
             let texels = self.read(Frame::radiance)?.rgba();
             let luminance = |t: &[f32; 4]| luminance(glam::Vec3::from_slice(t).as_dvec3()) * 1e3;
             let around = Range::around(texels.iter().map(luminance));
-            tone.false_colour = around.or(tone.false_colour);
+            colours.range = around.unwrap_or(colours.range);
         }
         Ok(tone)
     }

@@ -128,11 +128,18 @@ fn coordinates(text: &str) -> Result<Place, String> {
     Place::new(latitude, longitude)
 }
 
-/// Splits a text into its two coordinates: at a comma or semicolon, else at a hemisphere letter or a blank.
+/// Splits a text into its two coordinates: at a semicolon, else at the comma unless it is a decimal one, else at a hemisphere letter or a
+/// blank.
 fn halves(text: &str) -> Option<(&str, &str)> {
     let text = text.trim();
-    if let Some((a, b)) = text.split_once([',', ';']) {
-        return (!b.contains([',', ';'])).then_some((a, b));
+    if let Some((a, b)) = text.split_once(';') {
+        return (!b.contains(';')).then_some((a, b));
+    }
+    if let Some((a, b)) = decimal_commas(text) {
+        return Some((a, b));
+    }
+    if let Some((a, b)) = text.split_once(',') {
+        return (!b.contains(',')).then_some((a, b));
     }
     let mut letters = text.match_indices(|c: char| "NSEWnsew".contains(c));
     let at = match letters.next() {
@@ -141,6 +148,14 @@ fn halves(text: &str) -> Option<(&str, &str)> {
         None => text.find(char::is_whitespace)?,
     };
     Some(text.split_at(at))
+}
+
+/// The coordinates of `55,68 12,57` or `55,68, 12,57`: two words with a decimal comma each.
+fn decimal_commas(text: &str) -> Option<(&str, &str)> {
+    let has_one = |word: &str| word.matches(',').count() == 1;
+    let (a, b) = text.split_once(char::is_whitespace)?;
+    let (a, b) = (a.strip_suffix(',').unwrap_or(a), b.trim());
+    (has_one(a) && has_one(b)).then_some((a, b))
 }
 
 /// One coordinate, degrees, and its axis if a letter tells it.
@@ -186,7 +201,7 @@ fn sexagesimal(text: &str) -> Option<f64> {
     let (mut degrees, mut unit) = (0.0, 1.0);
     for mark in ['°', '\'', '"'] {
         let (number, after) = rest.split_once(mark).unwrap_or((rest, ""));
-        let value: f64 = number.trim().parse().ok()?;
+        let value: f64 = number.trim().replace(',', ".").parse().ok()?;
         let is_digit = |c: char| c.is_ascii_digit() || c == '.';
         if !number.trim().starts_with(is_digit) || (unit < 1.0 && value >= 60.0) {
             return None;
@@ -400,6 +415,9 @@ mod tests {
     #[test]
     fn coordinates_are_read_as_people_write_them() {
         for text in [
+            "-33,87; 151,21",
+            "-33,87 151,21",
+            "-33,87, 151,21",
             "-33.87,151.21",
             " -33.87 , +151.21 ",
             "−33.87, 151.21",

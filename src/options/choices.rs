@@ -7,8 +7,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Command};
 
 use super::{
-    Ambient, Filter, IrradianceMethod, Optional, Phong, Quantity, Reflections, Show, SkyModel,
-    SunPositionMethod, ToneCurve, Unit, Up, Visibility,
+    Ambient, ColourMap, Filter, IrradianceMethod, Optional, Phong, Quantity, Reflections, Show,
+    SkyModel, SunPositionMethod, ToneCurve, Unit, Up, Visibility,
 };
 
 /// An enum whose variants are values of an option.
@@ -154,6 +154,11 @@ choices! {
     Phong {
         Lecture = "lecture": "(r·l)^p for the sun, a perfect mirror for the sky",
         Normalized = "normalized": "Energy-conserving, ρ_s (p + 2)/(2π) (r·l)^p cos θ, for sun and sky alike",
+    }
+    ColourMap {
+        Turbo = "turbo": "Many hues: fine steps can be told apart",
+        Viridis = "viridis": "From dark violet to yellow, evenly lighter; also in grey and for the colour-blind",
+        Cividis = "cividis": "From dark blue to yellow; the same to people with and without red-green deficiency",
     }
     Quantity {
         Luminance = "luminance": "Of the light toward the eye, cd/m²",

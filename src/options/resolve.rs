@@ -10,7 +10,7 @@ use super::{
 use crate::daylight::atmosphere::air::Air;
 use crate::daylight::sky::Conditions;
 use crate::scene::{
-    Bounds, Camera, DEFAULT_FOV_DEG, LoadOptions, Loaded, NamedOptions, SceneError,
+    Bounds, Camera, DEFAULT_FOV_DEG, LoadOptions, Loaded, NamedOptions, SceneError, Subject,
 };
 
 /// Number of samples from which shadow maps of the sky beat screen-space ambient occlusion in every view.
@@ -176,14 +176,14 @@ impl Options {
         }
     }
 
-    /// The camera for a model within `bounds`, relative to `origin`; what is not given is chosen to frame the model.
-    pub fn camera(&self, bounds: &Bounds, origin: DVec3) -> Camera {
+    /// The camera for a subject relative to `origin`; what is not given is chosen to show it.
+    pub fn camera(&self, subject: &Subject, origin: DVec3) -> Camera {
         let point = |p: [f64; 3]| (DVec3::from(p) - origin).as_vec3();
         Camera::from_parts(
             self.eye.map(point),
             self.target.map(point),
             Some(self.fov as f32),
-            bounds,
+            subject,
             self.aspect(),
         )
     }

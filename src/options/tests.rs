@@ -258,7 +258,7 @@ fn a_camera_keeps_its_bits_and_few_digits() {
     assert!(line.contains("--eye 0.1,0.33333334,-0.0000002"), "{line}");
     let seen = read(&line, &scene)
         .1
-        .camera(&Bounds::EMPTY, glam::DVec3::ZERO);
+        .camera(&Bounds::EMPTY.into(), glam::DVec3::ZERO);
     assert_eq!(
         (seen.eye, seen.target, seen.fov_deg),
         (camera.eye, camera.target, camera.fov_deg)
@@ -276,7 +276,7 @@ fn a_camera_keeps_the_coordinates_of_the_file() {
     );
     let options = Options::resolve(&user, &scene).expect("good");
     let origin = glam::DVec3::new(5e5, 0.0, -6.1e6);
-    let camera = options.camera(&Bounds::EMPTY, origin);
+    let camera = options.camera(&Bounds::EMPTY.into(), origin);
     assert_eq!(camera.eye, glam::Vec3::new(1.25, 2.0, -3.1));
     let again = options.with_camera(&camera, origin);
     assert_eq!((again.eye, again.target), (options.eye, options.target));

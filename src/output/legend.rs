@@ -3,7 +3,7 @@
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 
 use crate::daylight::colour::srgb_oetf;
-use crate::daylight::false_colour::{Quantity, Range, Tick};
+use crate::daylight::false_colour::{Colours, Quantity, Range, Tick};
 
 /// Font weight of the labels.
 const WEIGHT: FontWeight = FontWeight::Regular;
@@ -26,15 +26,15 @@ const HEIGHT_OF_ONE: u32 = 900;
 /// Height of the legend, tenths of the picture's height.
 const TENTHS: i32 = 7;
 
-/// Draws the legend of `range` at the right edge of `rgba`: rows from the top, four bytes per pixel, sRGB.
+/// Draws the legend of `colours` at the right edge of `rgba`: rows from the top, four bytes per pixel, sRGB.
 ///
 /// Returns whether the legend was drawn: a picture that is too small stays unchanged.
-pub fn draw_legend(rgba: &mut [u8], size: [u32; 2], quantity: Quantity, range: Range) -> bool {
+pub fn draw_legend(rgba: &mut [u8], size: [u32; 2], quantity: Quantity, colours: Colours) -> bool {
     let mut canvas = Canvas::new(rgba, size);
-    let layout = Layout::new(&canvas, quantity, &range);
+    let layout = Layout::new(&canvas, quantity, &colours.range);
     let fits = layout.is_within_picture();
     if fits {
-        layout.draw(&mut canvas, &range);
+        layout.draw(&mut canvas, &colours);
     }
     fits
 }
@@ -155,10 +155,10 @@ impl Layout {
         self.panel.y >= 0 && self.panel.x >= self.panel.width && self.ticks.len() >= 2
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, range: &Range) {
+    fn draw(&self, canvas: &mut Canvas<'_>, colours: &Colours) {
         canvas.fill(self.panel, PANEL);
         canvas.text(self.panel.x + GAP, self.panel.y + GAP, self.unit);
-        self.draw_bar(canvas, range);
+        self.draw_bar(canvas, colours);
         let x = self.bar.x + BAR;
         for tick in &self.ticks {
             let y = self.height_of(tick.share);
@@ -174,18 +174,17 @@ impl Layout {
     }
 
     /// Fills each row with the colour of the value at its centre.
-    fn draw_bar(&self, canvas: &mut Canvas<'_>, range: &Range) {
+    fn draw_bar(&self, canvas: &mut Canvas<'_>, colours: &Colours) {
         let rows = f64::from(self.bar.height);
         for row in 0..self.bar.height {
             let share = 1.0 - (f64::from(row) + 0.5) / rows;
-            let value = range.min * (range.max / range.min).powf(share);
             let byte = |linear: f64| (srgb_oetf(linear) * 255.0).round() as u8;
             let line = Rectangle {
                 y: self.bar.y + row,
                 height: 1,
                 ..self.bar
             };
-            canvas.fill(line, range.colour(value).to_array().map(byte));
+            canvas.fill(line, colours.map.colour(share).to_array().map(byte));
         }
     }
 
@@ -224,7 +223,7 @@ fn legible(ticks: Vec<Tick>, height: i32, letter: i32) -> Vec<Tick> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::daylight::false_colour::turbo;
+    use crate::daylight::false_colour::ColourMap;
 
     const RANGE: Range = Range {
         min: 100.0,
@@ -232,8 +231,12 @@ mod tests {
     };
 
     fn drawn(size: [u32; 2], range: Range) -> (bool, Vec<u8>) {
+        let colours = Colours {
+            range,
+            map: ColourMap::Turbo,
+        };
         let mut rgba = vec![7; 4 * (size[0] * size[1]) as usize];
-        let is_drawn = draw_legend(&mut rgba, size, Quantity::Luminance, range);
+        let is_drawn = draw_legend(&mut rgba, size, Quantity::Luminance, colours);
         (is_drawn, rgba)
     }
 
@@ -248,7 +251,9 @@ mod tests {
             for tick in &layout.ticks {
                 let (x, y) = (layout.bar.x + 3, layout.height_of(tick.share));
                 let at = 4 * (y as u32 * canvas.zoom * size[0] + x as u32 * canvas.zoom) as usize;
-                let expected = turbo(tick.share).map(|c| 255.0 * srgb_oetf(c));
+                let expected = ColourMap::Turbo
+                    .colour(tick.share)
+                    .map(|c| 255.0 * srgb_oetf(c));
                 for (byte, expected) in rgba[at..at + 3].iter().zip(expected.to_array()) {
                     // The row's centre is half a row off, which matters most where blue rises steeply.
                     assert!((f64::from(*byte) - expected).abs() < 12.0, "{tick:?}");

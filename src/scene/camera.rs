@@ -7,6 +7,7 @@ use glam::camera::rh::{proj::vulkan, view};
 use glam::{Mat4, Vec3};
 
 use crate::scene::bounds::Bounds;
+use crate::scene::subject::Subject;
 
 /// Default vertical field of view, degrees.
 pub const DEFAULT_FOV_DEG: f32 = 45.0;
@@ -32,23 +33,26 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A camera with the given parts. Missing parts are chosen so that the model within `bounds` is in view.
+    /// A camera with the given parts. Missing parts are chosen so that the subject is in view.
     ///
-    /// Without a target, it looks at the centre of the model. Without an eye, it views the target from the direction and
-    /// distance of the default view. `aspect` is width / height.
+    /// Without a target, it looks at the centre of the subject. Without an eye, it views the target from the direction and
+    /// distance of the default view. With neither, it is within a subject that is a room. `aspect` is width / height.
     pub fn from_parts(
         eye: Option<Vec3>,
         target: Option<Vec3>,
         fov_deg: Option<f32>,
-        bounds: &Bounds,
+        subject: &Subject,
         aspect: f32,
     ) -> Self {
-        let framed = Self::framing(bounds, fov_deg.unwrap_or(DEFAULT_FOV_DEG), aspect);
+        let framed = Self::framing(&subject.bounds, fov_deg.unwrap_or(DEFAULT_FOV_DEG), aspect);
         let (eye, target) = match (eye, target) {
             (Some(eye), Some(target)) => (eye, target),
             (Some(eye), None) => (eye, framed.target),
             (None, Some(target)) => (target + framed.eye - framed.target, target),
-            (None, None) => (framed.eye, framed.target),
+            (None, None) => match subject.inside {
+                Some(inside) => (inside.eye, inside.target),
+                None => (framed.eye, framed.target),
+            },
         };
         // With no view direction given, look north.
         let target = if eye == target {
@@ -256,14 +260,14 @@ mod tests {
     fn missing_parts_are_filled_in() {
         let bounds = boxes()[0];
         let eye = Vec3::new(9.0, 2.0, 9.0);
-        let looks = Camera::from_parts(Some(eye), None, Some(30.0), &bounds, 1.0);
+        let looks = Camera::from_parts(Some(eye), None, Some(30.0), &bounds.into(), 1.0);
         assert_eq!(
             (looks.eye, looks.target, looks.fov_deg),
             (eye, bounds.centre(), 30.0)
         );
-        let itself = Camera::from_parts(Some(eye), Some(eye), None, &bounds, 1.0);
+        let itself = Camera::from_parts(Some(eye), Some(eye), None, &bounds.into(), 1.0);
         assert!(itself.view_from_world().is_finite());
-        let nothing = Camera::from_parts(None, None, None, &Bounds::EMPTY, 1.0);
+        let nothing = Camera::from_parts(None, None, None, &Bounds::EMPTY.into(), 1.0);
         assert!(nothing.view_from_world().is_finite());
     }
 }

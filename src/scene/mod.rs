@@ -30,6 +30,7 @@ mod progress;
 mod reflectance;
 mod scene_file;
 mod size;
+mod subject;
 mod texture;
 
 use std::borrow::Cow;
@@ -55,6 +56,7 @@ pub use placement::{Unit, Up};
 pub use progress::Progress;
 pub use reflectance::{Mean, Reflectances};
 pub use scene_file::{NamedCamera, NamedMoment, NamedOptions};
+pub use subject::Subject;
 pub use texture::{Encoding, Texture, Wrap};
 
 use load::append_model;

@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 
 use glam::DVec3;
 use skylight::daylight::colour::srgb_oetf;
-use skylight::daylight::false_colour::Range;
+use skylight::daylight::false_colour::{ColourMap, Range};
 
 const PLANE: &str = "v -500 0 500\nv 500 0 500\nv 500 0 -500\nv -500 0 -500\nf 1 2 3 4\n";
 const VIEW: [&str; 8] = [
@@ -87,9 +87,9 @@ fn render(folder: &Path, words: &[&str]) -> (Picture, String) {
 fn value_of(colour: DVec3, range: &Range) -> f64 {
     let steps = 4000;
     let value = |i: i32| range.min * (range.max / range.min).powf(f64::from(i) / f64::from(steps));
+    let map = ColourMap::default();
     let distance = |v: f64| {
-        range
-            .colour(v)
+        map.colour(range.share(v))
             .map(|c| 255.0 * srgb_oetf(c))
             .distance(colour)
     };

@@ -7,7 +7,7 @@ use crate::gpu::Device;
 use glam::{DVec3, UVec2, Vec3};
 use skylight::daylight::colour::{luminance, srgb_oetf};
 use skylight::daylight::exposure::{adaptation, robust_log_average};
-use skylight::daylight::false_colour::Range;
+use skylight::daylight::false_colour::{ColourMap, Colours, Range};
 use skylight::daylight::sky::{Conditions, Daylight, SkyModel};
 use skylight::daylight::sun_position::direction;
 use skylight::daylight::tone_curve::{ToneCurve, encode};
@@ -128,11 +128,18 @@ fn the_shaders_curves_meet_the_reference() {
 
 #[test]
 fn the_false_colours_are_those_of_the_cpu() {
+    for map in [ColourMap::Turbo, ColourMap::Viridis, ColourMap::Cividis] {
+        false_colours_are_those_of_the_cpu(map);
+    }
+}
+
+fn false_colours_are_those_of_the_cpu(map: ColourMap) {
     let mut device = Device::new();
     let range = Range {
         min: 20.0,
         max: 5e4,
     };
+    let colours = Colours { range, map };
     // From far below to far above the range, and zero; cd/m².
     let mut values: Vec<f64> = (0..2000)
         .map(|i| 10f64.powf(-3.0 + f64::from(i) / 200.0))
@@ -152,7 +159,7 @@ fn the_false_colours_are_those_of_the_cpu() {
         white: 3.0,
         gamma: Some(2.2),
         depth_scale: 1.0,
-        false_colour: Some(range),
+        false_colour: Some(colours),
     };
     let tone_map = ToneMap::new(&device.context, size, settings).expect("a pass");
     let source = device
@@ -166,7 +173,7 @@ fn the_false_colours_are_those_of_the_cpu() {
     // Half a step for rounding.
     let mut worst = Worst::new("false colours, 8 bits", 0.51);
     for (value, pixel) in values.iter().zip(bytes.chunks_exact(4)) {
-        let expected = range
+        let expected = colours
             .colour(*value)
             .to_array()
             .map(|c| 255.0 * srgb_oetf(c));

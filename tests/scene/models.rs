@@ -54,7 +54,7 @@ fn settings() -> FrameSettings {
 /// Radiance (kcd/m²), albedo and depth of a scene, seen from its default camera.
 fn pictures(context: &Arc<Context>, scene: &Scene) -> [Vec<[f32; 4]>; 3] {
     let aspect = SIZE.x as f32 / SIZE.y as f32;
-    let camera = Camera::from_parts(None, None, None, &scene.bounds, aspect);
+    let camera = Camera::from_parts(None, None, None, &scene.bounds.into(), aspect);
     let daylight = Daylight::new(&Conditions::default());
     let mut recorder = Recorder::new(context, Timing::Off).expect("a recorder");
     recorder.begin().expect("recording");

@@ -17,6 +17,7 @@ use super::interface::{Interface, UiRequest};
 use super::keys::Action;
 use super::loader::{Loader, Message};
 use super::stage::Stage;
+use super::touch::Touches;
 
 /// Retry interval when the window cannot be drawn to.
 const RETRY: Duration = Duration::from_millis(100);
@@ -38,6 +39,7 @@ pub(super) struct App {
     pub(super) stage: Option<Stage>,
     pub(super) interface: Interface,
     pub(super) input: Input,
+    pub(super) touches: Touches,
     pub(super) started: Instant,
     /// Start of the newest frame, while something is moving.
     ticked: Option<Instant>,
@@ -67,6 +69,7 @@ impl App {
             document: None,
             stage: None,
             input: Input::default(),
+            touches: Touches::default(),
             started: Instant::now(),
             ticked: None,
             again_at: None,
@@ -117,6 +120,9 @@ impl App {
                 stage
                     .window
                     .set_title(&format!("{} \u{2013} skylight", document.title()));
+                if self.document.is_none() {
+                    self.interface.hint();
+                }
                 self.document = Some(document);
             }
             Err(error) => tell(&mut self.interface, &error),

@@ -237,13 +237,17 @@ impl Controls {
 
     /// Moves toward (`steps` > 0) or away from `about` (metres; default: the pivot). Each step scales the distance equally.
     pub fn dolly(&mut self, steps: f64, about: Option<DVec3>) {
+        self.magnify(DOLLY_STEP.powf(-steps), about);
+    }
+
+    /// Moves toward (`ratio` > 1) or away from `about` (metres; default: the pivot), to the distance divided by `ratio`.
+    pub fn magnify(&mut self, ratio: f64, about: Option<DVec3>) {
         let about = about.filter(|p| p.is_finite());
-        if !steps.is_finite() {
+        if !ratio.is_finite() || ratio <= 0.0 {
             return;
         }
         self.travel = None;
-        let wanted = self.pose.distance * DOLLY_STEP.powf(steps);
-        let distance = self.within_reach(wanted);
+        let distance = self.within_reach(self.pose.distance / ratio);
         let centre = about.unwrap_or(self.pose.pivot);
         // The pose is scaled about this point, so the point stays where it is in the image.
         self.pose.pivot = centre + (self.pose.pivot - centre) * (distance / self.pose.distance);

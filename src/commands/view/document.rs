@@ -60,8 +60,8 @@ impl Document {
         size: Size,
     ) -> Result<Self> {
         let user = at_rest(user, size);
-        let viewpoints = named_cameras(&loaded, &user);
         let job = Job::of(path.as_deref(), loaded, &user)?;
+        let viewpoints = named_cameras(&job, &user);
         let frame = Frame::new(recorder, &job.scene, frame_settings(&job))?;
         Ok(Self {
             controls: Controls::new(&job.camera, &job.scene.bounds),
@@ -108,11 +108,11 @@ impl Document {
         }
     }
 
-    /// Moves the camera so that the whole scene is in view.
+    /// Moves the camera so that the whole subject is in view.
     pub(super) fn frame_all(&mut self) {
         let size = self.job.settings.size;
         let aspect = size.width as f32 / size.height.max(1) as f32;
-        self.controls.frame_all(&self.job.scene.bounds, aspect);
+        self.controls.frame_all(&self.job.subject.bounds, aspect);
     }
 
     /// Jumps to `camera`.
@@ -297,13 +297,14 @@ fn frame_settings(job: &Job) -> FrameSettings {
 }
 
 /// Viewpoints of the cameras named in the scene file.
-fn named_cameras(loaded: &Loaded, user: &OptionValues) -> Viewpoints {
+fn named_cameras(job: &Job, user: &OptionValues) -> Viewpoints {
+    let loaded = &job.loaded;
     let camera = |name: &str| -> Option<Camera> {
         let mut user = user.clone();
         user.remove(&["eye", "target", "fov"]);
         user.set("camera", name);
         let options = Options::resolve(&user, loaded).ok()?;
-        Some(options.camera(&loaded.scene.bounds, loaded.scene.origin))
+        Some(options.camera(&job.subject, job.scene.origin))
     };
     let list = loaded.cameras.iter().filter_map(|named| {
         Some(Viewpoint {

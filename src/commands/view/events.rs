@@ -18,9 +18,13 @@ impl App {
     fn key(&mut self, event: &KeyEvent, is_free: bool) -> Result<()> {
         self.input.key(event, is_free);
         if is_free && event.state == ElementState::Pressed {
-            let shift = self.input.modifiers.shift_key();
-            let control = self.input.modifiers.control_key();
-            if let Some(action) = keys::action(&event.logical_key, shift).filter(|_| !control) {
+            let modifiers = self.input.modifiers;
+            let shift = modifiers.shift_key();
+            // Ctrl slows flight down; Cmd belongs to the system.
+            let is_free = !(modifiers.control_key() || modifiers.super_key());
+            let action = keys::action(&event.logical_key, shift);
+            let action = action.or_else(|| keys::digit(event.physical_key));
+            if let Some(action) = action.filter(|_| is_free) {
                 self.perform(action)?;
             }
         }
@@ -32,8 +36,8 @@ impl App {
         let Some(stage) = &mut self.stage else {
             return Ok(());
         };
-        // Tab is a shortcut here, not focus navigation. And egui answers every redraw event with another repaint request.
-        let is_tab = is_tab(&event);
+        // Tab is a shortcut here, unless the keyboard works the panel. And egui answers every redraw event with another repaint request.
+        let is_tab = is_tab(&event) && !stage.ui().egui_wants_keyboard_input();
         let (consumed, repaint) = if is_tab || event == WindowEvent::RedrawRequested {
             (false, false)
         } else {
@@ -91,6 +95,16 @@ impl App {
                         Wheel::Speed(steps) => document.controls.change_speed(steps),
                     }
                 }
+            }
+            WindowEvent::PinchGesture { delta, .. } if !consumed => {
+                let about = self.interface.point_under_pointer();
+                if let Some(document) = &mut self.document {
+                    document.controls.magnify(1.0 + delta, about);
+                }
+            }
+            WindowEvent::Touch(touch) => {
+                let controls = self.document.as_mut().map(|d| &mut d.controls);
+                self.touches.on_touch(touch, height, consumed, controls);
             }
             _ => return,
         }

@@ -7,6 +7,7 @@ mod help;
 mod legend;
 mod light;
 mod notes;
+mod numbers;
 mod picture;
 mod probe;
 mod sky_dome;
@@ -17,7 +18,7 @@ mod timings;
 pub(super) use clock::shift;
 pub(super) use notes::Notes;
 
-use egui::{Align2, CollapsingHeader, Panel, ScrollArea, Ui};
+use egui::{Align2, CollapsingHeader, FocusDirection, Panel, ScrollArea, Ui};
 use glam::DVec3;
 
 use crate::options::Choice;
@@ -44,9 +45,15 @@ pub(super) enum UiRequest {
     Copy(String),
 }
 
+/// What to do first in a new window.
+const HINT: &str =
+    "drag to orbit, right drag to look, W A S D to fly, H for a later hour, ? for all keys";
+
 /// State of the user interface.
 pub(super) struct Interface {
     is_visible: bool,
+    /// Whether the keyboard is about to work the panel.
+    is_entered: bool,
     help: bool,
     notes: Notes,
     clock: Clock,
@@ -62,6 +69,7 @@ impl Interface {
     pub(super) fn new(quiet: bool) -> Self {
         Self {
             is_visible: true,
+            is_entered: false,
             help: false,
             notes: Notes::new(quiet),
             clock: Clock::default(),
@@ -76,6 +84,11 @@ impl Interface {
     /// Whether the panels are shown.
     pub(super) fn is_visible(&self) -> bool {
         self.is_visible
+    }
+
+    /// Shows how to move, for a while.
+    pub(super) fn hint(&mut self) {
+        self.notes.hint(HINT);
     }
 
     /// Shows a notice for a few seconds.
@@ -144,6 +157,10 @@ impl Interface {
         let mut requests = Vec::new();
         match action {
             Action::ToggleInterface => self.is_visible = !self.is_visible,
+            Action::Panel => {
+                self.is_visible = true;
+                self.is_entered = true;
+            }
             Action::Help => self.help = !self.help,
             Action::Dismiss => {
                 self.help = false;
@@ -170,6 +187,10 @@ impl Interface {
     /// Lays out the user interface; returns requests to the event loop.
     pub(super) fn show(&mut self, ui: &mut Ui, document: Option<&mut Document>) -> Vec<UiRequest> {
         let mut requests = Vec::new();
+        if std::mem::take(&mut self.is_entered) {
+            // The first field that is laid out takes it.
+            ui.memory_mut(|memory| memory.move_focus(FocusDirection::Next));
+        }
         if self.is_visible {
             if let Some(document) = document {
                 self.sky_dome.show(ui, document);

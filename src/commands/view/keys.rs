@@ -1,6 +1,6 @@
 //! Keyboard and mouse bindings, and their actions.
 
-use winit::keyboard::{Key, NamedKey};
+use winit::keyboard::{Key, KeyCode, NamedKey, PhysicalKey};
 
 use crate::options::Show;
 
@@ -9,9 +9,11 @@ use crate::options::Show;
 pub(super) enum Action {
     /// Toggle the user interface.
     ToggleInterface,
+    /// Work the panel by keyboard.
+    Panel,
     /// Toggle the help.
     Help,
-    /// Frame the whole scene.
+    /// Frame the subject of the scene.
     FrameAll,
     /// Save the current viewpoint.
     SaveViewpoint,
@@ -51,16 +53,19 @@ pub(super) struct Binding {
 
 /// All keys and gestures, in help order.
 pub(super) const BINDINGS: &[Binding] = &[
-    binding("drag", "orbit about the centre of the view"),
+    binding("drag, one finger", "orbit about the centre of the view"),
     binding("right drag", "look around"),
-    binding("middle drag, Shift + drag", "pan"),
+    binding("middle drag, Shift + drag, two fingers", "pan"),
     binding(
-        "wheel",
+        "wheel, pinch",
         "zoom toward the pointer; while looking around: flight speed",
     ),
     binding("double click", "orbit about the point under the pointer"),
     binding("W A S D, Q E", "fly; Shift: faster, Ctrl: slower"),
-    binding("F", "frame the whole scene"),
+    binding(
+        "F",
+        "frame what is worth seeing: a house, not its whole ground",
+    ),
     binding("O, Shift + O", "save this viewpoint; go to the next one"),
     binding("H, Shift + H", "half an hour later; earlier"),
     binding("Space", "start or stop the clock"),
@@ -79,6 +84,10 @@ pub(super) const BINDINGS: &[Binding] = &[
     ),
     binding("F11", "full screen"),
     binding("Tab", "hide or show the user interface"),
+    binding(
+        "F6",
+        "work the panel by keyboard: Tab to the next field, arrows change it, Esc back to the picture",
+    ),
     binding("?", "this list"),
 ];
 
@@ -108,11 +117,29 @@ pub(super) fn action(key: &Key, shift: bool) -> Option<Action> {
     }
 }
 
+/// Action of a digit by its place on the keyboard: on French ones the digits need Shift.
+pub(super) fn digit(key: PhysicalKey) -> Option<Action> {
+    const ROW: [KeyCode; 9] = [
+        KeyCode::Digit1,
+        KeyCode::Digit2,
+        KeyCode::Digit3,
+        KeyCode::Digit4,
+        KeyCode::Digit5,
+        KeyCode::Digit6,
+        KeyCode::Digit7,
+        KeyCode::Digit8,
+        KeyCode::Digit9,
+    ];
+    let at = ROW.iter().position(|code| key == *code)?;
+    Some(Action::Show(DIGITS[at]))
+}
+
 fn named_action(key: NamedKey) -> Option<Action> {
     match key {
         NamedKey::Tab => Some(Action::ToggleInterface),
         NamedKey::Space => Some(Action::Play),
         NamedKey::F1 => Some(Action::Help),
+        NamedKey::F6 => Some(Action::Panel),
         NamedKey::F11 => Some(Action::FullScreen),
         NamedKey::F12 => Some(Action::Screenshot),
         NamedKey::Escape => Some(Action::Dismiss),
@@ -157,6 +184,15 @@ mod tests {
         assert_eq!(typed("9", false), Some(Action::Show(Show::Normal)));
         assert_eq!(typed("0", false), None);
         assert_eq!(action(&Key::Named(NamedKey::F12), false), typed("p", false));
+    }
+
+    #[test]
+    fn digits_are_known_by_their_place_too() {
+        // The key of 1 on a French keyboard gives & without Shift.
+        assert_eq!(typed("&", false), None);
+        let first = digit(PhysicalKey::Code(KeyCode::Digit1));
+        assert_eq!(first, typed("1", true));
+        assert_eq!(digit(PhysicalKey::Code(KeyCode::Digit0)), None);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 //! - [`controls`]: camera control by drags, wheel and keys; needs neither device nor window. [`viewpoints`]: saved views.
 //! - `app` and `events`: the event loop. `stage`: the window and its device. `document`: the open scene. `adaptation`: its
 //!   exposure over time.
-//! - `keys` and `input`: keyboard and mouse. `interface`: the user interface, panel by panel.
+//! - `keys`, `input` and `touch`: keyboard, mouse and touch screen. `interface`: the user interface, panel by panel.
 //! - `loader`: background loading. `capture`: screenshots. `resume`: settings of the last session.
 
 mod adaptation;
@@ -20,6 +20,7 @@ mod loader;
 mod resume;
 mod stage;
 mod style;
+mod touch;
 pub mod viewpoints;
 
 use std::path::Path;
@@ -28,15 +29,21 @@ use winit::event_loop::EventLoop;
 
 use crate::error::{Error, Result};
 use crate::options::OptionValues;
+use crate::scene::bundled_name;
 
 use app::App;
 
-/// Opens the window on `scene`, or on the bundled scene, and returns when it is closed. `resumes` restores the settings of
+/// The scene without one on the command line, if no file of that name is in the way.
+const OPENING: &str = "island";
+
+/// Opens the window on `scene`, or on a bundled scene, and returns when it is closed. `resumes` restores the settings of
 /// the last session with this scene.
 ///
 /// # Errors
 /// No display, no device that can present to it, or a lost device. A scene that fails to load is reported in the window.
 pub fn run(scene: Option<&Path>, resumes: bool, user: OptionValues) -> Result<()> {
+    let opening = Path::new(OPENING);
+    let scene = scene.or_else(|| bundled_name(opening).map(|_| opening));
     let user = if resumes {
         resume::recall(scene, user)?
     } else {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
-use crate::daylight::false_colour::Range;
+use crate::daylight::false_colour::{ColourMap, Colours, Range};
 use crate::daylight::tone_curve::ToneCurve;
 use crate::gpu::{
     Context, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
@@ -58,8 +58,9 @@ pub struct ToneSettings {
     pub gamma: Option<f64>,
     /// Depth shown as mid-grey, metres.
     pub depth_scale: f64,
-    /// Range of false colours, cd/m² (lux for irradiance). They replace exposure and tone curve and are always sRGB-encoded.
-    pub false_colour: Option<Range>,
+    /// False colours, with their range in cd/m² (lux for irradiance). They replace exposure and tone curve and are always
+    /// sRGB-encoded.
+    pub false_colour: Option<Colours>,
 }
 
 /// The tone mapping pass and its picture.
@@ -72,6 +73,15 @@ pub struct ToneMap {
 /// Whether a quantity is light, which is exposed and tone mapped.
 fn is_light(show: Show) -> bool {
     show.file_unit() != 1.0
+}
+
+/// The number of a map in the shader.
+fn colour_map(colours: Option<Colours>) -> u32 {
+    match colours.map_or(ColourMap::default(), |colours| colours.map) {
+        ColourMap::Turbo => 0,
+        ColourMap::Viridis => 1,
+        ColourMap::Cividis => 2,
+    }
 }
 
 /// Scale and offset from log2 of kcd/m² (klx) to the position 0..1 in a range.
@@ -112,6 +122,7 @@ impl ToneMap {
                 ("AUTO", average.into()),
                 ("GREY", (settings.show == Show::Luminance).into()),
                 ("FALSE_COLOUR", false_colour.into()),
+                ("COLOUR_MAP", colour_map(settings.false_colour)),
                 ("DITHER", light.into()),
             ],
         )?;
@@ -144,7 +155,9 @@ impl ToneMap {
 
     fn push(&self, origin: UVec2) -> Push {
         let s = &self.settings;
-        let (exposure, offset) = s.false_colour.map_or_else(|| self.exposure(), kilo_range);
+        let (exposure, offset) = s
+            .false_colour
+            .map_or_else(|| self.exposure(), |colours| kilo_range(colours.range));
         Push {
             exposure: exposure as f32,
             offset: offset as f32,

@@ -1,9 +1,10 @@
 //! Sky model, its measured irradiances or clouds, turbidity, ground albedo, refraction.
 
-use egui::{Slider, Ui};
+use egui::Ui;
 use glam::DVec3;
 
 use super::choice;
+use super::numbers::slider;
 use crate::commands::light::{self, air};
 use crate::commands::view::document::Document;
 use crate::daylight::atmosphere::air::{ALTITUDE_RANGE_M, AOD_RANGE, OZONE_RANGE_DU};
@@ -19,14 +20,14 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
     if settings.sky == SkyModel::Perez {
         // A sky that is measured from now on begins with about the light that was there.
         let start = [sun, sky].map(|lux| (lux / 110.0).round().clamp(0.0, 1000.0));
-        let watts = |name| move |value| Slider::new(value, 0.0..=MOST_IRRADIANCE_W).text(name);
+        let watts = |name| move |value| slider(value, 0.0..=MOST_IRRADIANCE_W).text(name);
         ui.add(watts("sun, W/m²")(settings.dni.get_or_insert(start[0])))
             .on_hover_text("measured irradiance by the sun at normal incidence");
         ui.add(watts("sky, W/m²")(settings.dhi.get_or_insert(start[1])))
             .on_hover_text("measured irradiance by the sky on a horizontal plane");
     }
     if settings.sky.is_clear() {
-        ui.add(Slider::new(&mut settings.cloud_cover, 0.0..=1.0).text("cloud cover"))
+        ui.add(slider(&mut settings.cloud_cover, 0.0..=1.0).text("cloud cover"))
             .on_hover_text("share of the sky: dims the sun and evens out the sky, as in the mean of many hours");
     }
     if settings.sky == SkyModel::Atmosphere {
@@ -34,7 +35,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
     } else {
         turbidity(ui, settings);
     }
-    ui.add(Slider::new(&mut settings.ground_albedo, 0.0..=1.0).text("ground albedo"))
+    ui.add(slider(&mut settings.ground_albedo, 0.0..=1.0).text("ground albedo"))
         .on_hover_text("reflectance of the ground below the horizon, 0 to 1");
     choice(ui, "refraction", &mut settings.refraction);
     choice(ui, "moon", &mut settings.moon);
@@ -54,10 +55,10 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
 fn turbidity(ui: &mut Ui, settings: &mut Options) {
     let (least, most) = settings.sky.turbidity_range();
     let mut value = light::turbidity(settings);
-    let slider = ui
-        .add(Slider::new(&mut value, least..=most).text("turbidity"))
+    let response = ui
+        .add(slider(&mut value, least..=most).text("turbidity"))
         .on_hover_text("2 very clear, 3 clear, 6 hazy, 10 very hazy");
-    if slider.changed() {
+    if response.changed() {
         settings.turbidity = Some(value);
         (settings.aod, settings.visual_range) = (None, None);
     }
@@ -66,15 +67,15 @@ fn turbidity(ui: &mut Ui, settings: &mut Options) {
 /// The air of an atmosphere.
 fn atmosphere(ui: &mut Ui, settings: &mut Options) {
     let mut aod = air(settings).aod;
-    let slider = ui
-        .add(Slider::new(&mut aod, AOD_RANGE).text("aerosol optical depth"))
+    let response = ui
+        .add(slider(&mut aod, AOD_RANGE).text("aerosol optical depth"))
         .on_hover_text("0.05 very clear, 0.1 clear, 0.2 hazy, 0.4 murky");
-    if slider.changed() {
+    if response.changed() {
         settings.aod = Some(aod);
         (settings.turbidity, settings.visual_range) = (None, None);
     }
-    ui.add(Slider::new(&mut settings.ozone, OZONE_RANGE_DU).text("ozone, DU"));
-    ui.add(Slider::new(&mut settings.altitude, ALTITUDE_RANGE_M).text("altitude, m"));
+    ui.add(slider(&mut settings.ozone, OZONE_RANGE_DU).text("ozone, DU"));
+    ui.add(slider(&mut settings.altitude, ALTITUDE_RANGE_M).text("altitude, m"));
     let aerial = settings.aerial.get_or_insert_default();
     choice(ui, "air before surfaces", aerial);
 }

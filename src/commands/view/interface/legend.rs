@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, FontId, Mesh, Rect, Sense, Ui, pos2, vec2};
 
 use super::corner;
-use crate::daylight::false_colour::Range;
+use crate::daylight::false_colour::ColourMap;
 use crate::options::Options;
 
 /// Size of the bar, points.
@@ -22,7 +22,7 @@ pub(super) fn show(ui: &Ui, settings: &Options) {
         ui.add_space(8.0);
         let (rect, _) = ui.allocate_exact_size(vec2(BAR[0] + 62.0, BAR[1]), Sense::hover());
         let bar = Rect::from_min_size(rect.min, BAR.into());
-        ui.painter().add(colours(bar, range));
+        ui.painter().add(colours(bar, settings.colour_map));
         for tick in range.ticks() {
             let y = at(bar, tick.share);
             let text = pos2(bar.right() + 8.0, y);
@@ -42,12 +42,11 @@ fn at(bar: Rect, share: f64) -> f32 {
 }
 
 /// The colour bar, from bottom to top.
-fn colours(bar: Rect, range: Range) -> Mesh {
+fn colours(bar: Rect, map: ColourMap) -> Mesh {
     let mut mesh = Mesh::default();
     for step in 0..=STEPS {
         let share = f64::from(step) / f64::from(STEPS);
-        let value = range.min * (range.max / range.min).powf(share);
-        let c = range.colour(value).as_vec3();
+        let c = map.colour(share).as_vec3();
         let color = egui::Rgba::from_rgb(c.x, c.y, c.z).into();
         let y = at(bar, share);
         mesh.colored_vertex(pos2(bar.left(), y), color);

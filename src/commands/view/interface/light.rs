@@ -1,8 +1,9 @@
 //! Lighting settings: irradiance, ambient occlusion, shadows, samples.
 
-use egui::{ComboBox, Slider, Ui};
+use egui::{ComboBox, Ui};
 
 use super::choice;
+use super::numbers::slider;
 use crate::commands::light::conditions;
 use crate::commands::view::document::Document;
 use crate::daylight::irradiance::IrradianceMethod;
@@ -25,7 +26,7 @@ impl Readout {
         let settings = &mut document.job.settings;
         choice(ui, "irradiance", &mut settings.irradiance);
         if settings.irradiance.is_sampled() {
-            let samples = Slider::new(&mut settings.irradiance_samples, 16..=65_536);
+            let samples = slider(&mut settings.irradiance_samples, 16..=65_536);
             ui.add(samples.logarithmic(true).text("samples"));
         }
         let line = self.irradiance(document);
@@ -36,12 +37,12 @@ impl Readout {
         choice(ui, "moving view", &mut settings.ambient);
         match settings.ambient {
             Ambient::Cells => {
-                let paths = Slider::new(&mut settings.refine, 0..=65_536);
+                let paths = slider(&mut settings.refine, 0..=65_536);
                 ui.add(paths.logarithmic(true).text("paths a frame"))
                     .on_hover_text("light paths that refine the cells while the view moves");
             }
             Ambient::Ssao => {
-                let radius = Slider::new(&mut settings.ao_radius, 0.0..=20.0);
+                let radius = slider(&mut settings.ao_radius, 0.0..=20.0);
                 ui.add(radius.text("AO radius, m"))
                     .on_hover_text("radius of ambient occlusion; 0 turns it off");
                 choice(ui, "AO resolution", &mut settings.ao_resolution);
@@ -49,12 +50,12 @@ impl Readout {
         }
         ui.separator();
         shadow_size(ui, &mut settings.shadow_size);
-        let samples = Slider::new(&mut settings.samples, 1..=1024);
+        let samples = slider(&mut settings.samples, 1..=1024);
         ui.add(samples.logarithmic(true).text("frames at rest"))
             .on_hover_text(
                 "frames averaged when nothing moves: anti-aliasing and soft shadows of the sun's disc",
             );
-        ui.add(Slider::new(&mut settings.specular, 0.0..=4.0).text("specular"))
+        ui.add(slider(&mut settings.specular, 0.0..=4.0).text("specular"))
             .on_hover_text("scales all specular reflectances");
         ui.checkbox(&mut settings.limb_darkening, "limb darkening");
     }

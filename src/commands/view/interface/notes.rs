@@ -9,6 +9,8 @@ use crate::commands::view::style;
 
 /// Display time of a notice.
 const SHOWN: Duration = Duration::from_secs(5);
+/// Display time of a hint.
+const HINTED: Duration = Duration::from_secs(20);
 /// Largest number of messages; older ones are dropped.
 const MOST: usize = 6;
 
@@ -40,6 +42,13 @@ impl Notes {
     pub(in crate::commands::view) fn say(&mut self, text: &str) {
         if !self.is_quiet {
             self.add(text, Some(Instant::now() + SHOWN));
+        }
+    }
+
+    /// Shows a notice that takes longer to try out than to read.
+    pub(super) fn hint(&mut self, text: &str) {
+        if !self.is_quiet {
+            self.add(text, Some(Instant::now() + HINTED));
         }
     }
 

@@ -2,8 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{ComboBox, DragValue, Slider, Ui};
+use egui::{ComboBox, Ui};
 
+use super::numbers::{field, slider};
 use super::{UiRequest, choice};
 use crate::commands::view::document::Document;
 use crate::commands::view::keys::Action;
@@ -55,6 +56,7 @@ fn false_colours(ui: &mut Ui, settings: &mut Options) {
         };
     }
     if let Some(quantity) = settings.false_colour {
+        choice(ui, "colours", &mut settings.colour_map);
         range(ui, &mut settings.false_colour_range, quantity);
     }
 }
@@ -78,10 +80,7 @@ fn range(ui: &mut Ui, range: &mut Option<Range>, quantity: Quantity) {
 
 /// Edits a value as a power of ten; returns whether it changed.
 fn power(ui: &mut Ui, value: &mut f64, range: RangeInclusive<f64>) -> bool {
-    let power = DragValue::new(value)
-        .speed(0.05)
-        .prefix("10^")
-        .max_decimals(1);
+    let power = field(value).speed(0.05).prefix("10^").max_decimals(1);
     ui.add(power.range(range)).changed()
 }
 
@@ -90,7 +89,7 @@ fn exposure(ui: &mut Ui, ev100: &mut Option<f64>, min_ev100: &mut Option<f64>) {
     if ui.checkbox(&mut auto, "automatic exposure").changed() {
         *ev100 = (!auto).then_some(SUNNY_EV100);
     }
-    let slider = |value| Slider::new(value, EV100_RANGE).text("EV100");
+    let slider = |value| slider(value, EV100_RANGE).text("EV100");
     if let Some(ev100) = ev100 {
         ui.add(slider(ev100));
         return;

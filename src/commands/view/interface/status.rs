@@ -1,8 +1,9 @@
 //! Panel sections for scene, camera and progress.
 
-use egui::{Slider, Ui};
+use egui::Ui;
 
 use super::UiRequest;
+use super::numbers::slider;
 use super::timings::TimingChart;
 use crate::commands::view::document::Document;
 use crate::commands::view::keys::Action;
@@ -31,7 +32,7 @@ pub(super) fn header(ui: &mut Ui, document: &Document, requests: &mut Vec<UiRequ
 /// Field of view and viewpoints.
 pub(super) fn view(ui: &mut Ui, document: &mut Document) {
     let mut camera = document.controls.camera();
-    let slider = Slider::new(&mut camera.fov_deg, 10.0..=110.0)
+    let slider = slider(&mut camera.fov_deg, 10.0..=110.0)
         .suffix("°")
         .text("field of view");
     if ui.add(slider).changed() {

@@ -1,9 +1,10 @@
 //! Position of the sun: by place and time, by solar time, or as a direction.
 
 use chrono::{DateTime, Datelike, FixedOffset, NaiveDate, NaiveDateTime, NaiveTime, Timelike};
-use egui::{Color32, DragValue, Key, Response, Slider, TextEdit, Ui, pos2, vec2};
+use egui::{Color32, Key, Response, TextEdit, Ui, pos2, vec2};
 
 use super::clock::{Clock, SPEEDS};
+use super::numbers::{field, slider};
 use crate::commands::view::document::Document;
 use crate::commands::view::style;
 use crate::daylight::cities;
@@ -60,26 +61,18 @@ pub(super) fn show(
             hours,
             latitude,
         } => {
-            ui.add(
-                Slider::new(latitude, -90.0..=90.0)
-                    .suffix("°")
-                    .text("latitude"),
-            );
-            ui.add(Slider::new(day, 1..=365).text("day of the year"));
-            ui.add(Slider::new(hours, 0.0..=24.0).text("solar time, h"));
+            ui.add(slider(latitude, -90.0..=90.0).suffix("°").text("latitude"));
+            ui.add(slider(day, 1..=365).text("day of the year"));
+            ui.add(slider(hours, 0.0..=24.0).text("solar time, h"));
             clock_buttons(ui, clock);
         }
         SunInput::Direction {
             azimuth_deg,
             elevation_deg,
         } => {
+            ui.add(slider(azimuth_deg, 0.0..=360.0).suffix("°").text("azimuth"));
             ui.add(
-                Slider::new(azimuth_deg, 0.0..=360.0)
-                    .suffix("°")
-                    .text("azimuth"),
-            );
-            ui.add(
-                Slider::new(elevation_deg, -20.0..=90.0)
+                slider(elevation_deg, -20.0..=90.0)
                     .suffix("°")
                     .text("elevation"),
             );
@@ -221,7 +214,7 @@ impl PlaceField {
 }
 
 fn coordinate(ui: &mut Ui, degrees: &mut f64, limit: f64, axis: Axis) {
-    let value = DragValue::new(degrees)
+    let value = field(degrees)
         .range(-limit..=limit)
         .speed(0.1)
         .custom_formatter(move |degrees, _| axis.written(degrees))
@@ -234,12 +227,12 @@ fn date(ui: &mut Ui, when: &mut DateTime<FixedOffset>, zone: Zone) {
     let local = when.naive_local();
     let (mut ordinal, mut year) = (local.ordinal(), local.year());
     let days = if local.date().leap_year() { 366 } else { 365 };
-    let slider = Slider::new(&mut ordinal, 1..=days)
+    let slider = slider(&mut ordinal, 1..=days)
         .show_value(false)
         .text(local.format("%e %B").to_string());
     let mut changed = ui.add(slider).changed();
     ui.horizontal(|ui| {
-        changed |= ui.add(DragValue::new(&mut year).range(YEARS)).changed();
+        changed |= ui.add(field(&mut year).range(YEARS)).changed();
         ui.weak(format!("year, UTC{}", when.offset()));
     });
     // Day 366 exists only in leap years; otherwise use day 365.
@@ -268,7 +261,7 @@ fn time_of_day(
 ) {
     let local = when.naive_local();
     let mut hours = f64::from(local.time().num_seconds_from_midnight()) / 3600.0;
-    let slider = Slider::new(&mut hours, 0.0..=23.99)
+    let slider = slider(&mut hours, 0.0..=23.99)
         .show_value(false)
         .text(local.format("%H:%M").to_string());
     let response = ui.add(slider);

@@ -309,19 +309,11 @@ impl Frame {
             let number = index.filter(|_| is_dome);
             light.lobes = lobes.record(rec, scene, (surfaces, ambient), &light, &view, number);
         }
+        let solid = (geometry, &self.tree);
         if let Some(panes) = &self.panes {
-            let (solid, around) = ((geometry, &self.tree), light.surroundings());
-            panes.record(rec, solid, &surfaces.depth, &around, &view);
+            panes.record(rec, solid, &surfaces.depth, &light.surroundings(), &view);
         }
-        let frame = lighting.record(
-            rec,
-            &self.tree,
-            surfaces,
-            geometry.materials(),
-            ambient,
-            &light,
-            &view,
-        );
+        let frame = lighting.record(rec, solid, surfaces, ambient, &light, &view);
         self.background
             .record(rec, &surfaces.depth, &light, &view, frame);
         resolve.record(rec, scene, frame, surfaces, &light, &view);

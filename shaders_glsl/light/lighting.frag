@@ -21,6 +21,7 @@
 layout(location = 0) out vec4 radiance; // rgb: kcd/m^2, or the quantity shown; a: illuminance of the surface, klx
 
 // Terms of the sum.
+layout(constant_id = 51) const bool TRACES = false; // rays decide at the edges of shadows
 layout(constant_id = 0) const bool SUN = true;
 layout(constant_id = 1) const bool SKY = true;
 layout(constant_id = 2) const bool SUN_SPECULAR = true;
@@ -79,7 +80,6 @@ layout(set = 0, binding = 8, scalar) uniform Sun {
     float specular_scale; // factor on every rho_s
     mat4 planes;          // inverse transpose of shadow_from_world
     ivec2 occlusion_from; // origin of this picture in the occlusion's picture, pixels
-    uint traces;          // whether rays decide at the edges of shadows
 } sun;
 
 layout(set = 0, binding = 9) uniform sampler2D materials; // see materials.glsl
@@ -140,7 +140,7 @@ void main() {
     float V = 0.0;
     if (n_dot_l > 0.0) {
         if (PLANE_SHADOW) V = plane_visibility(world, n, view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale));
-        else V = sun_visibility(world, n, n_dot_l, sun.traces != 0u);
+        else V = sun_visibility(world, n, n_dot_l, TRACES);
     }
     float A = 0.0;
     Ambient light = Ambient(vec3(0.0), vec3(0.0));

@@ -17,5 +17,5 @@ mod moment;
 mod options;
 mod sky;
 mod tiles;
-mod weather;
 mod town;
+mod weather;

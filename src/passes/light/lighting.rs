@@ -27,6 +27,7 @@ pub use crate::passes::sun_shadow::cascades::Shadows;
 use crate::passes::sun_shadow::cascades::{BLEND, MAX_RADIUS, PLANE_OFFSET_TEXELS, SunViews};
 use crate::passes::surfaces::gbuffer::Surfaces;
 pub use crate::passes::surfaces::geometry::EmissionSource;
+use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
 use crate::passes::{fullscreen_at, kilo};
@@ -42,7 +43,6 @@ gpu_struct! {
         specular_scale: f32,
         planes: [[f32; 4]; 4],
         occlusion_from: IVec2,
-        traces: u32,
     }
 }
 
@@ -289,7 +289,9 @@ impl<'a> Light<'a> {
 /// The lighting pass and its picture.
 pub struct Lighting {
     settings: LightingSettings,
-    pipeline: Pipeline,
+    /// Without rays at the edges of shadows: a constant, since branches that are not taken cost registers too.
+    moving: Pipeline,
+    tracing: Pipeline,
     radiance: Image,
 }
 
@@ -329,6 +331,27 @@ impl Lighting {
         is_converging: bool,
     ) -> Result<Self> {
         let format = settings.precision.format();
+        let constants = Self::constants(&settings, rays, is_converging);
+        let pipeline = |traces: bool| {
+            let constants = [&constants[..], &[("TRACES", traces.into())]].concat();
+            let depth = Depth::Surface(Format::D32_SFLOAT);
+            let shader = &shaders::LIGHTING_FRAG;
+            fullscreen_at(context, "lighting", shader, &[format], depth, &constants)
+        };
+        let radiance = Image::new(context, &ImageDesc::flat("radiance", format, size))?;
+        Ok(Self {
+            settings,
+            moving: pipeline(false)?,
+            tracing: pipeline(true)?,
+            radiance,
+        })
+    }
+
+    fn constants(
+        settings: &LightingSettings,
+        rays: RayConstants,
+        is_converging: bool,
+    ) -> Vec<(&'static str, u32)> {
         let mut constants = settings
             .show
             .constants(
@@ -362,20 +385,7 @@ impl Lighting {
         constants.push(("LOBES", settings.has_lobes().into()));
         constants.extend(settings.lobe_constants());
         constants.extend(rays);
-        let pipeline = fullscreen_at(
-            context,
-            "lighting",
-            &shaders::LIGHTING_FRAG,
-            &[format],
-            Depth::Surface(Format::D32_SFLOAT),
-            &constants,
-        )?;
-        let radiance = Image::new(context, &ImageDesc::flat("radiance", format, size))?;
-        Ok(Self {
-            settings,
-            pipeline,
-            radiance,
-        })
+        constants
     }
 
     /// Lights the surfaces; [`crate::passes::light::background::Background`] fills the other pixels. The fourth channel is the
@@ -383,14 +393,19 @@ impl Lighting {
     pub fn record(
         &mut self,
         recorder: &mut Recorder,
-        tree: &Tree,
+        (geometry, tree): (&Geometry, &Tree),
         surfaces: &Surfaces,
-        materials: &Image,
         ambient: &Image,
         light: &Light<'_>,
         view: &View,
     ) -> &Image {
-        let pass = tree.bound_to(recorder.pass("lighting", &self.pipeline));
+        let materials = geometry.materials();
+        let pipeline = if light.traces {
+            &self.tracing
+        } else {
+            &self.moving
+        };
+        let pass = tree.bound_to(recorder.pass("lighting", pipeline));
         let pass = light.panes.sampled_by(pass, materials);
         let sun_glass = light.sun_glass.unwrap_or(materials);
         let pass = surfaces.sampled_by(pass, materials);
@@ -430,7 +445,6 @@ impl Lighting {
             planes: shadow.planes().to_cols_array_2d(),
             // Tiles share the occlusion image of the whole picture.
             occlusion_from: view.window.map_or(IVec2::ZERO, |w| w.origin.as_ivec2()),
-            traces: light.traces.into(),
         }
     }
 

@@ -77,11 +77,13 @@ impl Running {
         Self::on(Display::new(), words, variables)
     }
 
-    /// Starts the program on this display, with extra environment variables.
+    /// Starts the program on this display, with extra environment variables; on the colonnade unless the first word names another scene.
     pub fn on(display: Display, words: &[&str], variables: &[(&str, &Path)]) -> Self {
         let folder = tempfile::tempdir().expect("a scratch folder");
+        let has_scene = words.first().is_some_and(|word| !word.starts_with('-'));
         let mut child = program(folder.path())
             .arg("view")
+            .args((!has_scene).then_some("colonnade"))
             .args(words)
             .env("DISPLAY", &display.name)
             .envs(variables.iter().copied())
@@ -129,7 +131,7 @@ impl Running {
     /// The picture once it no longer changes.
     pub fn picture(&self) -> Picture {
         self.display
-            .still_picture(self.window, || self.cpu_seconds())
+            .still_picture(self.window, || self.is_working())
     }
 
     /// The picture of a scene by day once it no longer changes: on a busy machine the dark window before it may stand still too.
@@ -139,6 +141,17 @@ impl Running {
             let green = shown.rgb.iter().map(|colour| colour[1]).sum::<f32>();
             (green / shown.rgb.len() as f32 > 0.1).then_some(shown)
         })
+    }
+
+    /// Whether one of its threads runs, or waits for a processor: on a busy machine the CPU time of a program at work grows slowly.
+    pub fn is_working(&self) -> bool {
+        let tasks = fs::read_dir(format!("/proc/{}/task", self.pid()));
+        let stats = tasks
+            .into_iter()
+            .flatten()
+            .filter_map(|task| fs::read_to_string(task.ok()?.path().join("stat")).ok());
+        let state = |text: String| text.rsplit(") ").next()?.chars().next();
+        stats.filter_map(state).any(|state| "RD".contains(state))
     }
 
     /// CPU time of the program so far, seconds.

@@ -35,8 +35,10 @@ pub struct Display {
     xtest: u8,
 }
 
-/// Most CPU time of an idle program, seconds per second: egui's animations.
-const MOST_AT_REST: f64 = 0.2;
+/// Looks at a program in the second in which it must be idle.
+const LOOKS: u32 = 20;
+/// Most of them that may find it at work: egui's animations.
+const MOST_AT_WORK: usize = 4;
 
 impl Display {
     /// Starts the server. Fails without Xvfb.
@@ -159,15 +161,17 @@ impl Display {
         Picture::from_srgb8([width as usize, height as usize], &bytes)
     }
 
-    /// The picture once it has been the same for a second in which the program was idle. `cpu_seconds` is the program's CPU time:
-    /// a picture that stands still is not enough, since it also does so while the program loads or draws a slow frame.
-    pub fn still_picture(&self, window: Window, cpu_seconds: impl Fn() -> f64) -> Picture {
+    /// The picture once it has been the same for a second in which the program was idle. `is_working` tells whether it is at work at this
+    /// moment: a slow frame shows nothing new for long.
+    pub fn still_picture(&self, window: Window, is_working: impl Fn() -> bool) -> Picture {
         let started = Instant::now();
         let mut last = self.picture(window, None);
         loop {
-            let before = cpu_seconds();
-            sleep(Duration::from_secs(1));
-            let is_busy = cpu_seconds() - before > MOST_AT_REST;
+            let looks = (0..LOOKS).filter(|_| {
+                sleep(Duration::from_secs(1) / LOOKS);
+                is_working()
+            });
+            let is_busy = looks.count() > MOST_AT_WORK;
             let next = self.picture(window, None);
             let is_blank = next.rgb.iter().all(|p| *p == next.rgb[0]);
             if next == last && !is_blank && !is_busy {

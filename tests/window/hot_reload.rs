@@ -35,7 +35,7 @@ fn a_changed_shader_is_seen_and_a_broken_one_is_told() {
     let words = ["--size", "320x180", "--samples", "1", "--validate"];
     let words = [&words[..], &DIRECT].concat();
     let running = Running::bare_with(&words, &variables);
-    let before = running.picture();
+    let before = running.daylit();
 
     // The sources are those that were compiled in: the picture stays the same.
     running.display.typed('r');

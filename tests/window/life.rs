@@ -40,8 +40,8 @@ fn the_window_shows_what_render_writes() {
 
     // P writes the shown picture, and an EXR beside it.
     running.display.typed('p');
-    let png = running.folder.path().join("skylight-bundled-1.png");
-    let exr = running.folder.path().join("skylight-bundled-1.exr");
+    let png = running.folder.path().join("skylight-colonnade-1.png");
+    let exr = running.folder.path().join("skylight-colonnade-1.exr");
     until("both files", || {
         (png.is_file() && exr.is_file()).then_some(())
     });

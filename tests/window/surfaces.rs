@@ -20,7 +20,7 @@ const SMALL: [&str; 7] = [
 ];
 
 fn view() -> Vec<&'static str> {
-    [&SMALL[..], &DIRECT].concat()
+    [&SMALL[..], &DIRECT, &["--quiet"]].concat()
 }
 
 /// Compiles a C file beside this one to a shared library in `folder`.

@@ -10,6 +10,7 @@ use clap::{Arg, Parser, Subcommand};
 
 pub use args::{
     BakeArgs, BenchArgs, CompareArgs, DaylightArgs, Layout, Map, Motion, SkyArgs, Sweep, Texels,
+    WeatherArgs,
 };
 
 use crate::options::{OptionValues, Optional, choice, decides_light, one_line};
@@ -30,7 +31,7 @@ pub enum Command {
     },
     /// Open a window on a scene; press ? in it for the keys.
     View {
-        /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, the default; island).
+        /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (island, the default; colonnade).
         scene: Option<PathBuf>,
         /// Start with the options and the camera that this scene was last closed with.
         #[arg(long)]
@@ -70,6 +71,18 @@ pub enum Command {
         #[command(flatten)]
         args: DaylightArgs,
         /// Options of the daylight.
+        #[command(flatten)]
+        options: OptionValues,
+    },
+    /// Print what a weather file holds: place, clock, irradiation and light of its months. Needs no device.
+    ///
+    /// All other options are accepted and have no effect.
+    #[command(mut_args = hidden_in_weather)]
+    Weather {
+        /// Arguments of its own.
+        #[command(flatten)]
+        args: WeatherArgs,
+        /// --strict, --no-warnings.
         #[command(flatten)]
         options: OptionValues,
     },
@@ -186,6 +199,13 @@ fn hidden_if_of_pictures(arg: Arg) -> Arg {
     let name = arg.get_long().unwrap_or_default();
     let is_shared = arg.get_help_heading().is_some();
     let hidden = is_shared && !decides_light(name) && !OF_THE_COMMAND.contains(&name);
+    arg.hide(hidden)
+}
+
+/// Hides all shared options but those of messages.
+fn hidden_in_weather(arg: Arg) -> Arg {
+    let name = arg.get_long().unwrap_or_default();
+    let hidden = arg.get_help_heading().is_some() && !["no-warnings", "strict"].contains(&name);
     arg.hide(hidden)
 }
 

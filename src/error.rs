@@ -23,6 +23,14 @@ pub enum Error {
     /// A file of sensors that cannot be used.
     #[error(transparent)]
     Grid(#[from] GridError),
+    /// A weather file that cannot be used.
+    #[error("{}: {reason}", shown(path))]
+    Weather {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// A warning, of which `--strict` makes an error.
     #[error("{first}{more}; --strict makes warnings errors: nothing is written")]
     Strict {

@@ -239,10 +239,10 @@ options! {
         }
 
         "Camera" ["camera"] {
-            /// Position of the camera, metres: east, up, south; by default the whole model is in view.
+            /// Position of the camera, metres: east, up, south; by default the model is in view, without a wide ground or what lies far off; a room is entered.
             #[arg(value_name = "X,Y,Z", value_parser = values::point, allow_hyphen_values = true)]
             eye: Option<[f64; 3]>,
-            /// Point that the camera looks at, metres; by default the middle of the model.
+            /// Point that the camera looks at, metres; by default the middle of what is in view.
             #[arg(value_name = "X,Y,Z", value_parser = values::point, allow_hyphen_values = true)]
             target: Option<[f64; 3]>,
             /// Vertical field of view, degrees, 1 to 170.

@@ -162,6 +162,16 @@ pub(super) fn named(extensions: &'static [&'static str]) -> impl TypedValueParse
     })
 }
 
+/// The weather file, and the form of the table.
+#[derive(Debug, Clone, PartialEq, Eq, Args)]
+pub struct WeatherArgs {
+    /// EnergyPlus weather (.epw) or Radiance's .wea.
+    pub file: PathBuf,
+    /// Print JSON instead of a table.
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// Points to measure at, and where to put the result.
 #[derive(Debug, Clone, PartialEq, Args)]
 pub struct DaylightArgs {

@@ -24,6 +24,7 @@ mod startup;
 mod tiled;
 #[cfg(feature = "window")]
 pub mod view;
+mod weather;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -54,6 +55,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Bench { args, options } => bench::run(&args, options),
         Command::Sky { args, options } => sky::run(&args, options),
         Command::Daylight { args, options } => daylight::run(&args, &options),
+        Command::Weather { args, options } => weather::run(&args, &options),
         Command::Bake { args, options } => bake::run(&args, options),
         Command::Compare { args } => compare::run(&args),
         Command::Info {

@@ -69,6 +69,7 @@ pub mod sun_position;
 pub mod sunlight;
 pub mod tangent_frame;
 pub mod tone_curve;
+pub mod weather;
 
 pub use irradiance::IrradianceMethod;
 pub use sky::{Conditions, Daylight, SkyModel};

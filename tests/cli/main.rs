@@ -11,3 +11,4 @@ mod moment;
 mod options;
 mod sky;
 mod tiles;
+mod weather;

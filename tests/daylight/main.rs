@@ -19,3 +19,4 @@ mod sampling;
 mod sun_position;
 mod tone_curves_and_frames;
 mod wavelengths;
+mod weather;

@@ -1,0 +1,73 @@
+//! `skylight weather`: JSON, table, warnings, damage.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Two days of an EPW file; in the second the sun shines at midnight.
+fn two_days() -> String {
+    let mut text =
+        "LOCATION,Havnby,-,DNK,made,0,55.1,8.6,1.0,4.0\nDATA PERIODS,1,1,Data,Sunday, 6/20, 6/21\n"
+            .to_owned();
+    for hour in 0..48 {
+        let (day, hour) = (20 + hour / 24, hour % 24 + 1);
+        let diffuse = if (5..21).contains(&hour) { 100 } else { 0 };
+        let direct = if hour == 12 { 800 } else { 0 };
+        text += &format!(
+            "2001,6,{day},{hour},0,?,15,9,70,101300,0,0,300,9999,{direct},{diffuse},0,0,0,0,0,0,0,0,20\n"
+        );
+    }
+    text
+}
+
+fn weather(folder: &Path, words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_skylight"))
+        .current_dir(folder)
+        .arg("weather")
+        .args(words)
+        .output()
+        .expect("it runs")
+}
+
+#[test]
+fn a_file_is_summed_and_what_is_odd_is_told() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    std::fs::write(folder.path().join("a.epw"), two_days()).expect("written");
+    let output = weather(folder.path(), &["a.epw", "--json"]);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{told}");
+    assert_eq!(told.lines().count(), 1, "{told}");
+    assert!(told.contains("48 hours, not those of a year"), "{told}");
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(report["place"]["latitude"], 55.1);
+    assert_eq!(report["zone_hours"], 1.0);
+    assert_eq!(report["months"][5]["direct_normal_kwh"], 1.6);
+    assert_eq!(report["year"]["sunshine_hours"], 2.0);
+    // Without the global irradiance the clock cannot be checked.
+    assert!(report["clock_minutes"].is_null());
+    let output = weather(folder.path(), &["a.epw", "--no-warnings"]);
+    let table = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.stderr.is_empty());
+    assert!(
+        table.contains("Havnby") && table.contains("not checked"),
+        "{table}"
+    );
+    let strict = weather(folder.path(), &["a.epw", "--strict"]);
+    assert_eq!(strict.status.code(), Some(1));
+}
+
+#[test]
+fn files_that_cannot_be_used_are_one_line() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let damaged = two_days().replace(",800,", ",bright,");
+    std::fs::write(folder.path().join("b.epw"), damaged).expect("written");
+    for (words, what) in [
+        (["b.epw"], "line 14: the direct irradiance is \"bright\""),
+        (["c.epw"], "c.epw"),
+    ] {
+        let output = weather(folder.path(), &words);
+        let line = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{line}");
+        assert_eq!(line.lines().count(), 1, "{line}");
+        assert!(line.contains(words[0]) && line.contains(what), "{line}");
+    }
+}

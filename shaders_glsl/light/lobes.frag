@@ -60,7 +60,7 @@ const uint PERIOD = 8u;
 // Pixels of a square that takes its turn: neighbours are computed together.
 const int SQUARE = 8;
 // Least reflectance of lobes that trace rays in every frame: of rough ones, and of those below a roughness, whose light has edges.
-const float STRONG = 0.15, CLEAR = 0.05;
+const float STRONG = 0.15, CLEAR = 0.03;
 const float CLEAR_ROUGHNESS = 0.4;
 // Rays that such a lobe traces in a frame from a roughness on.
 const uint RAYS = 4u;

@@ -1,13 +1,13 @@
 // Reflection by GGX, the counterpart of `daylight::microfacet` on the CPU; there are the sources. Needs constants.glsl, materials.glsl.
-#include "filtered.glsl"
 
 // Whether the scene has materials that reflect by GGX, set by every pipeline that shows radiance; otherwise any image is bound.
 layout(constant_id = 42) const bool ROUGH = false;
 // Factor on what their lobes reflect.
 layout(constant_id = 43) const float LOBE_SCALE = 1.0;
 
-// Reflectance of a lobe under uniform light by the parts of F0 and of F90, over sqrt(n.v) and the roughness.
-layout(set = 0, binding = 29) uniform sampler2D lobe_albedo;
+// Reflectance of a lobe under uniform light by the parts of F0 and of F90, over sqrt(n.v) and the roughness: columns and rows of a
+// table, in one row after the other behind the materials. A texel has the two values of its column and those of the next.
+const vec2 LOBE_TABLE = vec2(64.0, 32.0);
 
 // Least alpha of the lobe of a source as wide as the sun.
 layout(constant_id = 44) const float LEAST_ALPHA = 0.0;
@@ -25,6 +25,19 @@ struct Microfacet {
     vec3 reflectance; // of the lobe under uniform light, toward the eye
 };
 
+vec4 lobe_texel(sampler2D materials, vec2 at) {
+    float columns = float(MATERIAL_COLUMNS), number = at.y * LOBE_TABLE.x + at.x;
+    float first = float(textureSize(materials, 0).y) - ceil(LOBE_TABLE.x * LOBE_TABLE.y / columns);
+    return texel_at(materials, vec2(mod(number, columns), first + floor(number / columns)));
+}
+
+vec2 lobe_albedo(sampler2D materials, float facing, float roughness) {
+    vec2 at = clamp(vec2(sqrt(max(facing, LEAST_FACING)), roughness), 0.0, 1.0) * (LOBE_TABLE - 1.0);
+    vec2 low = min(floor(at), LOBE_TABLE - 2.0), between = at - low;
+    vec4 pair = mix(lobe_texel(materials, low), lobe_texel(materials, low + vec2(0.0, 1.0)), between.y);
+    return mix(pair.rg, pair.ba, between.x);
+}
+
 bool is_rough(vec4 specular) {
     return ROUGH && specular.a < 0.0;
 }
@@ -40,9 +53,7 @@ Microfacet microfacet_of(bool from_image, vec4 texel, sampler2D materials, uint 
     m.f90 = mix(f90, 1.0, metallic);
     m.roughness = (-1.0 - specular.a) * roughness_factor(word);
     m.alpha = m.roughness * m.roughness;
-    vec2 size = vec2(textureSize(lobe_albedo, 0));
-    vec2 at = clamp(vec2(sqrt(max(facing, LEAST_FACING)), m.roughness), 0.0, 1.0);
-    vec2 parts = filtered(lobe_albedo, at * (size - 1.0)).rg;
+    vec2 parts = lobe_albedo(materials, facing, m.roughness);
     m.gain = 1.0 + m.f0 * (1.0 / (parts.x + parts.y) - 1.0);
     m.reflectance = LOBE_SCALE * m.gain * (m.f0 * parts.x + m.f90 * parts.y);
     return m;

@@ -21,6 +21,7 @@
 #include "face.glsl"
 #include "materials.glsl"
 #include "microfacet.glsl"
+#include "filtered.glsl"
 
 // Light of the sky and of surfaces in the lobes of materials that reflect by GGX.
 //

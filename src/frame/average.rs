@@ -208,7 +208,6 @@ impl<'a> Resolve<'a> {
                     sky_radiance: light.sky_radiance,
                     panes: light.panes,
                     air: light.air,
-                    rough: light.rough,
                     bounced,
                 };
                 let picture = dome.record(rec, geometry, &gathered, light.daylight, view, index);

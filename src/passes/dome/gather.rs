@@ -25,7 +25,6 @@ use crate::passes::bounces::gather::HalfSize;
 use crate::passes::dome::specular::SpecularSky;
 use crate::passes::light::lighting::{LightingSettings, Show};
 use crate::passes::light::panes::BeforePicture;
-use crate::passes::light::rough::RoughSky;
 use crate::passes::sky::air::AirBefore;
 use crate::passes::sun_shadow::fit::ShadowView;
 use crate::passes::sun_shadow::map::{Casters, Tile};
@@ -130,8 +129,6 @@ pub struct Gathered<'a> {
     pub panes: BeforePicture<'a>,
     /// The air before the eye.
     pub air: AirBefore<'a>,
-    /// The albedo of lobes of GGX, if there are any.
-    pub rough: Option<&'a RoughSky>,
     /// Irradiance from other surfaces, klx; `None` without bounces.
     pub bounced: Option<HalfSize<'a>>,
 }
@@ -368,7 +365,6 @@ impl Dome {
         let pass = recorder.pass("dome: gather", &self.gather);
         let pass = gathered.panes.sampled_by(pass, gathered.materials);
         let pass = surfaces.sampled_by(pass, gathered.materials);
-        let pass = RoughSky::sampled_by(gathered.rough, pass, gathered.materials);
         let pass = gathered
             .air
             .sampled_by(pass, gathered.materials)

@@ -409,7 +409,6 @@ impl Lighting {
         let pass = light.panes.sampled_by(pass, materials);
         let sun_glass = light.sun_glass.unwrap_or(materials);
         let pass = surfaces.sampled_by(pass, materials);
-        let pass = RoughSky::sampled_by(light.rough, pass, materials);
         light
             .air
             .sampled_by(pass, materials)

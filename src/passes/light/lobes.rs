@@ -16,7 +16,6 @@ use crate::passes::bounces::cells::{Bounces, Cells};
 use crate::passes::bounces::tree::Tree;
 use crate::passes::fullscreen_at;
 use crate::passes::light::lighting::{Ambient, Light, LightingSettings};
-use crate::passes::light::rough::RoughSky;
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
@@ -132,7 +131,7 @@ impl Lobes {
         let [new, old] = &self.light;
         let pass = tree.bound_to(recorder.pass("lobes", pipeline));
         let pass = surfaces.sampled_by(pass, geometry.materials());
-        let mut pass = RoughSky::sampled_by(Some(rough), pass, old)
+        let mut pass = pass
             .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
             .sample("sky_prefiltered", rough.prefiltered(), Sampler::Linear)
             .sample("sky_irradiance", light.sky_irradiance, Sampler::Linear)

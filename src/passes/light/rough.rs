@@ -1,7 +1,7 @@
-//! What all lobes of GGX of a scene share: their albedo ([`crate::daylight::microfacet`]), and the sky prefiltered for them.
+//! What all lobes of GGX of a scene share: the sky prefiltered for them.
 
-use crate::daylight::microfacet::{LEAST_ALPHA, TABLE, table};
-use crate::gpu::{Format, Image, ImageDesc, Pass, Recorder, Result, Sampler, upload_texture};
+use crate::daylight::microfacet::LEAST_ALPHA;
+use crate::gpu::{Image, Recorder, Result};
 
 use crate::passes::sky::cube::SkyImages;
 use crate::passes::sky::specular::SpecularCube;
@@ -9,23 +9,18 @@ use crate::passes::sky::specular::SpecularCube;
 /// Samples of a texel of the prefiltered sky.
 const SAMPLES: u32 = 64;
 
-/// The images.
+/// The prefiltered sky.
 pub struct RoughSky {
-    albedo: Image,
     cube: SpecularCube,
 }
 
 impl RoughSky {
-    /// Uploads the albedo; `recorder` must be recording.
+    /// Uploads the samples; `recorder` must be recording.
     ///
     /// # Errors
     /// Fails when the device is out of memory.
     pub fn new(recorder: &mut Recorder) -> Result<Self> {
-        let desc = ImageDesc::flat("albedo of lobes", Format::R32G32B32A32_SFLOAT, TABLE);
-        let parts = table().into_iter();
-        let texels: Vec<[f32; 4]> = parts.map(|[a, b]| [a, b, 0.0, 0.0]).collect();
         Ok(Self {
-            albedo: upload_texture(recorder, &desc, &[bytemuck::cast_slice(&texels)])?,
             cube: SpecularCube::new(recorder, SAMPLES, None)?,
         })
     }
@@ -38,13 +33,6 @@ impl RoughSky {
     /// The prefiltered sky, kcd/m².
     pub fn prefiltered(&self) -> &Image {
         self.cube.image()
-    }
-
-    /// Samples the albedo in a pass with `include/microfacet.glsl`. Without lobes the pipeline reads none, but the binding must be
-    /// written: `other` takes its place.
-    pub fn sampled_by<'r>(this: Option<&'r Self>, pass: Pass<'r>, other: &'r Image) -> Pass<'r> {
-        let albedo = this.map_or(other, |sky| &sky.albedo);
-        pass.sample("lobe_albedo", albedo, Sampler::Linear)
     }
 }
 

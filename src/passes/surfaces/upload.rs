@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use crate::daylight::microfacet;
 use crate::gpu::{
     Buffer, BufferKind, Format, Image, ImageDesc, Recorder, Result, upload_buffer, upload_texture,
 };
@@ -49,7 +50,11 @@ pub(in crate::passes) fn upload_materials(
 ) -> Result<Image> {
     let columns = MATERIAL_COLUMNS as usize;
     let rows = MATERIAL_ROWS * materials.len().div_ceil(columns).max(1);
-    let mut table = vec![[0.0f32; 4]; rows * columns];
+    let is_rough = materials.iter().any(|m| m.microfacet.is_some());
+    let lobes = if is_rough { lobe_table() } else { Vec::new() };
+    let rows_of_lobes = lobes.len().div_ceil(columns);
+    let mut table = vec![[0.0f32; 4]; (rows + rows_of_lobes) * columns];
+    table[rows * columns..][..lobes.len()].copy_from_slice(&lobes);
     for (i, material) in materials.iter().enumerate() {
         let at = i / columns * MATERIAL_ROWS * columns + i % columns;
         let [diffuse, specular, emission] = texels(material);
@@ -57,9 +62,20 @@ pub(in crate::passes) fn upload_materials(
         table[at + columns] = specular;
         table[at + 2 * columns] = emission;
     }
-    let size = [MATERIAL_COLUMNS, rows as u32];
+    let size = [MATERIAL_COLUMNS, (rows + rows_of_lobes) as u32];
     let desc = ImageDesc::texture("materials", Format::R32G32B32A32_SFLOAT, size);
     upload_texture(recorder, &desc, &[bytemuck::cast_slice(&table)])
+}
+
+/// The reflectance of lobes behind the materials, see `include/microfacet.glsl`: each texel with the next column.
+fn lobe_table() -> Vec<[f32; 4]> {
+    let albedo = microfacet::table();
+    let last = albedo.len() - 1;
+    let pair = |k: usize| {
+        let ([a, b], [c, d]) = (albedo[k], albedo[(k + 1).min(last)]);
+        [a, b, c, d]
+    };
+    (0..albedo.len()).map(pair).collect()
 }
 
 /// The rows of a material in the table.

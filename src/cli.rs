@@ -9,8 +9,8 @@ use clap::error::ErrorKind;
 use clap::{Arg, Parser, Subcommand};
 
 pub use args::{
-    BakeArgs, BenchArgs, CompareArgs, DaylightArgs, Layout, Map, Motion, SkyArgs, Sweep, Texels,
-    WeatherArgs,
+    BakeArgs, BenchArgs, CompareArgs, DaylightArgs, HourArgs, Layout, Map, Motion, SkyArgs, Sweep,
+    Texels, WeatherArgs,
 };
 
 use crate::options::{OptionValues, Optional, choice, decides_light, one_line};
@@ -25,6 +25,9 @@ pub enum Command {
         /// File to write: .png is tone-mapped, .exr is scene-linear cd/m² (lux for irradiance).
         #[arg(short, long, value_name = "FILE", default_value = "skylight.png", value_parser = args::named(&["png", "exr"]))]
         output: PathBuf,
+        /// An hour of a weather file.
+        #[command(flatten)]
+        at: HourArgs,
         /// Options of the picture.
         #[command(flatten)]
         options: OptionValues,
@@ -36,6 +39,9 @@ pub enum Command {
         /// Start with the options and the camera that this scene was last closed with.
         #[arg(long)]
         resume: bool,
+        /// An hour of a weather file.
+        #[command(flatten)]
+        at: HourArgs,
         /// Options of the picture; --samples is the number of frames averaged at rest, by default 64.
         #[command(flatten)]
         options: OptionValues,
@@ -245,6 +251,7 @@ mod tests {
                 scene,
                 output,
                 options,
+                ..
             }) => (scene, output, options.alone().expect(line)),
             other => panic!("{line}: {other:?}"),
         }

@@ -6,11 +6,15 @@ use std::path::PathBuf;
 use clap::builder::{ArgPredicate, PathBufValueParser, TypedValueParser};
 use clap::{Args, value_parser};
 
+use crate::daylight::weather::YearHour;
 use crate::options::{Direction, choice, choice_enum};
 
 /// What to measure, and where to put it.
 #[derive(Debug, Clone, PartialEq, Args)]
 pub struct BenchArgs {
+    /// An hour of a weather file.
+    #[command(flatten)]
+    pub at: HourArgs,
     /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, the default; island).
     pub scene: Option<PathBuf>,
     /// Write the table as JSON too.
@@ -62,6 +66,9 @@ choice_enum! {
 /// What to tell of a daylight.
 #[derive(Debug, Clone, PartialEq, Args)]
 pub struct SkyArgs {
+    /// An hour of a weather file.
+    #[command(flatten)]
+    pub at: HourArgs,
     /// Machine-readable instead of a table.
     #[arg(long)]
     pub json: bool,
@@ -82,6 +89,9 @@ pub struct SkyArgs {
 /// What to bake.
 #[derive(Debug, Clone, PartialEq, Args)]
 pub struct BakeArgs {
+    /// An hour of a weather file.
+    #[command(flatten)]
+    pub at: HourArgs,
     /// What the map holds.
     #[arg(long, value_name = "WHAT", value_parser = choice::<Map>())]
     pub map: Map,
@@ -162,6 +172,17 @@ pub(super) fn named(extensions: &'static [&'static str]) -> impl TypedValueParse
     })
 }
 
+/// An hour of a weather file, instead of a place, a moment and a sky.
+#[derive(Debug, Clone, Default, PartialEq, Args)]
+pub struct HourArgs {
+    /// Weather file (.epw, .wea) that gives place, sun and sky of --hour: --sky perez with its irradiances and dew point.
+    #[arg(long, value_name = "FILE", requires = "hour")]
+    pub weather: Option<PathBuf>,
+    /// Hour of the weather file: that which holds this time of its clock, local standard time without daylight saving.
+    #[arg(long, value_name = "M-DThh", requires = "weather")]
+    pub hour: Option<YearHour>,
+}
+
 /// The weather file, and the form of the table.
 #[derive(Debug, Clone, PartialEq, Eq, Args)]
 pub struct WeatherArgs {
@@ -175,6 +196,9 @@ pub struct WeatherArgs {
 /// Points to measure at, and where to put the result.
 #[derive(Debug, Clone, PartialEq, Args)]
 pub struct DaylightArgs {
+    /// An hour of a weather file.
+    #[command(flatten)]
+    pub at: HourArgs,
     /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, island).
     pub scene: PathBuf,
     /// Sensors: lines of x y z, or x y z and a normal (up without one), separated by blanks or commas. A .pts file is Radiance's, with

@@ -42,21 +42,28 @@ pub fn run(command: Command) -> Result<()> {
         Command::Render {
             scene,
             output,
+            at,
             options,
-        } => render::run(scene.as_deref(), &output, &options),
+        } => {
+            let options = weather::applied(&at, options)?;
+            render::run(scene.as_deref(), &output, &options)
+        }
         #[cfg(feature = "window")]
         Command::View {
             scene,
             resume,
+            at,
             options,
-        } => view::run(scene.as_deref(), resume, options),
+        } => view::run(scene.as_deref(), resume, weather::applied(&at, options)?),
         #[cfg(not(feature = "window"))]
         Command::View { .. } => Err(crate::error::Error::NoWindow),
-        Command::Bench { args, options } => bench::run(&args, options),
-        Command::Sky { args, options } => sky::run(&args, options),
-        Command::Daylight { args, options } => daylight::run(&args, &options),
+        Command::Bench { args, options } => bench::run(&args, weather::applied(&args.at, options)?),
+        Command::Sky { args, options } => sky::run(&args, weather::applied(&args.at, options)?),
+        Command::Daylight { args, options } => {
+            daylight::run(&args, &weather::applied(&args.at, options)?)
+        }
         Command::Weather { args, options } => weather::run(&args, &options),
-        Command::Bake { args, options } => bake::run(&args, options),
+        Command::Bake { args, options } => bake::run(&args, weather::applied(&args.at, options)?),
         Command::Compare { args } => compare::run(&args),
         Command::Info {
             startup: true,

@@ -127,6 +127,16 @@ impl Weather {
         }
     }
 
+    /// The interval that holds a time; `None` if the file has none.
+    pub fn at(&self, time: YearHour) -> Option<&Record> {
+        let half = 0.5 * self.step_hours;
+        let holds = |r: &&Record| {
+            let apart = time.hour - r.hour;
+            (r.month, r.day) == (time.month, time.day) && (-half..half).contains(&apart)
+        };
+        self.records.iter().find(holds)
+    }
+
     /// Whether the file covers a whole year.
     pub fn is_a_year(&self) -> bool {
         let days = if self.year() == LEAP_YEAR {
@@ -192,6 +202,51 @@ impl Weather {
             ));
         }
         self.warnings.extend(lines);
+    }
+}
+
+/// A time of a weather file's clock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct YearHour {
+    /// 1..=12.
+    pub month: u32,
+    /// 1..=31.
+    pub day: u32,
+    /// Hours of local standard time, 0..24.
+    pub hour: f64,
+}
+
+impl std::fmt::Display for YearHour {
+    /// In the form that is read.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (hour, minute) = (self.hour.floor(), (self.hour.fract() * 60.0).round());
+        write!(f, "{}-{}T{hour:02}:{minute:02}", self.month, self.day)
+    }
+}
+
+impl std::str::FromStr for YearHour {
+    type Err = String;
+
+    /// `M-DThh` or `M-DThh:mm`, also with a blank for the T.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = || {
+            let (date, time) = text.trim().split_once(['T', 't', ' '])?;
+            let (month, day) = date.split_once('-')?;
+            let (hour, minute) = time.trim().split_once(':').unwrap_or((time.trim(), "0"));
+            let [month, day, hour, minute] =
+                [month, day, hour, minute].map(|part| part.parse::<u32>().ok());
+            let (month, day, hour, minute) = (month?, day?, hour?, minute?);
+            let exists = NaiveDate::from_ymd_opt(LEAP_YEAR, month, day).is_some();
+            (exists && hour < 24 && minute < 60).then_some(Self {
+                month,
+                day,
+                hour: f64::from(hour) + f64::from(minute) / 60.0,
+            })
+        };
+        parts().ok_or_else(|| {
+            "write month, day and hour of the file's clock, for instance 3-21T12 or 12-21T15:30"
+                .to_owned()
+        })
     }
 }
 

@@ -56,6 +56,43 @@ fn a_file_is_summed_and_what_is_odd_is_told() {
 }
 
 #[test]
+fn an_hour_of_a_file_is_its_place_its_sun_and_its_sky() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    std::fs::write(folder.path().join("a.epw"), two_days()).expect("written");
+    let sky = |words: &str| {
+        Command::new(env!("CARGO_BIN_EXE_skylight"))
+            .current_dir(folder.path())
+            .arg("sky")
+            .args(words.split(' '))
+            .args(["--json", "--no-warnings"])
+            .output()
+            .expect("it runs")
+    };
+    let of_file = sky("--weather a.epw --hour 6-20T11:59");
+    assert!(of_file.status.success(), "{of_file:?}");
+    let given = "--place 55.1,8.6 --when 2019-06-20T11:30:00+01:00 --sky perez --dni 800 --dhi 100 --dew-point 9";
+    let by_hand = sky(given);
+    assert!(by_hand.status.success(), "{by_hand:?}");
+    assert_eq!(of_file.stdout, by_hand.stdout);
+    for (words, what) in [
+        (
+            "--weather a.epw --hour 7-1T11",
+            "a.epw has no hour 7-1T11:00",
+        ),
+        ("--weather a.epw --hour noon", "3-21T12"),
+        ("--weather a.epw", "--hour"),
+        ("--hour 6-20T11", "--weather"),
+        ("--weather a.epw --hour 6-20T11 --dni 3", "leave out --dni"),
+    ] {
+        let output = sky(words);
+        let line = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{words}: {line}");
+        assert_eq!(line.lines().count(), 1, "{line}");
+        assert!(line.contains(what), "{line} for {what}");
+    }
+}
+
+#[test]
 fn files_that_cannot_be_used_are_one_line() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let damaged = two_days().replace(",800,", ",bright,");

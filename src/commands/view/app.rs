@@ -49,6 +49,8 @@ pub(super) struct App {
     ticked: Option<Instant>,
     /// Time of the next redraw without an event.
     pub(super) again_at: Option<Instant>,
+    /// Whether the window could not be drawn to.
+    is_blocked: bool,
     /// Whether the next frame of the options is to be saved.
     is_capture_due: bool,
     pub(super) trouble: Trouble,
@@ -78,6 +80,7 @@ impl App {
             started: Instant::now(),
             ticked: None,
             again_at: None,
+            is_blocked: false,
             is_capture_due: false,
             trouble: Trouble::default(),
         }
@@ -169,7 +172,8 @@ impl App {
             self.handle(request)?;
         }
         self.ticked = self.is_busy().then_some(now);
-        if self.ticked.is_some() && self.again_at.is_none() {
+        // A message that disappears later does not hold up the frames until then.
+        if self.ticked.is_some() && !self.is_blocked {
             self.request_redraw();
         }
         Ok(())
@@ -236,6 +240,7 @@ impl App {
             // The interface was laid out before this frame and still shows the previous state.
             stage.window.request_redraw();
         }
+        self.is_blocked = !drawn;
         self.again_at = match layout.again_after {
             _ if !drawn => Some(Instant::now() + RETRY),
             // Requested for the next frame; no timer needed.

@@ -316,7 +316,7 @@ fn resumed_windows_go_on_where_they_were_left() {
     let file = state.path().join("skylight").join("bundled.toml");
     fs::write(&file, "turbidity = \"much\"").expect("written");
     let output = program(state.path())
-        .args(["view", "--resume"])
+        .args(["view", "colonnade", "--resume"])
         .env("XDG_STATE_HOME", state.path())
         .output()
         .expect("the program starts");

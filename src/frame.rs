@@ -23,13 +23,13 @@ use crate::passes::light::lighting::{Light, Show};
 use crate::passes::light::lobes::Lobes;
 use crate::passes::light::panes::{BeforePicture, Panes};
 use crate::passes::light::probe::{Probe, Reading};
-use crate::passes::light::rough::RoughSky;
 use crate::passes::occlusion::ssao::Ssao;
 use crate::passes::picture::exposure::Exposure;
 use crate::passes::picture::tone_map::{ToneMap, ToneSettings};
 use crate::passes::sky::air::Air;
 use crate::passes::sky::cube::SkyCube;
 use crate::passes::sky::irradiance::Irradiance;
+use crate::passes::sky::specular::{SAMPLES, SpecularCube};
 use crate::passes::surfaces::gbuffer::Gbuffer;
 use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::view::{View, Window};
@@ -69,7 +69,7 @@ pub struct Frame {
     /// Panes of glass, if the scene has any.
     panes: Option<Panes>,
     /// The sky of materials that reflect by GGX, if the scene has any.
-    rough: Option<RoughSky>,
+    sky_prefiltered: Option<SpecularCube>,
     /// Light in their lobes, if it is shown.
     lobes: Option<Lobes>,
     ambient: AmbientPasses,
@@ -137,9 +137,9 @@ impl Frame {
                 ambient: AmbientPasses::new(device, &settings)?,
                 gbuffer: settings.gbuffer(device, &geometry)?,
                 panes: settings.panes(device, &tree)?,
-                rough: geometry
+                sky_prefiltered: geometry
                     .is_rough()
-                    .then(|| RoughSky::new(recorder))
+                    .then(|| SpecularCube::new(recorder, SAMPLES, None))
                     .transpose()?,
                 lobes: settings.lobes(device, &tree)?,
                 average: Average::new(device, &geometry, &tree, &settings)?,
@@ -266,8 +266,8 @@ impl Frame {
         // None of these passes reads another's images, so without a barrier in between they may overlap.
         rec.prepare(self.gbuffer.surfaces().images().chain(shadow.target()));
         let sky = self.sky_cube.record(rec, daylight);
-        if let Some(rough) = &mut self.rough {
-            rough.record(rec, &sky);
+        if let Some(cube) = &mut self.sky_prefiltered {
+            cube.record(rec, &sky);
         }
         let air = self.air.as_mut();
         let air = air.map(|air| air.record(rec, daylight, view.camera.eye.y));
@@ -301,7 +301,7 @@ impl Frame {
             air: air.unwrap_or_default(),
             panes: BeforePicture(self.panes.as_ref()),
             sun_glass,
-            rough: self.rough.as_ref(),
+            sky_prefiltered: self.sky_prefiltered.as_ref().map(SpecularCube::image),
             lobes: None,
         };
         let scene = (geometry, &self.tree, self.cells.as_ref());

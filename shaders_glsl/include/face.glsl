@@ -46,10 +46,7 @@ struct LitInPlane {
     bool is_edge;
 };
 
-// Part of the bias that the texels around the point have: it must not hide the foot of a wall.
-const float BIAS_AROUND = 0.0;
-
-/// As `is_lit_in_plane`, with the eight texels around.
+/// As `is_lit_in_plane`, with the eight texels around. A texel is dark for that without the bias, which would hide the foot of a wall.
 LitInPlane lit_in_plane(sampler2D map, mat4 clip, mat4 planes, vec4 window, float bias, vec3 world, vec3 face) {
     vec4 c = clip * vec4(world, 1.0);
     vec3 p = c.xyz / c.w;
@@ -64,7 +61,7 @@ LitInPlane lit_in_plane(sampler2D map, mat4 clip, mat4 planes, vec4 window, floa
         float before = texel_at(map, clamp(texel, window.xy, last)).r - p.z - rise - RISE_ERROR * abs(rise);
         if (i == 4) is_lit = before <= bias;
         any_lit = any_lit || before <= bias;
-        any_dark = any_dark || before > BIAS_AROUND * bias;
+        any_dark = any_dark || before > 0.0;
     }
     return LitInPlane(is_lit, any_lit && any_dark);
 }

@@ -12,7 +12,7 @@ mod wea;
 
 use chrono::{DateTime, Duration, FixedOffset, NaiveDate};
 
-use super::perez::{DEW_POINTS, Measured};
+use super::perez::{DEW_POINTS, MOST_IRRADIANCE_W, Measured};
 use super::place::Place;
 use super::sun_position::{SunPosition, spa};
 
@@ -248,6 +248,11 @@ impl std::str::FromStr for YearHour {
                 .to_owned()
         })
     }
+}
+
+/// An irradiance that can be one. Files write 9999, 999999 or -1 where there is none.
+fn plausible_irradiance(watts: f64) -> Option<f64> {
+    (0.0..=MOST_IRRADIANCE_W).contains(&watts).then_some(watts)
 }
 
 /// A dew point that can be one.

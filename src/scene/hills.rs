@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::scene::{Bounds, Material, Part, Scene};
+use crate::scene::{Material, Scene};
 
 /// Edge length of the terrain, metres: large enough for several shadow cascades.
 const EDGE: f32 = 400.0;
@@ -32,15 +32,7 @@ pub fn hills(triangles: usize) -> Scene {
             scene.indices.extend([a, c, b, b, c, d]);
         }
     }
-    scene.bounds = Bounds::of(scene.positions.iter().copied().map(Vec3::from));
-    scene.parts = vec![Part {
-        first_index: 0,
-        index_count: scene.indices.len() as u32,
-        material: 0,
-        has_colours: false,
-        bounds: scene.bounds,
-    }];
-    scene
+    scene.into_one_part()
 }
 
 /// Height of the terrain, metres, and its slopes along +x and +z.

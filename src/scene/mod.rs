@@ -36,7 +36,7 @@ mod texture;
 
 use std::borrow::Cow;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
 pub use bounds::Bounds;
@@ -147,6 +147,19 @@ impl Scene {
         if !self.tangents.is_empty() {
             self.tangents.resize(vertices, [0; 4]);
         }
+    }
+
+    /// The same scene with all triangles in one part of its first material, without vertex colours.
+    fn into_one_part(mut self) -> Self {
+        self.bounds = Bounds::of(self.positions.iter().copied().map(Vec3::from));
+        self.parts = vec![Part {
+            first_index: 0,
+            index_count: self.indices.len() as u32,
+            material: 0,
+            has_colours: false,
+            bounds: self.bounds,
+        }];
+        self
     }
 
     /// Computes the draw layout and reorders the indices accordingly.
@@ -277,7 +290,6 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
 
     fn part(min: [f32; 3], max: [f32; 3]) -> Part {
         Part {

@@ -399,4 +399,4 @@ impl Controls {
 
 #[cfg(test)]
 #[path = "controls_tests.rs"]
-mod tests;
+pub(super) mod tests;

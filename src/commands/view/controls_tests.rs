@@ -9,7 +9,8 @@ fn house() -> Bounds {
     }
 }
 
-fn start() -> Controls {
+/// Before a house.
+pub(in crate::commands::view) fn start() -> Controls {
     Controls::new(&Camera::framing(&house(), 45.0, 1.5), &house())
 }
 

@@ -156,27 +156,18 @@ pub(super) enum Wheel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Bounds, Camera};
-    use glam::Vec3;
-
-    fn controls() -> Controls {
-        let bounds = Bounds {
-            min: Vec3::splat(-1.0),
-            max: Vec3::splat(1.0),
-        };
-        Controls::new(&Camera::framing(&bounds, 45.0, 1.0), &bounds)
-    }
+    use crate::commands::view::controls::tests::start;
 
     #[test]
     fn a_drag_begins_where_the_button_went_down() {
         let mut input = Input::default();
-        let mut controls = controls();
-        let start = controls.camera();
+        let mut controls = start();
+        let first = controls.camera();
         input.moved([10.0, 10.0], 100.0, Some(&mut controls));
-        assert_eq!(controls.camera(), start);
+        assert_eq!(controls.camera(), first);
         input.pressed(MouseButton::Left, 0.0);
         input.moved([20.0, 10.0], 100.0, Some(&mut controls));
-        assert_ne!(controls.camera(), start);
+        assert_ne!(controls.camera(), first);
         let turned = controls.camera();
         input.released(MouseButton::Left);
         input.moved([90.0, 10.0], 100.0, Some(&mut controls));

@@ -68,17 +68,8 @@ fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Bounds, Camera};
-    use glam::Vec3;
+    use crate::commands::view::controls::tests::start;
     use winit::event::DeviceId;
-
-    fn controls() -> Controls {
-        let bounds = Bounds {
-            min: Vec3::splat(-1.0),
-            max: Vec3::splat(1.0),
-        };
-        Controls::new(&Camera::framing(&bounds, 45.0, 1.0), &bounds)
-    }
 
     /// Touches of one screen, on a picture 100 pixels high.
     struct Screen {
@@ -109,7 +100,7 @@ mod tests {
     fn one_finger_orbits_and_two_pan_and_zoom() {
         let mut screen = Screen {
             touches: Touches::default(),
-            controls: controls(),
+            controls: start(),
         };
         let start = screen.controls.camera();
         screen.touch(1, TouchPhase::Started, [50.0, 50.0], false);
@@ -134,7 +125,7 @@ mod tests {
     fn fingers_on_the_panel_leave_the_camera_alone() {
         let mut screen = Screen {
             touches: Touches::default(),
-            controls: controls(),
+            controls: start(),
         };
         let start = screen.controls.camera();
         screen.touch(1, TouchPhase::Started, [50.0, 50.0], true);

@@ -1,8 +1,9 @@
 //! EnergyPlus weather: Crawley, Hand & Lawrie 1999, *Improving the weather information available to simulation programs*; the columns are
 //! those of EnergyPlus' *Auxiliary Programs*.
 
-use super::{Record, Station, Weather, date, number, plausible_dew_point, zone};
-use crate::daylight::perez::MOST_IRRADIANCE_W;
+use super::{
+    Record, Station, Weather, date, number, plausible_dew_point, plausible_irradiance, zone,
+};
 use crate::daylight::place::Place;
 
 /// Least number of columns: up to the opaque sky cover. Older files end before the rain.
@@ -25,12 +26,13 @@ pub(super) fn parse(text: &str) -> Result<Weather, String> {
         Some((number, line)) => records_per_hour(line, number)?,
         None => 1.0,
     };
-    let data = lines().skip_while(|(_, line)| !is_data(line));
+    let data: Vec<(usize, &str)> = lines().skip_while(|(_, line)| !is_data(line)).collect();
     // Files leave out columns at the end, but all lines of a file the same ones.
-    let widths = lines().skip_while(|(_, line)| !is_data(line));
-    let width = widths.map(|(_, line)| line.split(',').count()).next();
-    let width = width.unwrap_or_default().max(COLUMNS);
-    let records = data.map(|(number, line)| record(line, number, per_hour, width));
+    let width = data.first().map_or(0, |(_, line)| line.split(',').count());
+    let width = width.max(COLUMNS);
+    let records = data
+        .iter()
+        .map(|(number, line)| record(line, *number, per_hour, width));
     Ok(Weather {
         station,
         records: records.collect::<Result<_, _>>()?,
@@ -101,14 +103,9 @@ fn record(line: &str, at: usize, per_hour: f64, width: usize) -> Result<Record, 
         month,
         day,
         hour,
-        global_w: irradiance(cell(13, "the global irradiance")?),
-        direct_normal_w: irradiance(cell(14, "the direct irradiance")?),
-        diffuse_w: irradiance(cell(15, "the diffuse irradiance")?),
+        global_w: plausible_irradiance(cell(13, "the global irradiance")?),
+        direct_normal_w: plausible_irradiance(cell(14, "the direct irradiance")?),
+        diffuse_w: plausible_irradiance(cell(15, "the diffuse irradiance")?),
         dew_point_c: plausible_dew_point(cell(7, "the dew point")?),
     })
-}
-
-/// An irradiance that can be one. Files write 9999, 999999 or -1 where there is none.
-fn irradiance(watts: f64) -> Option<f64> {
-    (0.0..=MOST_IRRADIANCE_W).contains(&watts).then_some(watts)
 }

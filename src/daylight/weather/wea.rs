@@ -1,7 +1,6 @@
 //! Radiance's `.wea`, the input of `gendaymtx`: a head of words and lines of month, day, hour, direct and diffuse irradiance.
 
-use super::{Record, Station, Weather, date, number, zone};
-use crate::daylight::perez::MOST_IRRADIANCE_W;
+use super::{Record, Station, Weather, date, number, plausible_irradiance, zone};
 use crate::daylight::place::Place;
 
 pub(super) fn parse(text: &str) -> Result<Weather, String> {
@@ -90,7 +89,7 @@ fn record(words: &[&str], at: usize) -> Result<Record, String> {
     )?;
     let irradiance = |text, what| {
         let watts = number(text, what, at)?;
-        Ok::<_, String>((0.0..=MOST_IRRADIANCE_W).contains(&watts).then_some(watts))
+        Ok::<_, String>(plausible_irradiance(watts))
     };
     Ok(Record {
         month,

@@ -21,7 +21,7 @@ use crate::passes::bounces::tree::{RayConstants, Tree};
 use crate::passes::dome::gather::BIAS_TEXELS;
 use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
 use crate::passes::light::panes::{self, BeforePicture};
-use crate::passes::light::rough::{self, RoughSky};
+use crate::passes::light::rough;
 use crate::passes::sky::air::AirBefore;
 pub use crate::passes::sun_shadow::cascades::Shadows;
 use crate::passes::sun_shadow::cascades::{BLEND, MAX_RADIUS, PLANE_OFFSET_TEXELS, SunViews};
@@ -268,8 +268,8 @@ pub struct Light<'a> {
     pub sun_glass: Option<&'a Image>,
     /// The air before the eye.
     pub air: AirBefore<'a>,
-    /// The albedo of lobes of GGX, if there are any.
-    pub rough: Option<&'a RoughSky>,
+    /// The sky prefiltered for lobes of GGX, kcd/m²; `None` without any.
+    pub sky_prefiltered: Option<&'a Image>,
     /// Light of sky and surfaces in those lobes, kcd/m², if it is shown.
     pub lobes: Option<&'a Image>,
 }

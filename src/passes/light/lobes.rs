@@ -126,14 +126,14 @@ impl Lobes {
             pipeline,
             has_cells,
         } = variant.as_ref()?;
-        let rough = light.rough?;
+        let prefiltered = light.sky_prefiltered?;
         self.light.swap(0, 1);
         let [new, old] = &self.light;
         let pass = tree.bound_to(recorder.pass("lobes", pipeline));
         let pass = surfaces.sampled_by(pass, geometry.materials());
         let mut pass = pass
             .sample("sky_radiance", light.sky_radiance, Sampler::Linear)
-            .sample("sky_prefiltered", rough.prefiltered(), Sampler::Linear)
+            .sample("sky_prefiltered", prefiltered, Sampler::Linear)
             .sample("sky_irradiance", light.sky_irradiance, Sampler::Linear)
             .sample("ambient", ambient, Sampler::Nearest)
             .sample("previous", old, Sampler::Nearest)

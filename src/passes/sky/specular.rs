@@ -25,6 +25,9 @@ gpu_struct! {
 /// Edge of the first level, texels: that of the cube it is filtered from.
 pub const EDGE: u32 = SMOOTH_EDGE;
 
+/// Samples of a texel of the sky for lobes.
+pub const SAMPLES: u32 = 64;
+
 const FORMAT: Format = Format::R32G32B32A32_SFLOAT;
 
 const SHADERS: CubeShaders = CubeShaders {

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::Subject;
-use crate::scene::{Bounds, Camera, Part, Scene};
+use crate::scene::{Bounds, Camera, Scene};
 
 /// A scene of quads, each given by a corner and two edges; the front is on the side of `u` x `v`.
 fn scene(quads: &[[Vec3; 3]]) -> Scene {
@@ -14,15 +14,7 @@ fn scene(quads: &[[Vec3; 3]]) -> Scene {
         scene.positions.extend(corners.map(|p| p.to_array()));
         scene.indices.extend([0, 1, 2, 0, 2, 3].map(|i| first + i));
     }
-    scene.bounds = Bounds::of(scene.positions.iter().copied().map(Vec3::from));
-    scene.parts = vec![Part {
-        first_index: 0,
-        index_count: scene.indices.len() as u32,
-        material: 0,
-        has_colours: false,
-        bounds: scene.bounds,
-    }];
-    scene
+    scene.into_one_part()
 }
 
 /// The sides of a box, with the fronts outward.

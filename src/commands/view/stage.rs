@@ -68,10 +68,13 @@ pub(super) fn window(
 ) -> Result<(Arc<Window>, PhysicalSize<u32>)> {
     let attributes = Window::default_attributes()
         .with_title("skylight")
-        .with_inner_size(PhysicalSize::new(options.size.width, options.size.height));
+        .with_inner_size(PhysicalSize::new(options.size.width, options.size.height))
+        .with_visible(false);
     let window = event_loop.create_window(attributes);
     let window = window.map_err(|e| GpuError::Window(super::reason(&e)))?;
+    // Nobody closes a window that is not shown yet, and asking a closed one for its size would end the program.
     let size = window.inner_size();
+    window.set_visible(true);
     Ok((Arc::new(window), size))
 }
 

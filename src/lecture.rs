@@ -12,7 +12,7 @@
 //! | Spectrum to RGB | ∫ C(λ) (x̄, ȳ, z̄) dλ | [`xyz_from_spectrum`](crate::daylight::spectrum::xyz_from_spectrum) | – | `cie_1931_colour_matching_functions` |
 //! | Gamut mapping | RGB = M XYZ | [`rgb_from_xyz`](crate::daylight::colour::rgb_from_xyz), [`xyz_from_rgb`](crate::daylight::colour::xyz_from_rgb) | `include/colour.glsl`: `RGB_FROM_XYZ` | `srgb_matrices` |
 //! | Gamut mapping | Y = 0.2126 R + 0.7152 G + 0.0722 B | [`luminance`](crate::daylight::colour::luminance) | `include/colour.glsl`: `luminance` | `white_is_white` |
-//! | Tone mapping | (s R)^(1/γ) | [`linear_gamma`](crate::daylight::tone_curve::linear_gamma) | `picture/tone_map.frag`: `inverse_gamma` | `tone_curves` |
+//! | Tone mapping | (s R)^(1/γ) | [`linear_gamma`](crate::daylight::tone_curve::linear_gamma) | `include/tone_map.glsl`: `inverse_gamma` | `tone_curves` |
 //! | Tone mapping | (1 - e^(-R))^(1/γ) | [`exponential`](crate::daylight::tone_curve::exponential) | `include/tone_curve.glsl`: `tone_exponential` | `tone_curves` |
 //! | Analytical sky models | Preetham's L(θ, γ) | [`Preetham`](crate::daylight::preetham::Preetham), [`perez`](crate::daylight::preetham::perez) | `include/sky_preetham.glsl`: `perez` | `preetham_sky` |
 //! | Analytical sky models | θ_s = π/2 - asin(sin ℓ sin δ - cos ℓ cos δ cos(π t/12)) | [`lecture`](crate::daylight::sun_position::lecture) | – | `lecture_formulas` |
@@ -22,16 +22,16 @@
 //! | Direct sunlight | ω = A/(4 r²) | [`lecture_sun_solid_angle`](crate::daylight::sunlight::lecture_sun_solid_angle) | – | `the_lectures_numbers` |
 //! | Direct sunlight | E = L ω ≈ 1383 W/m² | [`lecture_sun_irradiance`](crate::daylight::sunlight::lecture_sun_irradiance) | – | `the_lectures_numbers` |
 //! | Precomputing a cube map | v_ijk = a_k + u_k (..) + b_k (..) | [`face_vector`](crate::daylight::cube::face_vector) | `include/cube.glsl`: `cube_direction` | `vulkans_table_is_met` |
-//! | Environment mapping | r = i - 2 (n·i) n | [`Show::SkySpecular`](crate::options::Show::SkySpecular) | `light/lighting.frag`: `reflect(` | `each_addend_is_in_the_picture_once` |
+//! | Environment mapping | r = i - 2 (n·i) n | [`Show::SkySpecular`](crate::options::Show::SkySpecular) | `include/lighting.glsl`: `reflect(` | `each_addend_is_in_the_picture_once` |
 //! | Filling the background | i_w = V⁻¹ P⁻¹ p_n | [`Camera`](crate::scene::Camera) | `include/view.glsl`: `view_ray` | – |
-//! | Sky irradiance and A | E ≈ A E_sky | [`Show::Sky`](crate::options::Show::Sky) | `light/lighting.frag`: `ambient_occlusion` | `each_addend_is_in_the_picture_once` |
+//! | Sky irradiance and A | E ≈ A E_sky | [`Show::Sky`](crate::options::Show::Sky) | `include/lighting.glsl`: `ambient_occlusion` | `each_addend_is_in_the_picture_once` |
 //! | Integrating skylight | E_N = 1/N Σ L cos θ/pdf | [`monte_carlo`](crate::daylight::irradiance::monte_carlo) | `include/irradiance.glsl`: `MONTE_CARLO` | `monte_carlo_meets_its_own_standard_error` |
 //! | Integrating skylight | (θ, φ) = (acos √(1 - ξ1), 2π ξ2) | [`cosine_hemisphere`](crate::daylight::sampling::cosine_hemisphere) | `include/irradiance.glsl`: `random_direction` | `the_warps_have_the_moments_of_their_densities` |
 //! | Integrating skylight | frame of n (below) | [`frisvad`](crate::daylight::tangent_frame::frisvad), [`duff`](crate::daylight::tangent_frame::duff) | `include/frame.glsl`: `frame_from_normal` | `tangent_frames` |
 //! | Irradiance environment map | six faces by gl_Layer | [`IrradianceMethod`](crate::daylight::IrradianceMethod) | `sky/cube_faces.geom`: `gl_Layer` | `exact_of_a_64_cube` |
 //! | Irradiance environment map | rnd(t) | [`rnd`](crate::daylight::sampling::rnd), [`tea`](crate::daylight::sampling::tea) | `include/random.glsl`: `rnd` | `rnd_is_uniform` |
-//! | Illumination model | L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r)) | [`Show`](crate::options::Show) | `light/lighting.frag`: `r_dot_l` | `each_addend_is_in_the_picture_once` |
-//! | Rendering equation | L_e | [`Material::emission`](crate::scene::Material::emission) | `light/lighting.frag`: `emitted` | `a_panel_shows_what_it_emits_and_nothing_more_at_night` |
+//! | Illumination model | L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r)) | [`Show`](crate::options::Show) | `include/lighting.glsl`: `r_dot_l` | `each_addend_is_in_the_picture_once` |
+//! | Rendering equation | L_e | [`Material::emission`](crate::scene::Material::emission) | `include/lighting.glsl`: `emitted` | `a_panel_shows_what_it_emits_and_nothing_more_at_night` |
 //! | Rendering equation | ρ_s V(x, r) L_sky(r), V over the lobe around r | [`Reflections::Hidden`](crate::options::Reflections::Hidden) | `dome/dome_specular.frag`: `along_r` | `a_mirror_on_the_floor_shows_the_sky_in_the_opening_and_nowhere_else` |
 //! | Rendering equation | V(x, ω) L_sky(ω) cos θ over the sky | [`SkySampler`](crate::daylight::sky_sampler::SkySampler) | `dome/dome_gather.frag`: `light_of_directions` | `a_room_with_an_opening_gets_the_light_of_its_configuration_factor` |
 //! | Rendering equation | ρ_d/π ∫ L(ω) cos θ dω over what other surfaces emit and reflect | [`Bounces`](crate::options::Bounces) | `bounces/bounces_gather.comp`: `gathered` | `each_addend_is_in_the_picture_once` |

@@ -41,7 +41,7 @@ pub(crate) use resolve::{in_world, shortest};
 pub use sun_input::SunInput;
 pub use values::{
     AerosolInput, AoResolution, Direction, ExposureMode, Fresnel, Hdr, Penumbra, Place, Preset,
-    Size, SolarTime, Switch, When,
+    RouteChoice, Size, SolarTime, Switch, When,
 };
 pub(crate) use values::{exposure_factor, ratio, sun as direction};
 
@@ -415,6 +415,9 @@ options! {
             strict: bool,
             /// Check every Vulkan call with the validation layers; slow.
             validate: bool,
+            /// How full-screen passes (lighting, occlusion, tone map ..) are run; the picture is the same.
+            #[arg(value_name = "ROUTE", value_parser = choice::<RouteChoice>(), default_value_t)]
+            route: RouteChoice,
             /// Do without something that the device has, as on a device that lacks it.
             #[arg(value_name = "FEATURE", value_parser = choice::<Optional>())]
             without: Option<Optional>,

@@ -19,12 +19,13 @@ use crate::daylight::sun_position::SunPosition;
 use crate::daylight::sunlight::LIMB_DARKENING;
 use crate::error::Result;
 use crate::frame::{FrameSettings, Sampling};
-use crate::gpu::{Context, ContextOptions};
+use crate::gpu::{Context, ContextOptions, GpuError};
 use crate::options::{Fresnel, Mirrors, OptionValues, Options, Penumbra, Phong, Preset};
 use crate::passes::dome::gather::DomeSettings;
 use crate::passes::light::lighting::{Precision, Show};
 use crate::passes::occlusion::ssao::SsaoSettings;
 use crate::passes::picture::tone_map::Scale;
+use crate::passes::route::settle_route;
 use crate::passes::sky::irradiance::IrradianceSettings;
 use crate::scene::{self, Camera, LoadOptions, Loaded, Scene, Subject};
 
@@ -52,6 +53,7 @@ pub fn context_options(options: &Options) -> ContextOptions {
         validate: options.validate,
         without: options.without.into_iter().collect(),
         cache_folder: cache_folder(),
+        route: options.route.route(),
         fault: planned_fault(0),
         ..ContextOptions::default()
     }
@@ -171,7 +173,11 @@ impl Job {
     pub fn on_device(path: Option<&Path>, user: &OptionValues) -> Result<(Self, Arc<Context>)> {
         let wanted = context_options(&user.alone()?);
         let (job, context) = thread::scope(|scope| {
-            let context = scope.spawn(|| Context::new(&wanted));
+            let context = scope.spawn(|| {
+                let context = Context::new(&wanted)?;
+                settle_route(&context)?;
+                Ok::<_, GpuError>(context)
+            });
             let job = Self::new(path, user);
             // A panic of the other thread is propagated.
             (

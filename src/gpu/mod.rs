@@ -35,6 +35,7 @@ pub use memory::read_back::{Pixels, Texel, copy_texel, read_back};
 pub use memory::upload::{upload_buffer, upload_texture};
 pub use pipeline::cache::CacheState;
 pub use pipeline::layout::{GpuStruct, assert_layout};
+pub use pipeline::route::RouteTimes;
 pub use pipeline::shader::{Binding, BindingKind, Field, Shader, Stage, compiled as shaders};
 pub use pipeline::{Blend, Depth, Pipeline, PipelineDesc};
 #[cfg(feature = "window")]
@@ -47,5 +48,6 @@ pub use record::access;
 pub use record::draws::{Draws, Faces, Winding};
 pub use record::pass::{Load, Pass};
 pub use record::recorder::Recorder;
+pub use record::screen::Route;
 pub use record::timings::{PassTime, Stopwatch, Timing, Timings};
 pub use record::work::{PassWork, PipelineStatistics, Traffic};

@@ -152,6 +152,7 @@ choices! {
         PipelineStatistics = "pipeline-statistics": "The feature pipelineStatisticsQuery; the benchmark has no such columns otherwise",
         FloatFilter = "float-filter": "Linear filter of 32-bit floats; shaders filter the sky otherwise",
         FloatBlend = "float-blend": "Blending of 32-bit floats; pictures of 32-bit floats have no stars otherwise",
+        StoredPictures = "stored-pictures": "Storage images of the formats of pictures; fragment shaders run full-screen passes otherwise",
         Timestamps = "timestamps": "Timestamps of the queue; each pass is submitted alone and timed by the wall clock otherwise",
     }
     Phong {

@@ -13,6 +13,7 @@ pub use crate::daylight::moment::When;
 use crate::daylight::perez::{DEW_POINTS, MOST_IRRADIANCE_W};
 pub use crate::daylight::place::Place;
 use crate::frame::FrameSettings;
+use crate::gpu::Route;
 
 /// Width and height of a picture, pixels, 1..=32 768 each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -101,6 +102,28 @@ choice_enum! {
         Off = "off": "Tone-mapped, 0 to white, on every screen",
         Auto = "auto": "Where the window's surface offers HDR10 or scRGB",
         On = "on": "The same, and an error where it offers neither",
+    }
+}
+
+choice_enum! {
+    /// How full-screen passes are run.
+    #[derive(Default)]
+    pub enum RouteChoice {
+        #[default]
+        Auto = "auto": "The faster one: measured when a device is first used, and kept; fragments on software devices",
+        Fragment = "fragment": "Fragments of a triangle, as in the lecture",
+        Compute = "compute": "Compute shaders, many times faster on cards with few raster units",
+    }
+}
+
+impl RouteChoice {
+    /// The route that is asked for, if any.
+    pub fn route(self) -> Option<Route> {
+        match self {
+            Self::Auto => None,
+            Self::Fragment => Some(Route::Fragment),
+            Self::Compute => Some(Route::Compute),
+        }
     }
 }
 

@@ -7,6 +7,7 @@ pub mod dome;
 pub mod light;
 pub mod occlusion;
 pub mod picture;
+pub mod route;
 pub mod sky;
 pub mod sun_shadow;
 pub mod surfaces;
@@ -17,7 +18,9 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 
 use crate::daylight::glass;
-use crate::gpu::{Blend, Context, Depth, Format, Pipeline, PipelineDesc, Result, Shader, shaders};
+use crate::gpu::{
+    Blend, Context, Depth, Format, Pipeline, PipelineDesc, Result, Route, Shader, shaders,
+};
 
 /// cd/m² to kcd/m², lux to klx.
 fn kilo(rgb: DVec3) -> Vec3 {
@@ -48,6 +51,46 @@ fn compute(
             constants,
         },
     )
+}
+
+/// The shaders of a full-screen pass: the same function as a fragment and as a compute shader.
+#[derive(Clone, Copy)]
+struct Screen {
+    fragment: &'static Shader,
+    /// Its storage images have the names and the formats of the targets.
+    compute: &'static Shader,
+}
+
+/// A full-screen pipeline by the route of the device, see [`crate::gpu::Route`]. `depth` selects the pixels: those of [`Depth::Surface`] and
+/// [`Depth::Background`] a compute shader selects itself.
+fn screen(
+    context: &Arc<Context>,
+    name: &str,
+    shaders: Screen,
+    targets: &[Format],
+    depth: Depth,
+    constants: &[(&str, u32)],
+) -> Result<Pipeline> {
+    let route = context.route();
+    screen_by(route, context, name, shaders, targets, depth, constants)
+}
+
+/// The same, by this route.
+fn screen_by(
+    route: Route,
+    context: &Arc<Context>,
+    name: &str,
+    shaders: Screen,
+    targets: &[Format],
+    depth: Depth,
+    constants: &[(&str, u32)],
+) -> Result<Pipeline> {
+    match route {
+        Route::Fragment => {
+            fullscreen_at(context, name, shaders.fragment, targets, depth, constants)
+        }
+        Route::Compute => compute(context, name, shaders.compute, constants),
+    }
 }
 
 /// A full-screen pipeline with one render target.

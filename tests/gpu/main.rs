@@ -32,6 +32,7 @@ mod present;
 mod probe;
 mod rays;
 mod reflections;
+mod routes;
 mod shadow;
 mod sheets;
 mod sky;

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use crate::running::{DIRECT, Running, difference, shared_machine};
 
-const STAGE: &str = "picture/tone_map.frag";
+const STAGE: &str = "include/tone_map.glsl";
 
 /// Copies a folder recursively.
 fn copy(from: &Path, to: &Path) {
@@ -42,13 +42,17 @@ fn a_changed_shader_is_seen_and_a_broken_one_is_told() {
     sleep(Duration::from_secs(2));
     assert!(difference(&before, &running.picture()) < 0.01);
 
-    let swapped = good.replace("display = vec4(c, 1.0);", "display = vec4(c.bgr, 1.0);");
+    let swapped = good.replace("return vec4(c, 1.0);", "return vec4(c.bgr, 1.0);");
     assert_ne!(good, swapped, "{STAGE} has changed: adapt this test");
     fs::write(&file, &swapped).expect("written");
     let red = running.after(|d| d.typed('r'));
     assert!(difference(&before, &red) > 0.05, "colours are swapped");
 
-    fs::write(&file, good.replace("display =", "no such thing =")).expect("written");
+    fs::write(
+        &file,
+        good.replace("return vec4(c,", "return no such thing(c,"),
+    )
+    .expect("written");
     let told = running.after(|d| d.typed('r'));
     // The message overlays the picture, which still has the swapped shader.
     assert!(difference(&red, &told) < difference(&before, &told));

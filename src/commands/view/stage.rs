@@ -16,6 +16,7 @@ use crate::gpu::{
 };
 use crate::options::{Hdr, Options};
 use crate::passes::picture::present::{Present, interface_format};
+use crate::passes::route::settle_route;
 
 use super::document::Document;
 
@@ -123,6 +124,7 @@ impl Stage {
         if !(options.quiet || options.no_warnings) {
             notice(&context);
         }
+        settle_route(&context)?;
         let mut presenter = Presenter::new(surface, size.into(), false)?;
         let output = presenter.output();
         let interface = interface_format(output);

@@ -21,6 +21,8 @@ use crate::gpu::device::validation::{Log, Messenger};
 use crate::gpu::error::{During, GpuError, Result};
 use crate::gpu::memory::image::{Sampler, create_samplers};
 use crate::gpu::pipeline::cache::{CacheState, Key, PipelineCache};
+use crate::gpu::pipeline::route::DeviceRoute;
+use crate::gpu::record::screen::Route;
 
 /// Options for opening a [`Context`].
 #[derive(Debug, Clone, Default)]
@@ -33,6 +35,8 @@ pub struct ContextOptions {
     pub without: Vec<Optional>,
     /// Folder where the driver's pipeline cache is kept between runs. Without it the cache is not stored.
     pub cache_folder: Option<PathBuf>,
+    /// Route of full-screen passes, where the device has both. Default: the faster one, see [`Context::settle_route`].
+    pub route: Option<Route>,
     /// For tests: a call that should fail, for instance `submit@3=device-lost`.
     pub fault: Option<String>,
     /// For tests: always upload through staging buffers, even if the CPU can map device memory.
@@ -84,6 +88,7 @@ pub struct Context {
     allocator: ManuallyDrop<Arc<Mutex<Allocator>>>,
     samplers: [vk::Sampler; Sampler::COUNT],
     cache: PipelineCache,
+    pub(in crate::gpu) route: DeviceRoute,
     pub(in crate::gpu) faults: Faults,
     /// Whether the device has not answered in time: nothing waits for it any more.
     pub(in crate::gpu::device) is_hung: AtomicBool,
@@ -166,12 +171,15 @@ impl Context {
         let samplers = create_samplers(&device.raw)?;
         startup.done("memory, samplers");
         let key = Key::new(&properties);
-        let cache = PipelineCache::new(&device.raw, key, options.cache_folder.as_deref())?;
+        let folder = options.cache_folder.as_deref();
+        let cache = PipelineCache::new(&device.raw, key, folder)?;
+        let route = DeviceRoute::new(&chosen.summary, key, folder, options.route);
         startup.done("pipeline cache");
         let context = Arc::new(Self {
             allocator: ManuallyDrop::new(Arc::new(Mutex::new(allocator))),
             samplers,
             cache,
+            route,
             faults,
             is_hung: AtomicBool::new(false),
             stage_uploads: options.stage_uploads,

@@ -15,18 +15,21 @@ pub enum Optional {
     FloatFilter,
     /// Blending into 32-bit floats. Without it pictures of 32-bit floats have no stars.
     FloatBlend,
+    /// Storage images of all formats of [`STORED`]. Fallback: fragment shaders run full-screen passes.
+    StoredPictures,
     /// Timestamps of the queue. Fallback: each pass is submitted alone and timed by the clock of the wall.
     Timestamps,
 }
 
 impl Optional {
     /// All optional features.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::PushDescriptor,
         Self::GeometryShader,
         Self::PipelineStatistics,
         Self::FloatFilter,
         Self::FloatBlend,
+        Self::StoredPictures,
         Self::Timestamps,
     ];
 
@@ -38,6 +41,7 @@ impl Optional {
             Self::PipelineStatistics => "pipelineStatisticsQuery",
             Self::FloatFilter => "linear filter of R32G32B32A32_SFLOAT",
             Self::FloatBlend => "blending of R32G32B32A32_SFLOAT",
+            Self::StoredPictures => "storing of R16G16B16A16_SFLOAT, R8G8B8A8_UNORM and R32_UINT",
             Self::Timestamps => "timestamps",
         }
     }
@@ -52,6 +56,9 @@ impl Optional {
             Self::FloatBlend => {
                 Some("no blending of 32-bit floats; dark skies and .exr files have no stars")
             }
+            Self::StoredPictures => {
+                Some("no storing of the pictures' formats; fragment shaders run full-screen passes")
+            }
             Self::PushDescriptor | Self::PipelineStatistics | Self::Timestamps => None,
         }
     }
@@ -59,6 +66,14 @@ impl Optional {
 
 /// The format of sky, irradiance and air, whose filter and blending are optional in Vulkan.
 pub(in crate::gpu) const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
+/// The formats of pictures that compute shaders write, besides those that every device must store ([`super::needs`]). The specification
+/// demands these too.
+const STORED: [vk::Format; 3] = [
+    vk::Format::R16G16B16A16_SFLOAT,
+    vk::Format::R8G8B8A8_UNORM,
+    vk::Format::R32_UINT,
+];
 
 /// What tells which optional features a device has.
 pub(in crate::gpu) struct Offered<'a> {
@@ -70,17 +85,22 @@ pub(in crate::gpu) struct Offered<'a> {
 }
 
 impl Offered<'_> {
+    /// What images of a format can be used for.
+    fn uses(&self, format: vk::Format) -> vk::FormatFeatureFlags {
+        // SAFETY: the handle comes from this instance.
+        let properties = unsafe {
+            self.instance
+                .get_physical_device_format_properties(self.handle, format)
+        };
+        properties.optimal_tiling_features
+    }
+
     /// All optional features, and whether each is used; those in `without` count as absent.
     pub(in crate::gpu) fn list(&self, without: &[Optional]) -> Vec<(Optional, bool)> {
         // SAFETY: the handle comes from this instance.
-        let (core, floats) = unsafe {
-            (
-                self.instance.get_physical_device_features(self.handle),
-                self.instance
-                    .get_physical_device_format_properties(self.handle, FLOATS),
-            )
-        };
-        let floats = floats.optimal_tiling_features;
+        let core = unsafe { self.instance.get_physical_device_features(self.handle) };
+        let floats = self.uses(FLOATS);
+        let storage = vk::FormatFeatureFlags::STORAGE_IMAGE;
         let filter = vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR;
         let blend = vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
         let present = |optional: Optional| match optional {
@@ -89,6 +109,7 @@ impl Offered<'_> {
             Optional::PipelineStatistics => core.pipeline_statistics_query == vk::TRUE,
             Optional::FloatFilter => floats.contains(filter),
             Optional::FloatBlend => floats.contains(blend),
+            Optional::StoredPictures => STORED.iter().all(|f| self.uses(*f).contains(storage)),
             Optional::Timestamps => self.timestamp_bits > 0,
         };
         Optional::ALL

@@ -11,6 +11,7 @@ use crate::gpu::device::context::Context;
 use crate::gpu::device::fault::Call;
 use crate::gpu::error::{During, GpuError, Result};
 use crate::gpu::record::access::{self, ImageAccess};
+use crate::gpu::record::screen::Route;
 
 /// Shape of an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,6 +89,14 @@ impl<'a> ImageDesc<'a> {
         Self {
             written: Written::Stored,
             ..self
+        }
+    }
+
+    /// Same, as a target of full-screen passes by this route.
+    pub fn target_by(self, route: Route) -> Self {
+        match route {
+            Route::Fragment => self,
+            Route::Compute => self.stored(),
         }
     }
 

@@ -39,10 +39,30 @@ impl Key {
         }
     }
 
+    #[cfg(test)]
+    pub(in crate::gpu) fn of_numbers(vendor: u32, device: u32, driver: u32) -> Self {
+        Self {
+            vendor,
+            device,
+            driver,
+            uuid: [5; vk::UUID_SIZE],
+        }
+    }
+
     fn bytes(&self) -> Vec<u8> {
         let numbers = [self.vendor, self.device, self.driver];
         let numbers = numbers.iter().flat_map(|n| n.to_le_bytes());
         numbers.chain(self.uuid).collect()
+    }
+
+    /// In letters and digits.
+    pub(in crate::gpu) fn text(&self) -> String {
+        self.bytes().iter().map(|b| format!("{b:02x}")).collect()
+    }
+
+    /// Name of the file of [`crate::gpu::RouteTimes`].
+    pub(in crate::gpu) fn route_file(&self) -> String {
+        format!("route-{:08x}-{:08x}.txt", self.vendor, self.device)
     }
 
     fn file(&self) -> String {
@@ -95,7 +115,7 @@ fn read(path: &Path) -> Option<Vec<u8>> {
 }
 
 /// Writes a temporary file next to the target and renames it, so a crash leaves the old file intact.
-fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+pub(in crate::gpu) fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(folder)?;
     let mut file = tempfile::Builder::new()

@@ -6,6 +6,7 @@ pub(in crate::gpu) mod hot_reload;
 pub(in crate::gpu) mod layout;
 #[cfg(test)]
 mod limits_tests;
+pub(in crate::gpu) mod route;
 pub(in crate::gpu) mod shader;
 mod state;
 

@@ -7,5 +7,6 @@ pub(in crate::gpu) mod descriptors;
 pub(in crate::gpu) mod draws;
 pub(in crate::gpu) mod pass;
 pub(in crate::gpu) mod recorder;
+pub(in crate::gpu) mod screen;
 pub(in crate::gpu) mod timings;
 pub(in crate::gpu) mod work;

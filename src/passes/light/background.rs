@@ -10,14 +10,14 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
-use crate::passes::light::lighting::{Light, LightingSettings, Show};
+use crate::passes::light::lighting::{Light, LightingSettings, Precision, Show};
 use crate::passes::light::stars::Stars;
 use crate::passes::view::View;
-use crate::passes::{fullscreen_at, kilo};
+use crate::passes::{Screen, kilo, screen};
 
 gpu_struct! {
     /// The discs of sun and moon.
-    pub struct Push: push of BACKGROUND_FRAG {
+    pub struct Push: push of BACKGROUND_FRAG, BACKGROUND_COMP, BACKGROUND_COMP_FLOAT {
         size: Vec2,
         direction: Vec3,
         luminance: Vec3,
@@ -57,10 +57,16 @@ impl Background {
     pub fn new(context: &Arc<Context>, settings: LightingSettings) -> Result<Self> {
         let (sky, empty) = content(settings.show);
         let pipeline = |disc: bool| {
-            fullscreen_at(
+            screen(
                 context,
                 "background",
-                &shaders::BACKGROUND_FRAG,
+                Screen {
+                    fragment: &shaders::BACKGROUND_FRAG,
+                    compute: match settings.precision {
+                        Precision::Half => &shaders::BACKGROUND_COMP,
+                        Precision::Float => &shaders::BACKGROUND_COMP_FLOAT,
+                    },
+                },
                 &[settings.precision.format()],
                 Depth::Background(Format::D32_SFLOAT),
                 &[
@@ -121,9 +127,9 @@ impl Background {
             .sample("sky_radiance", sky, Sampler::Linear)
             .uniform("view", &view.block())
             .push(&push)
-            .color(radiance, Load::Keep)
-            .depth_test(depth)
-            .draw();
+            .output("radiance", radiance, Load::Keep)
+            .selected_by(depth)
+            .fill();
         if let Some(stars) = &mut self.stars {
             stars.record(recorder, depth, light.daylight, view, radiance);
         }

@@ -30,11 +30,11 @@ pub use crate::passes::surfaces::geometry::EmissionSource;
 use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
-use crate::passes::{fullscreen_at, kilo};
+use crate::passes::{Screen, kilo, screen};
 
 gpu_struct! {
     /// The sun and its shadow map.
-    pub struct SunBlock: sun of LIGHTING_FRAG {
+    pub struct SunBlock: sun of LIGHTING_FRAG, LIGHTING_COMP, LIGHTING_COMP_FLOAT {
         shadow_from_world: [[f32; 4]; 4],
         direction: Vec3,
         illuminance: Vec3,
@@ -335,10 +335,17 @@ impl Lighting {
         let pipeline = |traces: bool| {
             let constants = [&constants[..], &[("TRACES", traces.into())]].concat();
             let depth = Depth::Surface(Format::D32_SFLOAT);
-            let shader = &shaders::LIGHTING_FRAG;
-            fullscreen_at(context, "lighting", shader, &[format], depth, &constants)
+            let shaders = Screen {
+                fragment: &shaders::LIGHTING_FRAG,
+                compute: match settings.precision {
+                    Precision::Half => &shaders::LIGHTING_COMP,
+                    Precision::Float => &shaders::LIGHTING_COMP_FLOAT,
+                },
+            };
+            screen(context, "lighting", shaders, &[format], depth, &constants)
         };
-        let radiance = Image::new(context, &ImageDesc::flat("radiance", format, size))?;
+        let desc = ImageDesc::flat("radiance", format, size);
+        let radiance = Image::new(context, &desc.target_by(context.route()))?;
         Ok(Self {
             settings,
             moving: pipeline(false)?,
@@ -426,9 +433,9 @@ impl Lighting {
             .uniform("view", &view.block())
             .uniform("sun", &self.sun_block(light, view))
             .uniform("cascades", &light.sun_views.block())
-            .color(&self.radiance, Load::Discard)
-            .depth_test(&surfaces.depth)
-            .draw();
+            .output("radiance", &self.radiance, Load::Discard)
+            .selected_by(&surfaces.depth)
+            .fill();
         &self.radiance
     }
 

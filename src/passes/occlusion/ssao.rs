@@ -3,24 +3,25 @@
 use std::sync::Arc;
 
 use crate::gpu::{
-    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Route, Sampler,
+    shaders,
 };
 use crate::gpu_struct;
 
-use crate::passes::fullscreen_at;
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::view::View;
+use crate::passes::{Screen, fullscreen_at, screen};
 
 gpu_struct! {
     /// Push constants of the blur.
-    pub struct BlurPush: push of SSAO_BLUR_FRAG {
+    pub struct BlurPush: push of SSAO_BLUR_FRAG, SSAO_BLUR_COMP {
         near: f32,
     }
 }
 
 gpu_struct! {
     /// Radius and noise.
-    pub struct Push: push of SSAO_FRAG {
+    pub struct Push: push of SSAO_FRAG, SSAO_COMP {
         radius: f32,
         phase: f32,
     }
@@ -60,13 +61,43 @@ impl Default for SsaoSettings {
 /// The occlusion passes and their images.
 pub struct Ssao {
     settings: SsaoSettings,
-    select: Pipeline,
+    /// For depth tests, on the route that has them.
+    points: Option<Points>,
     trace: Pipeline,
     blur: Pipeline,
-    /// Depth at the points where A is computed; 0 is background.
-    points: Image,
     noisy: Image,
     smooth: Image,
+}
+
+/// Depth at the points where A is computed; 0 is background.
+struct Points {
+    select: Pipeline,
+    depth: Image,
+}
+
+impl Points {
+    fn new(context: &Arc<Context>, points: [u32; 2], settings: SsaoSettings) -> Result<Self> {
+        Ok(Self {
+            select: fullscreen_at(
+                context,
+                "SSAO points",
+                &shaders::SSAO_POINTS_FRAG,
+                &[],
+                Depth::Write(DEPTH),
+                &[("PIXELS_PER_POINT", settings.pixels_per_texel())],
+            )?,
+            depth: Image::new(context, &ImageDesc::flat("points", DEPTH, points))?,
+        })
+    }
+
+    fn record(&self, recorder: &mut Recorder, surfaces: &Surfaces) -> &Image {
+        recorder
+            .pass("SSAO points", &self.select)
+            .sample("depth", &surfaces.depth, Sampler::Nearest)
+            .depth(&self.depth, Load::Clear([0.0; 4]))
+            .draw();
+        &self.depth
+    }
 }
 
 /// Two packed values per texel, see `include/occlusion.glsl`.
@@ -84,25 +115,30 @@ impl Ssao {
         let spacing = [("DOWNSCALE", settings.downscale), ("SPACING", SPACING)];
         let constants = [("STEPS", settings.steps), spacing[0], spacing[1]];
         let points = size.map(|edge| edge.div_ceil(settings.pixels_per_texel()));
-        let image = |name| Image::new(context, &ImageDesc::flat(name, FORMAT, points));
-        let writes = Depth::Write(DEPTH);
-        let on_points = |name, fragment, constants: &[_]| {
+        let route = context.route();
+        let image = |name| {
+            let desc = ImageDesc::flat(name, FORMAT, points);
+            Image::new(context, &desc.target_by(route))
+        };
+        let on_points = |name, shaders, constants: &[_]| {
             let tests = Depth::Surface(DEPTH);
-            fullscreen_at(context, name, fragment, &[FORMAT], tests, constants)
+            screen(context, name, shaders, &[FORMAT], tests, constants)
+        };
+        let trace = Screen {
+            fragment: &shaders::SSAO_FRAG,
+            compute: &shaders::SSAO_COMP,
+        };
+        let blur = Screen {
+            fragment: &shaders::SSAO_BLUR_FRAG,
+            compute: &shaders::SSAO_BLUR_COMP,
         };
         Ok(Self {
             settings,
-            select: fullscreen_at(
-                context,
-                "SSAO points",
-                &shaders::SSAO_POINTS_FRAG,
-                &[],
-                writes,
-                &[("PIXELS_PER_POINT", settings.pixels_per_texel())],
-            )?,
-            trace: on_points("SSAO", &shaders::SSAO_FRAG, &constants)?,
-            blur: on_points("SSAO blur", &shaders::SSAO_BLUR_FRAG, &spacing)?,
-            points: Image::new(context, &ImageDesc::flat("points", DEPTH, points))?,
+            points: (route == Route::Fragment)
+                .then(|| Points::new(context, points, settings))
+                .transpose()?,
+            trace: on_points("SSAO", trace, &constants)?,
+            blur: on_points("SSAO blur", blur, &spacing)?,
             noisy: image("occlusion, noisy")?,
             smooth: image("occlusion")?,
         })
@@ -126,11 +162,8 @@ impl Ssao {
             recorder.clear(&self.smooth, OPEN);
             return &self.smooth;
         }
-        recorder
-            .pass("SSAO points", &self.select)
-            .sample("depth", &surfaces.depth, Sampler::Nearest)
-            .depth(&self.points, Load::Clear([0.0; 4]))
-            .draw();
+        let points = self.points.as_ref();
+        let selection = points.map_or(&surfaces.depth, |p| p.record(recorder, surfaces));
         recorder
             .pass("SSAO", &self.trace)
             .sample(
@@ -144,9 +177,9 @@ impl Ssao {
                 radius: self.settings.radius,
                 phase,
             })
-            .color(&self.noisy, Load::Clear(OPEN))
-            .depth_test(&self.points)
-            .draw();
+            .output("occlusion", &self.noisy, Load::Clear(OPEN))
+            .selected_by(selection)
+            .fill();
         recorder
             .pass("SSAO blur", &self.blur)
             .sample("noisy_occlusion", &self.noisy, Sampler::Nearest)
@@ -154,9 +187,9 @@ impl Ssao {
             .push(&BlurPush {
                 near: view.camera.near,
             })
-            .color(&self.smooth, Load::Clear(OPEN))
-            .depth_test(&self.points)
-            .draw();
+            .output("occlusion", &self.smooth, Load::Clear(OPEN))
+            .selected_by(selection)
+            .fill();
         &self.smooth
     }
 }

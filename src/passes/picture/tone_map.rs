@@ -13,16 +13,17 @@ use glam::UVec2;
 use crate::daylight::false_colour::{ColourMap, Colours, Range};
 use crate::daylight::tone_curve::ToneCurve;
 use crate::gpu::{
-    Context, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Route, Sampler,
+    shaders,
 };
 use crate::gpu_struct;
 
-use crate::passes::fullscreen;
 use crate::passes::light::lighting::Show;
+use crate::passes::{Screen, screen_by};
 
 gpu_struct! {
     /// Parameters of the tone map.
-    pub struct Push: push of TONE_MAP_FRAG {
+    pub struct Push: push of TONE_MAP_FRAG, TONE_MAP_COMP, TONE_MAP_COMP_HALF {
         exposure: f32,
         offset: f32,
         white: f32,
@@ -111,6 +112,19 @@ impl ToneMap {
     /// # Errors
     /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, size: [u32; 2], settings: ToneSettings) -> Result<Self> {
+        Self::by(context.route(), context, size, settings)
+    }
+
+    /// The same, by this route.
+    ///
+    /// # Errors
+    /// Fails when the device cannot create the resources.
+    pub(in crate::passes) fn by(
+        route: Route,
+        context: &Arc<Context>,
+        size: [u32; 2],
+        settings: ToneSettings,
+    ) -> Result<Self> {
         let false_colour = settings.false_colour.is_some();
         let light = is_light(settings.show) && !false_colour;
         let hdr = settings.peak.is_some();
@@ -118,11 +132,20 @@ impl ToneMap {
         let average = light && matches!(settings.scale, Scale::Average { .. });
         let gamma = settings.gamma.is_some() && !false_colour;
         let format = if hdr { LINEAR } else { ENCODED };
-        let pipeline = fullscreen(
+        let pipeline = screen_by(
+            route,
             context,
             "tone map",
-            &shaders::TONE_MAP_FRAG,
-            format,
+            Screen {
+                fragment: &shaders::TONE_MAP_FRAG,
+                compute: if hdr {
+                    &shaders::TONE_MAP_COMP_HALF
+                } else {
+                    &shaders::TONE_MAP_COMP
+                },
+            },
+            &[format],
+            Depth::Off,
             &[
                 ("EXPONENTIAL", curve(ToneCurve::Exponential)),
                 (
@@ -143,7 +166,8 @@ impl ToneMap {
                 ("HDR", (light && hdr).into()),
             ],
         )?;
-        let display = Image::new(context, &ImageDesc::flat("display", format, size))?;
+        let desc = ImageDesc::flat("display", format, size);
+        let display = Image::new(context, &desc.target_by(route))?;
         Ok(Self {
             settings,
             pipeline,
@@ -165,8 +189,8 @@ impl ToneMap {
             .sample("radiance", radiance, Sampler::Nearest)
             .sample("average_luminance", average_luminance, Sampler::Nearest)
             .push(&self.push(origin))
-            .color(&self.display, Load::Discard)
-            .draw();
+            .output("display", &self.display, Load::Discard)
+            .fill();
         &self.display
     }
 

@@ -1,0 +1,163 @@
+//! Both routes of full-screen passes, fragments and compute shaders, give the same pictures.
+
+use skylight::daylight::sky::Daylight;
+use skylight::frame::{Frame, FrameSettings, Visibility};
+use skylight::gpu::{ContextOptions, Optional, Route};
+use skylight::passes::bounces::cells::Bounces;
+use skylight::passes::light::lighting::{Ambient, Precision, Show};
+use skylight::passes::occlusion::ssao::SsaoSettings;
+use skylight::passes::route::measured;
+use skylight::scene::{Camera, Material, Microfacet, Scene};
+
+use crate::gpu::{Device, Model, camera, clear_day, glass, glowing, matt, settings};
+
+/// Not multiples of a workgroup.
+const SIZE: [u32; 2] = [75, 43];
+
+/// A floor and a wall with a mirroring, a rough and a glowing body, part of them behind a pane, before the sky.
+fn scene() -> Scene {
+    let shiny = Material {
+        specular: [0.2; 3],
+        shininess: 40.0,
+        ..matt(0.3)
+    };
+    let rough = Material {
+        microfacet: Some(Microfacet {
+            base: [0.8, 0.6, 0.3],
+            f0: [0.04; 3],
+            f90: 1.0,
+            metallic: 1.0,
+            roughness: 0.3,
+            texture: None,
+        }),
+        ..matt(0.0)
+    };
+    Model::default()
+        .ground(4.0, &matt(0.5))
+        .quad([-4.0, 0.0, -2.0], [5.0, 0.0, 0.0], [0.0, 2.0, 0.0], &matt(0.6))
+        .sphere([-0.7, 0.4, -0.5], 0.4, 12, &shiny)
+        .sphere([0.4, 0.4, -0.5], 0.4, 12, &rough)
+        .cube([1.4, 0.2, -0.4], 0.2, &glowing(0.4, 3000.0))
+        .quad([0.2, 0.1, 0.6], [1.0, 0.0, 0.0], [0.0, 1.3, 0.0], &glass([0.6, 0.8, 0.7]))
+        .build()
+}
+
+fn eye() -> Camera {
+    camera([0.3, 1.1, 3.2], [0.1, 0.7, 0.0])
+}
+
+/// Single frames with occlusion in screen space, single frames with cells, and a converging picture.
+fn modes() -> [(&'static str, FrameSettings, &'static [Show]); 3] {
+    const OF_CELLS: [Show; 4] = [Show::Beauty, Show::Sky, Show::Bounces, Show::Occlusion];
+    const OF_DOME: [Show; 4] = [Show::Beauty, Show::Sky, Show::SkySpecular, Show::Irradiance];
+    let screen = settings(SIZE[0], SIZE[1]).with_occlusion(SsaoSettings::default());
+    let mut cells = screen;
+    cells.lighting.ambient = Ambient::Cells;
+    cells.lighting.precision = Precision::Half;
+    cells.bounces = Bounces::All;
+    let mut dome = screen;
+    dome.sampling.visibility = Visibility::Dome;
+    dome.sampling.dome.directions = 4;
+    dome.sampling.dome.map_edge = 128;
+    dome.bounces = Bounces::All;
+    dome.samples = 3;
+    [
+        ("screen space", screen, &ALL),
+        ("cells", cells, &OF_CELLS),
+        ("dome", dome, &OF_DOME),
+    ]
+}
+
+const ALL: [Show; 16] = [
+    Show::Beauty,
+    Show::Sun,
+    Show::Sky,
+    Show::Bounces,
+    Show::Emission,
+    Show::SunSpecular,
+    Show::SkySpecular,
+    Show::Air,
+    Show::Background,
+    Show::Visibility,
+    Show::Occlusion,
+    Show::Irradiance,
+    Show::Albedo,
+    Show::Normal,
+    Show::Depth,
+    Show::Luminance,
+];
+
+fn device(route: Route) -> Device {
+    Device::with(&ContextOptions {
+        route: Some(route),
+        ..ContextOptions::default()
+    })
+}
+
+/// Radiance of each quantity, and display values of the first.
+fn pictures(route: Route, set: FrameSettings, shown: &[Show], day: &Daylight) -> Vec<Vec<[f32; 4]>> {
+    let mut device = device(route);
+    assert_eq!(device.context.route(), route);
+    let mut frame = device.run(|rec| Frame::new(rec, &scene(), set).expect("a frame"));
+    let mut found = Vec::new();
+    for show in shown {
+        frame.show(*show).expect("shown");
+        device.draw(&mut frame, day, &eye());
+        found.push(device.read(frame.radiance()));
+    }
+    found.push(device.read(frame.display()));
+    found
+}
+
+/// Largest difference of two pictures relative to the larger value, and how many values differ.
+fn difference(a: &[[f32; 4]], b: &[[f32; 4]]) -> (f32, usize) {
+    let values = a.iter().flatten().zip(b.iter().flatten());
+    let unequal = values.filter(|(a, b)| a.to_bits() != b.to_bits());
+    unequal.fold((0.0, 0), |(most, count), (a, b)| {
+        let relative = (a - b).abs() / a.abs().max(b.abs()).max(1e-6);
+        (relative.max(most), count + 1)
+    })
+}
+
+#[test]
+fn both_routes_give_the_same_pictures() {
+    let day = clear_day(150.0, 40.0);
+    for (mode, set, shown) in modes() {
+        let drawn = pictures(Route::Fragment, set, shown, &day);
+        let computed = pictures(Route::Compute, set, shown, &day);
+        let names = shown.iter().map(|show| format!("{show:?}"));
+        let names = names.chain(["display".to_owned()]);
+        for ((name, drawn), computed) in names.zip(&drawn).zip(&computed) {
+            let (most, count) = difference(drawn, computed);
+            println!("{mode}, {name}: {count} of {} values differ, by {most:.1e} at most", 4 * drawn.len());
+            let lit = drawn.iter().filter(|t| t[..3] != [0.0; 3]).count();
+            assert!(lit > 0 || *name == *"Air" || *name == *"Bounces", "{mode}, {name} is black");
+            // Steps of the format to which the routes round: bytes, half floats, floats.
+            let step = match (name.as_str(), set.lighting.precision) {
+                ("display", _) => 1.0,
+                (_, Precision::Half) => 2e-3,
+                (_, Precision::Float) => 1e-6,
+            };
+            assert!(most <= step, "{mode}, {name}: {most}");
+        }
+    }
+}
+
+#[test]
+fn a_device_that_cannot_store_pictures_takes_fragments() {
+    let without = Device::with(&ContextOptions {
+        route: Some(Route::Compute),
+        without: vec![Optional::StoredPictures],
+        ..ContextOptions::default()
+    });
+    assert_eq!(without.context.route(), Route::Fragment);
+}
+
+/// What `--route auto` goes by.
+#[test]
+fn both_routes_are_timed() {
+    let device = Device::new();
+    let times = measured(&device.context).expect("measured");
+    println!("fragment {:.2} ms, compute {:.2} ms", times.fragment, times.compute);
+    assert!(times.fragment > 0.0 && times.compute > 0.0 && times.fragment.max(times.compute) < 1e5);
+}

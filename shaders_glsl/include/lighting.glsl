@@ -83,7 +83,7 @@ layout(set = 0, binding = 10) uniform sampler2D emission;  // with EMISSION_IMAG
 // What panes of glass let through of the sun's light: rgb: products, a: depth of the pane nearest the sun; with PANES, else any.
 layout(set = 0, binding = 28) uniform sampler2D sun_glass;
 
-// With LOBES, see lobes.frag; else any.
+// With LOBES, see lobes.glsl; else any.
 layout(set = 0, binding = 30) uniform sampler2D lobes; // kcd/m^2
 
 #include "sun_shadow.glsl"

@@ -13,7 +13,7 @@ use crate::passes::picture::tone_map::{Scale, ToneMap, ToneSettings};
 /// Edge of the picture, pixels.
 const EDGE: u32 = 1024;
 /// Runs, of which the fastest counts: the clocks of cards rise with the work.
-const RUNS: u32 = 16;
+const RUNS: u32 = 8;
 
 /// Settles the route of a device that has none yet, see [`Context::settle_route`]. No other thread may submit work meanwhile.
 ///

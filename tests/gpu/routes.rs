@@ -4,6 +4,7 @@ use skylight::daylight::sky::Daylight;
 use skylight::frame::{Frame, FrameSettings, Visibility};
 use skylight::gpu::{ContextOptions, Optional, Route};
 use skylight::passes::bounces::cells::Bounces;
+use skylight::passes::dome::specular::Reflections;
 use skylight::passes::light::lighting::{Ambient, Precision, Show};
 use skylight::passes::occlusion::ssao::SsaoSettings;
 use skylight::passes::route::measured;
@@ -34,11 +35,21 @@ fn scene() -> Scene {
     };
     Model::default()
         .ground(4.0, &matt(0.5))
-        .quad([-4.0, 0.0, -2.0], [5.0, 0.0, 0.0], [0.0, 2.0, 0.0], &matt(0.6))
+        .quad(
+            [-4.0, 0.0, -2.0],
+            [5.0, 0.0, 0.0],
+            [0.0, 2.0, 0.0],
+            &matt(0.6),
+        )
         .sphere([-0.7, 0.4, -0.5], 0.4, 12, &shiny)
         .sphere([0.4, 0.4, -0.5], 0.4, 12, &rough)
         .cube([1.4, 0.2, -0.4], 0.2, &glowing(0.4, 3000.0))
-        .quad([0.2, 0.1, 0.6], [1.0, 0.0, 0.0], [0.0, 1.3, 0.0], &glass([0.6, 0.8, 0.7]))
+        .quad(
+            [0.2, 0.1, 0.6],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.3, 0.0],
+            &glass([0.6, 0.8, 0.7]),
+        )
         .build()
 }
 
@@ -46,25 +57,28 @@ fn eye() -> Camera {
     camera([0.3, 1.1, 3.2], [0.1, 0.7, 0.0])
 }
 
-/// Single frames with occlusion in screen space, single frames with cells, and a converging picture.
-fn modes() -> [(&'static str, FrameSettings, &'static [Show]); 3] {
-    const OF_CELLS: [Show; 4] = [Show::Beauty, Show::Sky, Show::Bounces, Show::Occlusion];
-    const OF_DOME: [Show; 4] = [Show::Beauty, Show::Sky, Show::SkySpecular, Show::Irradiance];
-    let screen = settings(SIZE[0], SIZE[1]).with_occlusion(SsaoSettings::default());
+/// Means with occlusion in screen space, single frames with cells, and converging pictures.
+fn modes() -> [(&'static str, FrameSettings, &'static [Show]); 4] {
+    let mut screen = settings(SIZE[0], SIZE[1]).with_occlusion(SsaoSettings::default());
+    screen.samples = 2;
     let mut cells = screen;
+    cells.samples = 1;
     cells.lighting.ambient = Ambient::Cells;
     cells.lighting.precision = Precision::Half;
     cells.bounces = Bounces::All;
     let mut dome = screen;
-    dome.sampling.visibility = Visibility::Dome;
+    dome.sampling.visibility = Visibility::Progressive;
     dome.sampling.dome.directions = 4;
     dome.sampling.dome.map_edge = 128;
+    dome.lighting.mirrors.reflections = Reflections::Hidden;
     dome.bounces = Bounces::All;
-    dome.samples = 3;
+    let mut lux = dome;
+    lux.sampling.dome.illuminance = true;
     [
         ("screen space", screen, &ALL),
-        ("cells", cells, &OF_CELLS),
-        ("dome", dome, &OF_DOME),
+        ("cells", cells, &[Show::Beauty, Show::Bounces]),
+        ("dome", dome, &[Show::Beauty]),
+        ("dome with illuminance", lux, &[Show::Irradiance]),
     ]
 }
 
@@ -94,10 +108,13 @@ fn device(route: Route) -> Device {
     })
 }
 
-/// Radiance of each quantity, and display values of the first.
-fn pictures(route: Route, set: FrameSettings, shown: &[Show], day: &Daylight) -> Vec<Vec<[f32; 4]>> {
-    let mut device = device(route);
-    assert_eq!(device.context.route(), route);
+/// Radiance of each quantity, and display values of the last.
+fn pictures(
+    device: &mut Device,
+    set: FrameSettings,
+    shown: &[Show],
+    day: &Daylight,
+) -> Vec<Vec<[f32; 4]>> {
     let mut frame = device.run(|rec| Frame::new(rec, &scene(), set).expect("a frame"));
     let mut found = Vec::new();
     for show in shown {
@@ -122,16 +139,24 @@ fn difference(a: &[[f32; 4]], b: &[[f32; 4]]) -> (f32, usize) {
 #[test]
 fn both_routes_give_the_same_pictures() {
     let day = clear_day(150.0, 40.0);
+    let [mut fragments, mut compute] = [Route::Fragment, Route::Compute].map(device);
+    assert_eq!(compute.context.route(), Route::Compute);
     for (mode, set, shown) in modes() {
-        let drawn = pictures(Route::Fragment, set, shown, &day);
-        let computed = pictures(Route::Compute, set, shown, &day);
+        let drawn = pictures(&mut fragments, set, shown, &day);
+        let computed = pictures(&mut compute, set, shown, &day);
         let names = shown.iter().map(|show| format!("{show:?}"));
         let names = names.chain(["display".to_owned()]);
         for ((name, drawn), computed) in names.zip(&drawn).zip(&computed) {
             let (most, count) = difference(drawn, computed);
-            println!("{mode}, {name}: {count} of {} values differ, by {most:.1e} at most", 4 * drawn.len());
+            println!(
+                "{mode}, {name}: {count} of {} values differ, by {most:.1e} at most",
+                4 * drawn.len()
+            );
             let lit = drawn.iter().filter(|t| t[..3] != [0.0; 3]).count();
-            assert!(lit > 0 || *name == *"Air" || *name == *"Bounces", "{mode}, {name} is black");
+            assert!(
+                lit > 0 || *name == *"Air" || *name == *"Bounces",
+                "{mode}, {name} is black"
+            );
             // Steps of the format to which the routes round: bytes, half floats, floats.
             let step = match (name.as_str(), set.lighting.precision) {
                 ("display", _) => 1.0,
@@ -158,6 +183,9 @@ fn a_device_that_cannot_store_pictures_takes_fragments() {
 fn both_routes_are_timed() {
     let device = Device::new();
     let times = measured(&device.context).expect("measured");
-    println!("fragment {:.2} ms, compute {:.2} ms", times.fragment, times.compute);
+    println!(
+        "fragment {:.2} ms, compute {:.2} ms",
+        times.fragment, times.compute
+    );
     assert!(times.fragment > 0.0 && times.compute > 0.0 && times.fragment.max(times.compute) < 1e5);
 }

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use crate::daylight::sky::Daylight;
-use crate::gpu::{Context, Image, ImageDesc, Load, Pipeline, Recorder, Result, shaders};
+use crate::gpu::{Context, Depth, Image, ImageDesc, Load, Pipeline, Recorder, Result, shaders};
 use crate::passes::bounces::cells::Cells;
 use crate::passes::bounces::gather::{HALF_SIZE, half_size};
-use crate::passes::fullscreen;
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::view::View;
+use crate::passes::{Screen, screen};
 
 /// The pass and its image.
 pub struct CellLight {
@@ -23,15 +23,20 @@ impl CellLight {
     /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, size: [u32; 2]) -> Result<Self> {
         let desc = ImageDesc::flat("irradiance from cells", HALF_SIZE, half_size(size));
+        let shaders = Screen {
+            fragment: &shaders::CELLS_AMBIENT_FRAG,
+            compute: &shaders::CELLS_AMBIENT_COMP,
+        };
         Ok(Self {
-            pipeline: fullscreen(
+            pipeline: screen(
                 context,
                 "cells: ambient",
-                &shaders::CELLS_AMBIENT_FRAG,
-                HALF_SIZE,
+                shaders,
+                &[HALF_SIZE],
+                Depth::Off,
                 &[],
             )?,
-            ambient: Image::new(context, &desc)?,
+            ambient: Image::new(context, &desc.target_by(context.route()))?,
         })
     }
 
@@ -49,8 +54,8 @@ impl CellLight {
             .shapes_sampled_by(cells.bound_to(pass))
             .uniform("view", &view.block())
             .uniform("scene", &cells.block(view, daylight))
-            .color(&self.ambient, Load::Discard)
-            .draw();
+            .output("ambient", &self.ambient, Load::Discard)
+            .fill();
         &self.ambient
     }
 }

@@ -97,7 +97,7 @@ gpu_struct! {
     /// The light of a moment and the grid of cells, see `include/scene_light.glsl`.
     pub struct SceneBlock: scene of
         CELLS_SEED_COMP, CELLS_PLACE_COMP, CELLS_UPDATE_COMP, CELLS_PUBLISH_COMP, BOUNCES_GATHER_COMP, CELLS_AMBIENT_FRAG,
-        LOBES_FRAG_CELLS {
+        CELLS_AMBIENT_COMP, LOBES_FRAG_CELLS, LOBES_COMP_CELLS {
         eye: Vec3,
         cell: f32,
         near: f32,

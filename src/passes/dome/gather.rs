@@ -33,14 +33,14 @@ use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
-use crate::passes::{fullscreen, fullscreen_at, kilo};
+use crate::passes::{Screen, kilo, screen};
 
 /// Largest number of directions per frame: the length of the shader's arrays.
 pub const MOST_DIRECTIONS: u32 = 16;
 
 gpu_struct! {
     /// The directions of a frame, see `include/dome.glsl`.
-    pub struct DomeBlock: dome of DOME_GATHER_FRAG, DOME_SPECULAR_FRAG {
+    pub struct DomeBlock: dome of DOME_GATHER_FRAG, DOME_GATHER_COMP, DOME_SPECULAR_FRAG, DOME_SPECULAR_COMP {
         clip_from_world: [[[f32; 4]; 4]; 16],
         planes: [[[f32; 4]; 4]; 16],
         window: [[f32; 4]; 16],
@@ -51,7 +51,7 @@ gpu_struct! {
 
 gpu_struct! {
     /// Radiance of the ground, the weight of this frame, and its pixels with bounced light.
-    pub struct Push: push of DOME_GATHER_FRAG {
+    pub struct Push: push of DOME_GATHER_FRAG, DOME_GATHER_COMP {
         ground: Vec3,
         share: f32,
         chosen: IVec2,
@@ -145,7 +145,7 @@ pub struct Dome {
     gather: Pipeline,
     resolve: Pipeline,
     maps: Image,
-    /// Alternating means: sky light and other light, see `dome_gather.frag`.
+    /// Alternating means: sky light and other light, see `dome_gather.glsl`.
     means: [[Image; 2]; 2],
     /// Alternating means of the illuminance terms, if enabled.
     illuminance: Option<[Image; 2]>,
@@ -189,7 +189,10 @@ impl Dome {
     ) -> Result<Self> {
         let show = lighting.show;
         let specular = SpecularSky::new(context, size, settings, lighting)?;
-        let image = |name| Image::new(context, &ImageDesc::flat(name, FORMAT, size));
+        let image = |name| {
+            let desc = ImageDesc::flat(name, FORMAT, size);
+            Image::new(context, &desc.target_by(context.route()))
+        };
         let tiles = columns(settings.directions);
         let rows = settings.directions.div_ceil(tiles);
         let atlas = [tiles * settings.map_edge, rows * settings.map_edge];
@@ -198,11 +201,15 @@ impl Dome {
             settings,
             casters: Casters::new(context, geometry)?.with_panes(context, geometry)?,
             gather: gather_pipeline(context, geometry, settings, lighting, bounces)?,
-            resolve: fullscreen(
+            resolve: screen(
                 context,
                 "dome: resolve",
-                &shaders::DOME_RESOLVE_FRAG,
-                FORMAT,
+                Screen {
+                    fragment: &shaders::DOME_RESOLVE_FRAG,
+                    compute: &shaders::DOME_RESOLVE_COMP,
+                },
+                &[FORMAT],
+                Depth::Off,
                 &[("ILLUMINANCE", settings.illuminance.into())],
             )?,
             maps: Image::new(context, &ImageDesc::flat("dome maps", depth, atlas))?,
@@ -377,17 +384,17 @@ impl Dome {
             .uniform("view", &view.block())
             .uniform("dome", block)
             .push(push)
-            .color(sky, Load::Discard)
-            .color(rest, Load::Discard);
+            .output("new_sky", sky, Load::Discard)
+            .output("new_rest", rest, Load::Discard);
         match &mut self.illuminance {
             Some(means) => {
                 means.swap(0, 1);
                 let [new, old] = means;
                 pass.sample("previous_illuminance", old, Sampler::Nearest)
-                    .color(new, Load::Discard)
-                    .draw();
+                    .output("new_illuminance", new, Load::Discard)
+                    .fill();
             }
-            None => pass.draw(),
+            None => pass.fill(),
         }
     }
 
@@ -400,8 +407,8 @@ impl Dome {
             .sample("sky", sky, Sampler::Nearest)
             .sample("rest", rest, Sampler::Nearest)
             .sample("illuminance", illuminance, Sampler::Nearest)
-            .color(&self.radiance, Load::Discard)
-            .draw();
+            .output("radiance", &self.radiance, Load::Discard)
+            .fill();
     }
 }
 
@@ -415,10 +422,18 @@ fn gather_pipeline(
     let show = lighting.show;
     // What is not light has no air before it.
     let air = lighting.air && !matches!(show, Show::Irradiance | Show::Occlusion);
-    let (shader, targets) = if settings.illuminance {
-        (&shaders::DOME_GATHER_FRAG_ILLUMINANCE, 3)
+    let (shaders, targets) = if settings.illuminance {
+        let shaders = Screen {
+            fragment: &shaders::DOME_GATHER_FRAG_ILLUMINANCE,
+            compute: &shaders::DOME_GATHER_COMP_ILLUMINANCE,
+        };
+        (shaders, 3)
     } else {
-        (&shaders::DOME_GATHER_FRAG, 2)
+        let shaders = Screen {
+            fragment: &shaders::DOME_GATHER_FRAG,
+            compute: &shaders::DOME_GATHER_COMP,
+        };
+        (shaders, 2)
     };
     let mut constants = lighting.lobe_constants().to_vec();
     constants.extend([
@@ -437,10 +452,10 @@ fn gather_pipeline(
         ("MATERIAL_COLUMNS", MATERIAL_COLUMNS),
     ]);
     let formats = &[FORMAT; 3][..targets];
-    fullscreen_at(
+    screen(
         context,
         "dome: gather",
-        shader,
+        shaders,
         formats,
         Depth::Off,
         &constants,

@@ -18,7 +18,7 @@ use crate::passes::dome::gather::{DomeBlock, DomeSettings, Gathered};
 use crate::passes::light::lighting::LightingSettings;
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
-use crate::passes::{fullscreen, fullscreen_at};
+use crate::passes::{Screen, screen};
 
 /// The specular lobe.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -53,7 +53,7 @@ pub struct Mirrors {
 
 gpu_struct! {
     /// Noise and weight of this frame, scale of ρ_s.
-    pub struct Push: push of DOME_SPECULAR_FRAG {
+    pub struct Push: push of DOME_SPECULAR_FRAG, DOME_SPECULAR_COMP {
         shift: Vec2,
         share: f32,
         specular_scale: f32,
@@ -85,7 +85,10 @@ impl SpecularSky {
         if !(is_shown && hidden && lighting.specular_scale > 0.0) {
             return Ok(None);
         }
-        let image = |name, format| Image::new(context, &ImageDesc::flat(name, format, size));
+        let image = |name, format| {
+            let desc = ImageDesc::flat(name, format, size);
+            Image::new(context, &desc.target_by(context.route()))
+        };
         let pair = || -> Result<[Image; 2]> {
             Ok([
                 image("reflected sky", FORMATS[0])?,
@@ -93,11 +96,14 @@ impl SpecularSky {
             ])
         };
         let name = "dome: resolve specular";
-        let resolve = &shaders::DOME_SPECULAR_RESOLVE_FRAG;
+        let resolve = Screen {
+            fragment: &shaders::DOME_SPECULAR_RESOLVE_FRAG,
+            compute: &shaders::DOME_SPECULAR_RESOLVE_COMP,
+        };
         Ok(Some(Self {
             lighting,
             gather: gather_pipeline(context, dome, lighting)?,
-            resolve: fullscreen(context, name, resolve, FORMATS[0], &[])?,
+            resolve: screen(context, name, resolve, &FORMATS[..1], Depth::Off, &[])?,
             means: [pair()?, pair()?],
             radiance: image("radiance with specular", FORMATS[0])?,
         }))
@@ -133,16 +139,16 @@ impl SpecularSky {
                 share: 1.0 / (index + 1) as f32,
                 specular_scale: self.lighting.specular_scale,
             })
-            .color(reflected, Load::Discard)
-            .color(lobe, Load::Discard)
-            .draw();
+            .output("new_reflected", reflected, Load::Discard)
+            .output("new_lobe", lobe, Load::Discard)
+            .fill();
         recorder
             .pass("dome: resolve specular", &self.resolve)
             .sample("picture", picture, Sampler::Nearest)
             .sample("reflected", reflected, Sampler::Nearest)
             .sample("lobe", lobe, Sampler::Nearest)
-            .color(&self.radiance, Load::Discard)
-            .draw();
+            .output("radiance", &self.radiance, Load::Discard)
+            .fill();
     }
 
     /// The picture with specular reflections, kcd/m².
@@ -157,10 +163,13 @@ fn gather_pipeline(
     lighting: LightingSettings,
 ) -> Result<Pipeline> {
     let normalized = lighting.mirrors.phong == Phong::Normalized;
-    fullscreen_at(
+    screen(
         context,
         "dome: specular",
-        &shaders::DOME_SPECULAR_FRAG,
+        Screen {
+            fragment: &shaders::DOME_SPECULAR_FRAG,
+            compute: &shaders::DOME_SPECULAR_COMP,
+        },
         &FORMATS,
         Depth::Off,
         &[

@@ -14,16 +14,16 @@ use crate::gpu_struct;
 
 use crate::passes::bounces::cells::{Bounces, Cells};
 use crate::passes::bounces::tree::Tree;
-use crate::passes::fullscreen_at;
 use crate::passes::light::lighting::{Ambient, Light, LightingSettings};
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
+use crate::passes::{Screen, screen};
 
 gpu_struct! {
     /// Position of the picture, number of the frame, seed.
-    pub struct Push: push of LOBES_FRAG, LOBES_FRAG_CELLS {
+    pub struct Push: push of LOBES_FRAG, LOBES_FRAG_CELLS, LOBES_COMP, LOBES_COMP_CELLS {
         origin: IVec2,
         index: u32,
         seed: u32,
@@ -75,10 +75,16 @@ impl Lobes {
     ) -> Result<Self> {
         let lighting = &need.lighting;
         let variant = |name, has_cells: bool, converging: bool| {
-            let shader = if has_cells {
-                &shaders::LOBES_FRAG_CELLS
+            let shaders = if has_cells {
+                Screen {
+                    fragment: &shaders::LOBES_FRAG_CELLS,
+                    compute: &shaders::LOBES_COMP_CELLS,
+                }
             } else {
-                &shaders::LOBES_FRAG
+                Screen {
+                    fragment: &shaders::LOBES_FRAG,
+                    compute: &shaders::LOBES_COMP,
+                }
             };
             let mut all = tree.constants().to_vec();
             all.extend(lighting.lobe_constants());
@@ -91,11 +97,14 @@ impl Lobes {
             ]);
             let depth = Depth::Surface(Format::D32_SFLOAT);
             Ok(Variant {
-                pipeline: fullscreen_at(context, name, shader, &[FORMAT], depth, &all)?,
+                pipeline: screen(context, name, shaders, &[FORMAT], depth, &all)?,
                 has_cells,
             })
         };
-        let image = |name| Image::new(context, &ImageDesc::flat(name, FORMAT, size));
+        let image = |name| {
+            let desc = ImageDesc::flat(name, FORMAT, size);
+            Image::new(context, &desc.target_by(context.route()))
+        };
         let single = || variant("lobes", lighting.ambient == Ambient::Cells, false);
         let converging = || variant("lobes: rays", need.bounces.is_any(), true);
         Ok(Self {
@@ -148,9 +157,9 @@ impl Lobes {
             index: converging.unwrap_or(0),
             seed: self.seed,
         })
-        .color(new, Load::Clear([0.0; 4]))
-        .depth_test(&surfaces.depth)
-        .draw();
+        .output("light", new, Load::Clear([0.0; 4]))
+        .selected_by(&surfaces.depth)
+        .fill();
         Some(new)
     }
 }

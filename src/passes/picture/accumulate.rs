@@ -3,15 +3,15 @@
 use std::sync::Arc;
 
 use crate::gpu::{
-    Context, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
 };
 use crate::gpu_struct;
 
-use crate::passes::fullscreen;
+use crate::passes::{Screen, screen};
 
 gpu_struct! {
     /// Number of frames.
-    pub struct Push: push of ACCUMULATE_FRAG {
+    pub struct Push: push of ACCUMULATE_FRAG, ACCUMULATE_COMP {
         count: u32,
     }
 }
@@ -29,14 +29,15 @@ impl Accumulate {
     /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, size: [u32; 2]) -> Result<Self> {
         let format = Format::R32G32B32A32_SFLOAT;
-        let pipeline = fullscreen(
-            context,
-            "accumulate",
-            &shaders::ACCUMULATE_FRAG,
-            format,
-            &[],
-        )?;
-        let image = |name| Image::new(context, &ImageDesc::flat(name, format, size));
+        let shaders = Screen {
+            fragment: &shaders::ACCUMULATE_FRAG,
+            compute: &shaders::ACCUMULATE_COMP,
+        };
+        let pipeline = screen(context, "accumulate", shaders, &[format], Depth::Off, &[])?;
+        let image = |name| {
+            let desc = ImageDesc::flat(name, format, size);
+            Image::new(context, &desc.target_by(context.route()))
+        };
         Ok(Self {
             pipeline,
             means: [image("mean 0")?, image("mean 1")?],
@@ -53,8 +54,8 @@ impl Accumulate {
             .sample("frame", frame, Sampler::Nearest)
             .sample("previous_mean", old, Sampler::Nearest)
             .push(&Push { count })
-            .color(new, Load::Discard)
-            .draw();
+            .output("mean", new, Load::Discard)
+            .fill();
         new
     }
 

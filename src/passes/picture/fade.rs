@@ -6,18 +6,18 @@
 use std::sync::Arc;
 
 use crate::gpu::{
-    Context, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
+    Context, Depth, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Sampler, shaders,
 };
 use crate::gpu_struct;
 
-use crate::passes::fullscreen;
+use crate::passes::{Screen, screen};
 
 /// Longest fade, frames.
 const LONGEST: u32 = 64;
 
 gpu_struct! {
     /// Weight of the preview.
-    pub struct Push: push of FADE_FRAG {
+    pub struct Push: push of FADE_FRAG, FADE_COMP {
         share: f32,
     }
 }
@@ -38,9 +38,14 @@ impl Fade {
     /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, size: [u32; 2], samples: u32) -> Result<Self> {
         let format = Format::R32G32B32A32_SFLOAT;
+        let shaders = Screen {
+            fragment: &shaders::FADE_FRAG,
+            compute: &shaders::FADE_COMP,
+        };
+        let desc = ImageDesc::flat("fading picture", format, size);
         Ok(Self {
-            pipeline: fullscreen(context, "fade", &shaders::FADE_FRAG, format, &[])?,
-            image: Image::new(context, &ImageDesc::flat("fading picture", format, size))?,
+            pipeline: screen(context, "fade", shaders, &[format], Depth::Off, &[])?,
+            image: Image::new(context, &desc.target_by(context.route()))?,
             frames: samples.min(LONGEST),
             has_preview: false,
         })
@@ -68,8 +73,8 @@ impl Fade {
             .sample("preview", preview, Sampler::Nearest)
             .sample("converging", converging, Sampler::Nearest)
             .push(&Push { share })
-            .color(&self.image, Load::Discard)
-            .draw();
+            .output("radiance", &self.image, Load::Discard)
+            .fill();
         &self.image
     }
 

@@ -119,6 +119,9 @@ pub enum Command {
         /// With --startup: part of a device's name, or its number.
         #[arg(long, value_name = "NAME|INDEX", requires = "startup")]
         device: Option<String>,
+        /// Machine-readable instead of text.
+        #[arg(long, conflicts_with = "startup")]
+        json: bool,
         /// Do without something that the devices have, as on devices that lack it.
         #[arg(long, value_name = "FEATURE", value_parser = choice::<Optional>())]
         without: Option<Optional>,
@@ -296,6 +299,7 @@ mod tests {
             Ok(Command::Info {
                 startup: false,
                 device: None,
+                json: false,
                 without: None
             })
         );

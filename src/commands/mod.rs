@@ -69,8 +69,9 @@ pub fn run(command: Command) -> Result<()> {
             startup: true,
             device,
             without,
+            ..
         } => startup::run(device, without),
-        Command::Info { without, .. } => info::run(without.as_slice()),
+        Command::Info { without, json, .. } => info::run(without.as_slice(), json),
     }
 }
 

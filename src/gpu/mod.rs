@@ -23,6 +23,7 @@ mod shader_build;
 
 pub use ash::vk::Format;
 pub use device::context::{Context, ContextOptions};
+pub use device::memory_heaps::Heap;
 pub use device::optional::Optional;
 pub use device::select::{DeviceSummary, devices};
 pub use device::startup::Step;

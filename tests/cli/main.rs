@@ -12,6 +12,7 @@ mod compare;
 mod daylight;
 mod devices;
 mod false_colour;
+mod gpu_check;
 mod mitsuba_bake;
 mod moment;
 mod options;

@@ -766,7 +766,8 @@ fn help_version_and_info_are_results() {
             &["--version"],
             &[concat!("skylight ", env!("CARGO_PKG_VERSION"))],
         ),
-        (&["info"], &["Vulkan", "driver", "lacks"]),
+        (&["info"], &["Vulkan", "driver", "lacks", "MiB"]),
+        (&["info", "--json"], &["\"devices\"", "\"budget_bytes\""]),
     ] {
         let ended = place.run(words).silently();
         for part in parts {

@@ -3,6 +3,7 @@
 pub(in crate::gpu) mod context;
 pub(in crate::gpu) mod fault;
 pub(in crate::gpu) mod instance;
+pub(in crate::gpu) mod memory_heaps;
 pub(in crate::gpu) mod needs;
 pub(in crate::gpu) mod optional;
 pub(in crate::gpu) mod portability;

@@ -4,6 +4,7 @@ use std::ffi::{CStr, c_char};
 
 use ash::vk;
 
+use crate::gpu::device::memory_heaps::{Heap, heaps};
 use crate::gpu::device::optional::{Offered, Optional};
 use crate::gpu::device::surface::RawSurface;
 use crate::gpu::device::{needs, portability};
@@ -31,6 +32,8 @@ pub struct DeviceSummary {
     pub max_image_edge: u32,
     /// Bits of the timestamps that count; 0: there are none.
     pub timestamp_bits: u32,
+    /// Its memory.
+    pub memory: Vec<Heap>,
     /// For a driver on top of another interface (MoltenVK): features of Vulkan that it lacks. None of them is used.
     pub portability: Option<Vec<&'static str>>,
 }
@@ -157,15 +160,12 @@ fn candidate(
         name: text(&properties.device_name),
         kind,
         api: version_text(version),
-        driver: format!(
-            "{} {}",
-            text(&driver.driver_name),
-            text(&driver.driver_info)
-        ),
+        driver: driver_text(&driver),
         missing,
         optional: offered.list(without),
         max_image_edge: needs::largest_target(&properties.limits),
         timestamp_bits,
+        memory: heaps(instance, handle, &extensions),
         portability: portability.map(|p| p.unused),
     };
     Ok(Candidate {
@@ -175,6 +175,11 @@ fn candidate(
         lacks_for_window,
         rank,
     })
+}
+
+fn driver_text(driver: &vk::PhysicalDeviceDriverProperties<'_>) -> String {
+    let [name, info] = [text(&driver.driver_name), text(&driver.driver_info)];
+    format!("{name} {info}")
 }
 
 fn version_text(version: u32) -> String {
@@ -296,6 +301,7 @@ mod tests {
                 optional: Vec::new(),
                 max_image_edge: 16384,
                 timestamp_bits: 64,
+                memory: Vec::new(),
                 portability: None,
             },
         }

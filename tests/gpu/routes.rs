@@ -73,10 +73,13 @@ fn modes() -> [(&'static str, FrameSettings, &'static [Show]); 4] {
     dome.lighting.mirrors.reflections = Reflections::Hidden;
     dome.bounces = Bounces::All;
     let mut lux = dome;
+    lux.sampling.visibility = Visibility::Dome;
     lux.sampling.dome.illuminance = true;
+    lux.lighting.mirrors.reflections = Reflections::Open;
+    lux.bounces = Bounces::UpTo(0);
     [
         ("screen space", screen, &ALL),
-        ("cells", cells, &[Show::Beauty, Show::Bounces]),
+        ("cells", cells, &[Show::Beauty]),
         ("dome", dome, &[Show::Beauty]),
         ("dome with illuminance", lux, &[Show::Irradiance]),
     ]

@@ -61,11 +61,11 @@ vec3 lifted_from(vec3 position, vec3 normal, vec3 eye, float error) {
     return position + (lift_at(position) + error * length(eye - position)) * normal;
 }
 
-/// The same, lifted toward the eye: nothing is in between, not even another wall of an acute corner.
+/// The same, lifted toward the eye but for the error: nothing is in between, not even another wall of an acute corner.
 vec3 lifted_to_eye(vec3 position, vec3 normal, vec3 eye, float error) {
     vec3 away = eye - position;
     float height = max(dot(away, normal), 0.05 * length(away));
-    return position + away * min((lift_at(position) + error * length(away)) / height, 0.5);
+    return position + away * min(lift_at(position) / height, 0.5) + error * length(away) * normal;
 }
 
 struct Hit {

@@ -30,6 +30,8 @@ pub struct DeviceSummary {
     pub optional: Vec<(Optional, bool)>,
     /// Maximum edge of an image that is drawn, pixels: the least of the limits on images, framebuffers and viewports.
     pub max_image_edge: u32,
+    /// Bits of the grid in a pixel to which corners of triangles are moved.
+    pub sub_pixel_bits: u32,
     /// Bits of the timestamps that count; 0: there are none.
     pub timestamp_bits: u32,
     /// Its memory.
@@ -42,6 +44,11 @@ impl DeviceSummary {
     /// Whether this optional feature is used.
     pub fn has(&self, optional: Optional) -> bool {
         self.optional.contains(&(optional, true))
+    }
+
+    /// Step of the grid to which corners of triangles are moved, pixels.
+    pub fn corner_step(&self) -> f32 {
+        (-(self.sub_pixel_bits as f32)).exp2()
     }
 
     /// Whether the device is a software rasterizer on the CPU.
@@ -164,6 +171,7 @@ fn candidate(
         missing,
         optional: offered.list(without),
         max_image_edge: needs::largest_target(&properties.limits),
+        sub_pixel_bits: properties.limits.sub_pixel_precision_bits,
         timestamp_bits,
         memory: heaps(instance, handle, &extensions),
         portability: portability.map(|p| p.unused),
@@ -300,6 +308,7 @@ mod tests {
                 missing: missing.iter().map(|m| (*m).to_owned()).collect(),
                 optional: Vec::new(),
                 max_image_edge: 16384,
+                sub_pixel_bits: 8,
                 timestamp_bits: 64,
                 memory: Vec::new(),
                 portability: None,

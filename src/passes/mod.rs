@@ -93,7 +93,11 @@ fn screen_by(
     }
 }
 
-/// A full-screen pipeline with one render target.
+/// A full-screen pipeline with one render target, by fragments alone: images of a window cannot be stored to.
+#[cfg_attr(
+    not(feature = "window"),
+    allow(dead_code, reason = "a program without a window presents nothing")
+)]
 fn fullscreen(
     context: &Arc<Context>,
     name: &str,

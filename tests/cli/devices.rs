@@ -15,10 +15,10 @@ const VIEW: &str = "town.obj --size 96x54 --eye 90,30,120 --target 0,8,-10 --sun
 /// Light of sun and sky alone: fast.
 const DIRECT: &str = "--sky preetham --bounces 0 --ambient ssao";
 
-/// What else is drawn on some devices: cells and the table of the air; the dome and gathered rays; large cubes of sky.
+/// What else is drawn on some devices: cells and the table of the air; the dome and gathered rays, by compute; large cubes of sky.
 const FULL: [&str; 3] = [
     "--sky atmosphere",
-    "--sky preetham --samples 16",
+    "--sky preetham --samples 16 --route compute",
     "--sky preetham --preset lecture",
 ];
 

@@ -45,7 +45,7 @@ impl RouteTimes {
     fn decode(key: &Key, text: &str) -> Option<Self> {
         let mut words = text.split_whitespace();
         let is_known = words.next() == Some(MAGIC) && words.next() == Some(&key.text());
-        let mut time = || words.next()?.parse().ok().filter(|t: &f64| *t > 0.0);
+        let mut time = || words.next()?.parse().ok().filter(|t: &f64| *t >= 0.0);
         let times = Self {
             fragment: time()?,
             compute: time()?,

@@ -415,7 +415,7 @@ options! {
             strict: bool,
             /// Check every Vulkan call with the validation layers; slow.
             validate: bool,
-            /// How full-screen passes (lighting, occlusion, tone map ..) are run; the picture is the same.
+            /// How full-screen passes (lighting, occlusion, tone map ..) and the cubes of the sky are run; the picture is the same.
             #[arg(value_name = "ROUTE", value_parser = choice::<RouteChoice>(), default_value_t)]
             route: RouteChoice,
             /// Do without something that the device has, as on a device that lacks it.

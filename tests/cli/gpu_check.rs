@@ -44,7 +44,7 @@ fn a_dry_run_lists_the_measurements_and_does_nothing() {
     let more = [
         "bench: cells: island",
         "bench: dome: ",
-        "bench: irradiance exact, compute: ",
+        "bench: irradiance exact: colonnade 1280x720 --route compute",
         "bench: sky hosek: ",
         "tests: none carried",
     ];

@@ -1,11 +1,11 @@
 //! Two ways to write all texels of a cube: layered rendering with a geometry shader, as in the lecture, and compute for devices
-//! without geometry shaders.
+//! without geometry shaders, and for those that compute faster than they draw ([`Route`]).
 
 use std::sync::Arc;
 
 use crate::gpu::{
     Blend, Context, Depth, Format, Image, Load, Optional, Pass, Pipeline, PipelineDesc, Recorder,
-    Result, Shader, shaders,
+    Result, Route, Shader, shaders,
 };
 
 /// How the texels of a cube are written.
@@ -18,12 +18,12 @@ pub enum CubeRoute {
 }
 
 impl CubeRoute {
-    /// `Geometry` if the device has geometry shaders, otherwise `Compute`.
+    /// `Geometry` if the device has geometry shaders and takes fragments for full-screen passes, otherwise `Compute`.
     pub fn of(context: &Context) -> Self {
-        if context.summary().has(Optional::GeometryShader) {
-            Self::Geometry
-        } else {
-            Self::Compute
+        let has_geometry = context.summary().has(Optional::GeometryShader);
+        match context.route() {
+            Route::Fragment if has_geometry => Self::Geometry,
+            _ => Self::Compute,
         }
     }
 }

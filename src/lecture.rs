@@ -32,7 +32,7 @@
 //! | Irradiance environment map | rnd(t) | [`rnd`](crate::daylight::sampling::rnd), [`tea`](crate::daylight::sampling::tea) | `include/random.glsl`: `rnd` | `rnd_is_uniform` |
 //! | Illumination model | L_r = ρ_d/π ((n·l) V E_sun + A E_sky(n)) + ρ_s ((r·l)^p V E_sun + L_sky(r)) | [`Show`](crate::options::Show) | `include/lighting.glsl`: `r_dot_l` | `each_addend_is_in_the_picture_once` |
 //! | Rendering equation | L_e | [`Material::emission`](crate::scene::Material::emission) | `include/lighting.glsl`: `emitted` | `a_panel_shows_what_it_emits_and_nothing_more_at_night` |
-//! | Rendering equation | ρ_s V(x, r) L_sky(r), V over the lobe around r | [`Reflections::Hidden`](crate::options::Reflections::Hidden) | `dome/dome_specular.frag`: `along_r` | `a_mirror_on_the_floor_shows_the_sky_in_the_opening_and_nowhere_else` |
+//! | Rendering equation | ρ_s V(x, r) L_sky(r), V over the lobe around r | [`Reflections::Hidden`](crate::options::Reflections::Hidden) | `include/dome_specular.glsl`: `along_r` | `a_mirror_on_the_floor_shows_the_sky_in_the_opening_and_nowhere_else` |
 //! | Rendering equation | V(x, ω) L_sky(ω) cos θ over the sky | [`SkySampler`](crate::daylight::sky_sampler::SkySampler) | `include/dome_gather.glsl`: `light_of_directions` | `a_room_with_an_opening_gets_the_light_of_its_configuration_factor` |
 //! | Rendering equation | ρ_d/π ∫ L(ω) cos θ dω over what other surfaces emit and reflect | [`Bounces`](crate::options::Bounces) | `bounces/bounces_gather.comp`: `gathered` | `each_addend_is_in_the_picture_once` |
 //! | Rendering equation | the same for a sensor, all bounces | [`measure`](crate::sensors::measure) | – | `the_wall_of_a_sphere_with_an_opening_has_the_light_of_all_bounces` |

@@ -61,6 +61,7 @@ fn eye() -> Camera {
 fn modes() -> [(&'static str, FrameSettings, &'static [Show]); 4] {
     let mut screen = settings(SIZE[0], SIZE[1]).with_occlusion(SsaoSettings::default());
     screen.samples = 2;
+    screen.irradiance.samples = 64;
     let mut cells = screen;
     cells.samples = 1;
     cells.lighting.ambient = Ambient::Cells;

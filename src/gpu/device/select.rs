@@ -164,11 +164,7 @@ fn candidate(
         name: text(&properties.device_name),
         kind,
         api: version_text(version),
-        driver: format!(
-            "{} {}",
-            text(&driver.driver_name),
-            text(&driver.driver_info)
-        ),
+        driver: driver_text(&driver),
         missing,
         optional: offered.list(without),
         max_image_edge: needs::largest_target(&properties.limits),
@@ -183,6 +179,11 @@ fn candidate(
         lacks_for_window,
         rank,
     })
+}
+
+fn driver_text(driver: &vk::PhysicalDeviceDriverProperties<'_>) -> String {
+    let [name, info] = [text(&driver.driver_name), text(&driver.driver_info)];
+    format!("{name} {info}")
 }
 
 fn version_text(version: u32) -> String {

@@ -4,8 +4,14 @@
 //! No device is needed. [`read_grid`] reads the points, [`measure`] lights them.
 
 mod grid;
+mod numbers;
 mod path;
+mod sun_cells;
+mod suns;
 mod surface;
+mod walk;
+mod year;
+mod year_light;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
@@ -15,6 +21,8 @@ use glam::{DVec3, Vec3};
 pub use self::grid::{GridError, read_grid};
 pub use self::path::Lights;
 pub use self::surface::TracedScene;
+pub use self::year::{SensorYear, Year, YearRun, measure_year};
+pub use self::year_light::YearLight;
 
 use crate::daylight::colour::luminance;
 
@@ -58,7 +66,12 @@ pub struct Accuracy {
     pub max_paths: u32,
     /// Start of the sample sequences.
     pub seed: u32,
+    /// Most bounces; [`ALL_BOUNCES`] is no limit that matters.
+    pub bounces: u32,
 }
+
+/// Bounces after which a path ends in any case: between surfaces that reflect 95 %, less than a millionth of the light is left.
+pub const ALL_BOUNCES: u32 = path::MAX_BOUNCES;
 
 /// Independent estimates from whose spread the standard error comes: randomised quasi-Monte Carlo (Owen 1997).
 const REPLICATES: u32 = 16;
@@ -114,9 +127,9 @@ fn read(
     let (mut traced, mut wanted) = (0, FIRST_ROUND);
     loop {
         for (replicate, sum) in sums.iter_mut().enumerate() {
-            let seed = path::seed(accuracy.seed, number, replicate as u32);
+            let seed = numbers::seed(accuracy.seed, number, replicate as u32);
             for index in traced..wanted {
-                let parts = path::trace(sensor, scene, lights, index, seed);
+                let parts = path::trace(sensor, scene, lights, accuracy.bounces, [index, seed]);
                 sum.iter_mut().zip(parts).for_each(|(s, p)| *s += p);
             }
         }
@@ -199,6 +212,7 @@ mod tests {
             relative_error: 2e-3,
             max_paths: 1 << 20,
             seed: 0,
+            bounces: ALL_BOUNCES,
         };
         let (scene, lights) = (TracedScene::new(scene), Lights::new(&daylight));
         measure(&[sensor], &scene, &lights, &accuracy, &|| ())[0]

@@ -7,6 +7,7 @@ use clap::builder::{ArgPredicate, PathBufValueParser, TypedValueParser};
 use clap::{Args, value_parser};
 
 use crate::daylight::metrics::Schedule;
+use crate::daylight::sun_hours::SunDate;
 use crate::daylight::weather::YearHour;
 use crate::options::{Direction, choice, choice_enum};
 
@@ -209,15 +210,26 @@ pub struct DaylightArgs {
     /// A moment instead of the year: the hour of the weather file that holds this time of its clock, local standard time.
     #[arg(long, value_name = "M-DThh", requires = "weather")]
     pub hour: Option<YearHour>,
-    /// What to measure over the year, separated by commas.
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = choice::<Metric>(), conflicts_with = "hour", requires = "weather",
-          default_values_t = [Metric::Df, Metric::Da, Metric::Cda, Metric::Udi, Metric::Sda, Metric::Ase])]
+    /// What to measure instead of a moment, separated by commas; da,cda,udi,sda,ase by default for a year. All but df, vsc and sunhours
+    /// need --weather.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = choice::<Metric>(), conflicts_with = "hour")]
     pub metrics: Vec<Metric>,
+    /// Dates of sunhours, separated by commas: 3-21, 2026-3-21, or year.
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        default_value = "3-21"
+    )]
+    pub dates: Vec<SunDate>,
+    /// Elevation above which sunhours counts the sun, degrees.
+    #[arg(long, value_name = "DEGREES", value_parser = crate::options::elevation, default_value_t = 0.0)]
+    pub min_elevation: f64,
     /// Occupied hours of every day, by the clock of the weather file.
     #[arg(long, value_name = "FROM-TO", default_value_t, requires = "weather")]
     pub schedule: Schedule,
     /// Thresholds of daylight autonomy, lux.
-    #[arg(long, value_name = "LUX", value_delimiter = ',', value_parser = crate::options::threshold, default_value = "300", requires = "weather")]
+    #[arg(long, value_name = "LUX", value_delimiter = ',', value_parser = crate::options::threshold, allow_hyphen_values = true, default_value = "300", requires = "weather")]
     pub thresholds: Vec<f64>,
     /// Print JSON instead of a table.
     #[arg(long, conflicts_with = "csv")]
@@ -243,12 +255,33 @@ pub struct DaylightArgs {
 }
 
 impl DaylightArgs {
+    /// Whether anything but a moment is asked for.
+    pub fn asks_for_metrics(&self) -> bool {
+        self.hour.is_none() && (self.weather.is_some() || !self.metrics.is_empty())
+    }
+
+    /// What is measured over the year, or without hours.
+    pub fn asked_metrics(&self) -> Vec<Metric> {
+        if self.metrics.is_empty() {
+            use Metric::{Ase, Cda, Da, Sda, Udi};
+            return vec![Da, Cda, Udi, Sda, Ase];
+        }
+        self.metrics.clone()
+    }
+
     /// The hour of the weather file, if one is asked for.
     pub fn at(&self) -> HourArgs {
         HourArgs {
             weather: self.weather.clone(),
             hour: self.hour,
         }
+    }
+}
+
+impl Metric {
+    /// Whether it is made of the hours of a weather file.
+    pub fn needs_hours(self) -> bool {
+        !matches!(self, Self::Df | Self::Vsc | Self::Sunhours)
     }
 }
 
@@ -263,5 +296,7 @@ choice_enum! {
         Ase = "ase": "Annual sunlight exposure: sensors with more than 1000 lux of direct sun in more than 250 occupied hours, percent",
         En17037 = "en17037": "EN 17037, daylight provision by both methods",
         Illuminance = "illuminance": "Mean illuminance of all hours, lux",
+        Vsc = "vsc": "Light of the overcast sky without reflection, percent of that of open ground: on a façade the vertical sky component",
+        Sunhours = "sunhours": "Hours in which the sun shines on the sensor on --dates if no cloud hides it",
     }
 }

@@ -78,7 +78,8 @@ fn schedule_form() -> String {
 }
 
 /// Which hours count, and thresholds: what turns a year of illuminances into metrics.
-#[derive(Debug, Clone, PartialEq)]
+/// The default has no hours: no values.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Measures {
     /// Thresholds of daylight autonomy, lux.
     pub thresholds: Vec<f64>,
@@ -156,6 +157,9 @@ impl Measures {
 
     /// Names of the values of [`Measures::values`].
     pub fn names(&self) -> Vec<String> {
+        if self.count == 0 {
+            return Vec::new();
+        }
         let autonomy = |kind: &str| {
             let names = self.thresholds.iter().map(|lux| format!("{kind}{lux}"));
             names.collect::<Vec<_>>()
@@ -172,6 +176,9 @@ impl Measures {
     /// The metrics of a sensor with these illuminances in the lit hours, lux: DA and cDA at each threshold and UDI, percent of the
     /// occupied hours; hours of EN 17037; mean of all hours, lux.
     pub fn values(&self, lux: &[f32]) -> Vec<f64> {
+        if self.count == 0 {
+            return Vec::new();
+        }
         let occupied = self.counted(&self.occupied, lux);
         let percent = |sum: f64| 100.0 * sum / self.occupied_count as f64;
         let at_least = |list: &[f64], limit: f64| list.iter().filter(|e| **e >= limit).count();
@@ -198,6 +205,9 @@ impl Measures {
     /// What the standard error of a value is relative to: 100 for percentages, all hours for hours, the value itself for illuminances and for
     /// the daylight factor, which follows the values, but at least 10 lux and 0.1 %.
     pub fn error_scale(&self, number: usize, value: f64) -> f64 {
+        if self.count == 0 {
+            return value.max(0.1);
+        }
         let percentages = 2 * self.thresholds.len() + 4;
         match number.checked_sub(percentages) {
             None => 100.0,

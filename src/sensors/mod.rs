@@ -3,15 +3,18 @@
 //!
 //! No device is needed. [`read_grid`] reads the points, [`measure`] lights them.
 
+mod cells;
 mod grid;
 mod numbers;
 mod path;
-mod sun_cells;
 mod suns;
 mod surface;
+mod unreflected;
 mod walk;
 mod year;
 mod year_light;
+#[cfg(test)]
+mod year_tests;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
@@ -21,6 +24,7 @@ use glam::{DVec3, Vec3};
 pub use self::grid::{GridError, read_grid};
 pub use self::path::Lights;
 pub use self::surface::TracedScene;
+pub use self::unreflected::{sky_components, suns_seen};
 pub use self::year::{SensorYear, Year, YearRun, measure_year};
 pub use self::year_light::YearLight;
 
@@ -169,7 +173,7 @@ mod tests {
     use crate::scene::{Bounds, Material, Part, Scene};
 
     /// Squares, each by its corner and two edges, of reflectance 0.5.
-    fn squares(list: &[[Vec3; 3]]) -> Scene {
+    pub(super) fn squares(list: &[[Vec3; 3]]) -> Scene {
         let corners = |[at, u, v]: [Vec3; 3]| [at, at + u, at + u + v, at + v];
         let positions: Vec<Vec3> = list.iter().copied().flat_map(corners).collect();
         let indices: Vec<u32> = (0..list.len() as u32)

@@ -19,7 +19,7 @@ const DAYS: u32 = 8;
 const LOWEST_DEG: f64 = 0.1;
 
 /// Suns of a year.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Suns {
     /// Unit vectors toward them.
     pub directions: Vec<Vec3>,

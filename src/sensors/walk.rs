@@ -1,13 +1,11 @@
-//! Paths of a year: from a sensor over diffuse surfaces to the sky. What they find holds for every sky and every sun.
-
-use std::f64::consts::PI;
+//! Paths of a year: from a sensor over diffuse surfaces. What they find holds for every sky and every sun.
 
 use glam::{DVec3, Vec3};
 
 use super::Sensor;
 use super::numbers::Numbers;
 use super::path::MAX_BOUNCES;
-use super::surface::{TracedScene, lifted};
+use super::surface::{Met, TracedScene, lifted};
 use crate::daylight::sampling::cosine_hemisphere;
 use crate::daylight::tangent_frame;
 
@@ -27,49 +25,54 @@ pub(super) struct Vertex {
     pub weight: Vec3,
 }
 
-/// What a path finds.
-pub(super) trait Finds {
-    /// Sky, or ground below the horizon, in a direction: illuminance of the sensor by a luminance of 1 there, linear RGB.
-    fn outside(&mut self, direction: DVec3, weight: DVec3);
-    /// A surface that sun may shine on.
-    fn surface(&mut self, vertex: Vertex);
+/// What a ray of density cos θ/π meets.
+fn met(scene: &TracedScene, from: Vec3, normal: Vec3, numbers: &mut Numbers) -> Met {
+    let local = cosine_hemisphere(numbers.pair());
+    let direction = tangent_frame::to_world(local, normal.as_dvec3());
+    scene.first(from, direction.as_vec3(), || numbers.next())
 }
 
-/// Follows path `index` of a replicate over at most `bounces` surfaces.
+/// The direction in which such a ray leaves the scene, if it does, and what panes let through.
+pub(super) fn outside(
+    scene: &TracedScene,
+    from: Vec3,
+    normal: Vec3,
+    numbers: &mut Numbers,
+) -> Option<(DVec3, DVec3)> {
+    let met = met(scene, from, normal, numbers);
+    let is_outside = met.point.is_none() && met.through != DVec3::ZERO;
+    is_outside.then(|| (met.direction.as_dvec3(), met.through))
+}
+
+/// Follows path `index` of a replicate over at most `bounces` surfaces and gives the points where it is reflected.
 ///
-/// Directions have the density cos θ/π, so that a bounce multiplies by ρ_d (see [`super::path`]). Each surface ends the path with the
-/// probability 1 − ρ_d: those that go on keep their weight.
+/// With directions of the density cos θ/π a bounce multiplies by ρ_d (see [`super::path`]). Each surface ends the path with the probability
+/// 1 − ρ_d: those that go on keep their weight.
 pub(super) fn walk(
     sensor: &Sensor,
     scene: &TracedScene,
     bounces: u32,
     [index, seed]: [u32; 2],
-    found: &mut impl Finds,
+    found: &mut Vec<Vertex>,
 ) {
     let mut numbers = Numbers::new(index, seed, SPREAD);
     let (mut position, mut normal) = (lifted(sensor.position, sensor.normal), sensor.normal);
     let mut weight = DVec3::ONE;
-    for bounce in 0..=bounces.min(MAX_BOUNCES) {
-        let local = cosine_hemisphere(numbers.pair());
-        let direction = tangent_frame::to_world(local, normal.as_dvec3());
-        let met = scene.first(position, direction.as_vec3(), || numbers.next());
-        weight *= met.through;
-        let Some(point) = met.point else {
-            found.outside(met.direction.as_dvec3(), PI * weight);
-            return;
-        };
-        weight *= point.reflectance;
-        if bounce == bounces || weight == DVec3::ZERO {
+    for _ in 0..bounces.min(MAX_BOUNCES) {
+        let met = met(scene, position, normal, &mut numbers);
+        let Some(point) = met.point else { return };
+        weight *= met.through * point.reflectance;
+        let chance = weight.max_element().min(1.0);
+        if chance <= 0.0 {
             return;
         }
         (position, normal) = (point.position, point.normal);
-        found.surface(Vertex {
+        found.push(Vertex {
             position,
             normal,
             distance: position.distance(sensor.position),
             weight: weight.as_vec3(),
         });
-        let chance = weight.max_element().min(1.0);
         if numbers.next() >= chance {
             return;
         }

@@ -1,23 +1,27 @@
 //! A year at the sensors of a grid: hourly illuminances and their metrics, with standard errors.
 //!
 //! E(hour) = Σ over patches of the sky of coefficient times luminance + direct sun + reflected sun (Tregenza & Waters 1983, "Daylight
-//! coefficients"). Paths give the coefficients ([`super::walk`]); where they are reflected, the sunlight of the suns of the year is gathered
-//! ([`super::sun_cells`], [`super::suns`]). The direct sun is that of each hour itself.
+//! coefficients"). Rays from the sensor give the coefficients of what it sees, and paths ([`super::walk`]) those of what is reflected: where
+//! they are reflected, the light of the sky and of the suns of the year is gathered ([`super::cells`], [`super::suns`]). The direct sun is
+//! that of each hour itself.
 //!
 //! Sensors are measured in blocks of [`BLOCK`]: the result of a block depends on nothing but its sensors, the scene, the light and the seed.
+
+use std::f64::consts::PI;
 
 use glam::Vec3;
 use ndarray::Array2;
 use rayon::prelude::*;
 
-use super::numbers::seed;
-use super::sun_cells::{SunCells, sunlight};
-use super::surface::TracedScene;
-use super::walk::{Finds, Vertex, walk};
+use super::cells::{CellLight, Cells};
+use super::numbers::{Numbers, seed};
+use super::surface::{TracedScene, lifted};
+use super::walk::{Vertex, outside, walk};
 use super::year_light::{YearLight, grey};
 use super::{Accuracy, Sensor};
 use crate::daylight::colour::LUMINANCE_WEIGHTS;
 use crate::daylight::metrics::Measures;
+use crate::daylight::sampling::tea;
 
 /// Sensors of a block.
 pub const BLOCK: usize = 256;
@@ -27,6 +31,9 @@ const REPLICATES: usize = 8;
 
 /// Paths of a replicate and sensor in the first round.
 const FIRST_ROUND: u32 = 256;
+
+/// Rays to what the sensor sees, for each path.
+const RAYS: u32 = 8;
 
 /// Most of a later one: their points are kept while the sunlight on them is found.
 const MOST_ROUND: u32 = 1024;
@@ -171,13 +178,13 @@ impl<'a> Block<'a> {
                 return false;
             }
             let vertices = self.walked(paths, replicate);
-            self.gather_suns(&vertices, replicate);
+            self.gather(&vertices, replicate);
         }
         self.traced += paths;
         true
     }
 
-    /// Follows the paths of a replicate; the points of each sensor where sun may shine.
+    /// Traces the rays and paths of a replicate; the points of each sensor where it is reflected.
     fn walked(&mut self, paths: u32, replicate: usize) -> Vec<Vec<Vertex>> {
         let (run, first, traced) = (self.run, self.first, self.traced);
         let patches = run.light.patches.count();
@@ -185,32 +192,32 @@ impl<'a> Block<'a> {
         let sensors = self.sensors.par_iter().zip(&mut self.sums).enumerate();
         let walked = sensors.map(|(at, (sensor, sums))| {
             let seed = seed(run.accuracy.seed, (first + at) as u32, replicate as u32);
-            let mut found = Found {
-                light: run.light,
-                patches: &mut sums.patches[range.clone()],
-                vertices: Vec::new(),
-            };
+            see(
+                sensor,
+                run,
+                [RAYS * traced, RAYS * (traced + paths), seed],
+                &mut sums.patches[range.clone()],
+            );
+            let mut vertices = Vec::new();
             for index in traced..traced + paths {
                 walk(
                     sensor,
                     run.scene,
                     run.accuracy.bounces,
                     [index, seed],
-                    &mut found,
+                    &mut vertices,
                 );
             }
-            found.vertices
+            vertices
         });
         walked.collect()
     }
 
-    /// Adds the sunlight of the points of a replicate.
-    fn gather_suns(&mut self, vertices: &[Vec<Vertex>], replicate: usize) {
-        let (scene, suns) = (self.run.scene, &self.run.light.suns.directions);
+    /// Adds the light of the points of a replicate.
+    fn gather(&mut self, vertices: &[Vec<Vertex>], replicate: usize) {
+        let (scene, light) = (self.run.scene, self.run.light);
         let all: Vec<Vertex> = vertices.iter().flatten().copied().collect();
-        if suns.is_empty() || all.is_empty() {
-            return;
-        }
+        let suns = light.suns.directions.len();
         let channels = if scene.is_tinted() { 3 } else { 1 };
         let accuracy = &self.run.accuracy;
         let seed = seed(
@@ -218,29 +225,37 @@ impl<'a> Block<'a> {
             self.first as u32 ^ (self.traced << 8),
             !replicate as u32,
         );
-        let most = (MOST_SUNLIGHT / (channels * suns.len())).max(1);
+        let most = (MOST_SUNLIGHT / (channels * suns).max(1)).max(1);
         let mut coarser = 1.0;
         let cells = loop {
-            let cells = SunCells::new(&all, seed, coarser);
+            let cells = Cells::new(&all, seed, coarser);
             if cells.stands_for.len() <= most || coarser > 1e6 {
                 break cells;
             }
             coarser *= 2.0;
         };
-        let light = |vertex: &u32| sunlight(scene, &all[*vertex as usize], suns, channels);
-        let light: Vec<Vec<f32>> = cells.stands_for.par_iter().map(light).collect();
+        let lit = |(at, vertex): (usize, &u32)| {
+            let seed = tea::<8>(seed, at as u32);
+            CellLight::new(scene, &all[*vertex as usize], light, channels, seed)
+        };
+        let lit: Vec<CellLight> = cells.stands_for.par_iter().enumerate().map(lit).collect();
         let mut starts = Vec::with_capacity(vertices.len());
         let mut start = 0;
         for list in vertices {
             starts.push(start);
             start += list.len();
         }
-        let range = replicate * suns.len()..(replicate + 1) * suns.len();
+        let patches = light.patches.count();
         let sensors = self.sums.par_iter_mut().zip(vertices).zip(starts);
         sensors.for_each(|((sums, vertices), start)| {
-            let sums = &mut sums.suns[range.clone()];
+            let patches = &mut sums.patches[replicate * patches..(replicate + 1) * patches];
+            let suns = &mut sums.suns[replicate * suns..(replicate + 1) * suns];
             for (vertex, cell) in vertices.iter().zip(&cells.of_vertex[start..]) {
-                add(sums, &light[*cell as usize], vertex.weight, channels);
+                let light = &lit[*cell as usize];
+                for (patch, weight) in &light.sky {
+                    patches[*patch as usize] += grey((vertex.weight * *weight).as_dvec3());
+                }
+                add(suns, &light.suns, vertex.weight, channels);
             }
         });
     }
@@ -300,25 +315,25 @@ impl<'a> Block<'a> {
     }
 }
 
-/// Where the paths of a sensor put what they find.
-struct Found<'a> {
-    light: &'a YearLight,
-    patches: &'a mut [f32],
-    vertices: Vec<Vertex>,
-}
-
-impl Finds for Found<'_> {
-    fn outside(&mut self, direction: glam::DVec3, weight: glam::DVec3) {
-        self.patches[self.light.patches.index(direction)] += grey(weight);
-    }
-
-    fn surface(&mut self, vertex: Vertex) {
-        self.vertices.push(vertex);
+/// Adds what a sensor sees of sky and ground by rays of some numbers.
+fn see(sensor: &Sensor, run: &YearRun, [from, to, seed]: [u32; 3], patches: &mut [f32]) {
+    let start = lifted(sensor.position, sensor.normal);
+    // Not the numbers of the paths.
+    let seed = tea::<8>(seed, 1);
+    for index in from..to {
+        let mut numbers = Numbers::new(index, seed, 1);
+        if let Some((direction, through)) = outside(run.scene, start, sensor.normal, &mut numbers) {
+            let weight = through * (PI / f64::from(RAYS));
+            patches[run.light.patches.index(direction)] += grey(weight);
+        }
     }
 }
 
 /// Adds the sunlight of a point with its weight, as luminance.
 fn add(sums: &mut [f32], light: &[f32], weight: Vec3, channels: usize) {
+    if sums.is_empty() {
+        return;
+    }
     if channels == 1 {
         let weight = grey(weight.as_dvec3());
         sums.iter_mut()

@@ -40,8 +40,18 @@ pub struct YearLight {
 impl YearLight {
     /// Of a file, over ground below the horizon that reflects `ground_albedo`.
     pub fn new(weather: &Weather, ground_albedo: f64) -> Self {
-        let patches = Patches::new(MULTIPLIER);
         let hours = lit_hours(weather);
+        let suns = Suns::new(weather, &hours);
+        Self::of(hours, suns, ground_albedo)
+    }
+
+    /// The overcast sky alone: no hours.
+    pub fn overcast(ground_albedo: f64) -> Self {
+        Self::of(Vec::new(), Suns::default(), ground_albedo)
+    }
+
+    fn of(hours: Vec<LitHour>, suns: Suns, ground_albedo: f64) -> Self {
+        let patches = Patches::new(MULTIPLIER);
         let sky = PatchedSky::new(&patches, ground_albedo);
         let count = patches.count();
         let mut skies = vec![0.0; (hours.len() + 1) * count];
@@ -55,7 +65,7 @@ impl YearLight {
         Self {
             // The shape is that of the vector.
             skies: Array2::from_shape_vec((hours.len() + 1, count), skies).unwrap_or_default(),
-            suns: Suns::new(weather, &hours),
+            suns,
             hours,
             patches,
         }

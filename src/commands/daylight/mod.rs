@@ -4,6 +4,7 @@ mod ill;
 mod moment;
 mod summary;
 mod table;
+mod unreflected;
 mod year;
 
 use super::weather;
@@ -13,15 +14,15 @@ use crate::options::{OptionValues, Options};
 use crate::passes::bounces::cells::Bounces;
 use crate::sensors::ALL_BOUNCES;
 
-/// Measures a year if there is a weather file without an hour, else a moment.
+/// Measures metrics if there is a weather file without an hour or some are asked for, else a moment.
 ///
 /// # Errors
 /// A grid, a model or a weather file that cannot be read, or invalid options.
 pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
-    match (&args.weather, args.hour) {
-        (Some(file), None) => year::run(args, file, options),
-        _ => moment::run(args, &weather::applied(&args.at(), options.clone())?),
+    if args.asks_for_metrics() {
+        return year::run(args, options);
     }
+    moment::run(args, &weather::applied(&args.at(), options.clone())?)
 }
 
 /// The limit of bounces.

@@ -29,7 +29,7 @@ const AREAS: [f64; 2] = [50.0, 95.0];
 impl Summary {
     /// Of a year.
     pub fn of(args: &DaylightArgs, measures: &Measures, light: &YearLight, year: &Year) -> Self {
-        let asks = |metric| args.metrics.contains(&metric) && !year.sensors.is_empty();
+        let asks = |metric| args.asked_metrics().contains(&metric) && !year.sensors.is_empty();
         let names = measures.names();
         let column = |name: &str| {
             let at = names
@@ -85,7 +85,7 @@ impl Summary {
     }
 
     /// Lines for the eye.
-    pub fn text(&self, args: &DaylightArgs) -> String {
+    pub fn text(&self) -> String {
         let mut text = "\n".to_owned();
         if let Some(sda) = self.sda {
             let _ = writeln!(
@@ -97,7 +97,7 @@ impl Summary {
         if let Some(ase) = self.ase {
             let _ = writeln!(text, "ASE1000,250  {ase:.1} % of the sensors");
         }
-        if args.metrics.contains(&Metric::En17037) {
+        if !self.en17037.is_null() {
             for (name, key) in [("daylight factor", "method_1"), ("hours", "method_2")] {
                 let of = &self.en17037[key];
                 let shares: Vec<String> = EN_17037_LUX

@@ -1,6 +1,4 @@
-//! `skylight daylight` over the year of a weather file: metrics at the sensors of a grid.
-
-use std::path::Path;
+//! `skylight daylight` with metrics: over the year of a weather file, or of what needs none.
 
 use serde_json::json;
 
@@ -9,6 +7,7 @@ use super::super::weather::{check_given, read_weather, warnings};
 use super::super::{interrupt, progress, tell, tell_no_device};
 use super::summary::Summary;
 use super::table::{Column, csv, objects, overview};
+use super::unreflected::{sky_component, sun_hours};
 use super::{bounces, ill};
 use crate::cli::{DaylightArgs, Metric};
 use crate::daylight::metrics::{Measures, SPATIAL_LUX};
@@ -17,7 +16,7 @@ use crate::daylight::weather::clock::ClockCheck;
 use crate::error::{Error, Result};
 use crate::options::{OptionValues, Options, OptionsError};
 use crate::output::{check_writable, print};
-use crate::scene::{self, Scene};
+use crate::scene;
 use crate::sensors::{
     Accuracy, Sensor, TracedScene, Year, YearLight, YearRun, measure_year, read_grid,
 };
@@ -25,23 +24,13 @@ use crate::sensors::{
 /// Most records of a weather file: with more, the skies of the year no longer fit into memory.
 const MOST_RECORDS: usize = 60_000;
 
-/// Measures and prints a year.
+/// Measures and prints a year, or what needs no hours of it.
 ///
 /// # Errors
 /// A grid, a model or a weather file that cannot be read, or invalid options.
-pub fn run(args: &DaylightArgs, file: &Path, options: &OptionValues) -> Result<()> {
-    check_given(options)?;
-    if let Some(path) = &args.ill {
-        check_writable(path)?;
-    }
-    let weather = read_weather(file)?;
-    if weather.records.len() > MOST_RECORDS {
-        let many = format!(
-            "{}: more than {MOST_RECORDS} records; average them to hours",
-            file.display()
-        );
-        return Err(Error::from(OptionsError(many)));
-    }
+pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
+    let weather = weather(args, options)?;
+    let weather = weather.as_ref();
     let mut loaded = scene::load_with_progress(
         Some(&args.scene),
         &load_options(&options.alone()?),
@@ -50,22 +39,33 @@ pub fn run(args: &DaylightArgs, file: &Path, options: &OptionValues) -> Result<(
     let settings = Options::resolve(options, &loaded)?;
     let scene = scene_of(&mut loaded, &settings);
     tell_no_device("daylight", &settings);
-    let clock = ClockCheck::of(&weather);
+    let clock = weather.and_then(ClockCheck::of);
     let mut told = scene.warnings.clone();
-    told.extend(warnings(&weather, clock.as_ref()));
+    told.extend(weather.iter().flat_map(|w| warnings(w, clock.as_ref())));
     tell(&settings, told.iter())?;
     let all = read_grid(&args.grid, scene.origin)?;
-    let light = YearLight::new(&weather, settings.ground_albedo);
-    let measures = measures(args, &weather, &light)?;
-    let year = measured(args, &settings, &scene, &light, &measures, &all);
+    let light = match weather {
+        Some(weather) => YearLight::new(weather, settings.ground_albedo),
+        None => YearLight::overcast(settings.ground_albedo),
+    };
+    let measures = measures(args, weather, &light)?;
+    let traced = TracedScene::new(&scene);
+    let year = measured(args, &settings, &traced, &light, &measures, &all);
     let sensors = &all[..year.sensors.len()];
     let odd = oddities(args, &year, &all);
     tell(&settings, odd.iter())?;
     told.extend(odd);
-    if let Some(path) = &args.ill {
-        ill::write(path, &weather, &light, &year)?;
+    if let (Some(path), Some(weather)) = (&args.ill, weather) {
+        ill::write(path, weather, &light, &year)?;
     }
-    let columns = columns(args, &measures, &year);
+    let mut columns = columns(args, &measures, &year);
+    let asks = |metric| args.asked_metrics().contains(&metric);
+    if asks(Metric::Vsc) {
+        columns.push(sky_component(sensors, &traced, settings.seed));
+    }
+    if asks(Metric::Sunhours) {
+        columns.extend(sun_hours(args, weather, &settings, sensors, &traced)?);
+    }
     let summary = Summary::of(args, &measures, &light, &year);
     print(&if args.json {
         let report = json!({
@@ -78,21 +78,50 @@ pub fn run(args: &DaylightArgs, file: &Path, options: &OptionValues) -> Result<(
             "occupied_hours": measures.occupied_hours(),
             "bounces": settings.bounces.to_string(),
             "paths": year.sensors.first().map_or(0, |sensor| sensor.paths),
-            "weather": weather_json(&weather, clock.as_ref()),
+            "weather": weather.map(|weather| weather_json(weather, clock.as_ref())),
             "warnings": told,
         });
         format!("{report:#}\n")
     } else if args.csv {
         csv(sensors, &columns, scene.origin)
     } else {
-        let head = head(args, &settings, &weather, &measures, sensors);
-        head + &overview(&columns) + &summary.text(args)
+        let head = head(args, &settings, weather, &measures, sensors);
+        head + &overview(&columns) + &summary.text()
     })
 }
 
-fn measures(args: &DaylightArgs, weather: &Weather, light: &YearLight) -> Result<Measures> {
+/// The weather file, if one is given.
+fn weather(args: &DaylightArgs, options: &OptionValues) -> Result<Option<Weather>> {
+    let wrong = |what: String| Err(Error::from(OptionsError(what)));
+    let Some(file) = &args.weather else {
+        let mut metrics = args.metrics.iter().filter(|metric| metric.needs_hours());
+        return match metrics.next() {
+            Some(metric) => wrong(format!(
+                "{metric} needs the hours of a year; add --weather FILE"
+            )),
+            None => Ok(None),
+        };
+    };
+    check_given(options)?;
+    if let Some(path) = &args.ill {
+        check_writable(path)?;
+    }
+    let weather = read_weather(file)?;
+    if weather.records.len() > MOST_RECORDS {
+        return wrong(format!(
+            "{}: more than {MOST_RECORDS} records; average them to hours",
+            file.display()
+        ));
+    }
+    Ok(Some(weather))
+}
+
+fn measures(args: &DaylightArgs, weather: Option<&Weather>, light: &YearLight) -> Result<Measures> {
+    let Some(weather) = weather else {
+        return Ok(Measures::default());
+    };
     let mut thresholds = args.thresholds.clone();
-    if args.metrics.contains(&Metric::Sda) && !thresholds.contains(&SPATIAL_LUX) {
+    if args.asked_metrics().contains(&Metric::Sda) && !thresholds.contains(&SPATIAL_LUX) {
         thresholds.push(SPATIAL_LUX);
     }
     let measures = Measures::new(weather, &light.hours, args.schedule, thresholds);
@@ -109,9 +138,9 @@ fn is_wanted(args: &DaylightArgs, name: &str) -> bool {
         Metric::Sda => name == "da300",
         Metric::En17037 => name.starts_with("en17037") || name == "df",
         Metric::Illuminance => name == "mean_lux",
-        Metric::Ase => false,
+        Metric::Ase | Metric::Vsc | Metric::Sunhours => false,
     };
-    args.metrics.iter().any(is_of) || (args.ill.is_some() && name == "mean_lux")
+    args.asked_metrics().iter().any(is_of) || (args.ill.is_some() && name == "mean_lux")
 }
 
 /// Names of the values of a sensor.
@@ -124,7 +153,7 @@ fn names(measures: &Measures) -> Vec<String> {
 fn measured(
     args: &DaylightArgs,
     settings: &Options,
-    scene: &Scene,
+    scene: &TracedScene,
     light: &YearLight,
     measures: &Measures,
     sensors: &[Sensor],
@@ -132,11 +161,14 @@ fn measured(
     interrupt::listen();
     let bar = progress(sensors.len() as u64, "sensors", settings.quiet);
     let names = names(measures);
-    let wanted = names.iter().map(|name| is_wanted(args, name));
+    // The daylight factor of EN 17037 comes along with its hours.
+    let asks_for_factor = args.metrics.contains(&Metric::Df);
+    let counts = |name: &String| is_wanted(args, name) && (name != "df" || asks_for_factor);
+    let wanted = names.iter().map(counts);
     let year = measure_year(
         sensors,
         &YearRun {
-            scene: &TracedScene::new(scene),
+            scene,
             light,
             measures,
             accuracy: Accuracy {
@@ -198,7 +230,7 @@ fn columns(args: &DaylightArgs, measures: &Measures, year: &Year) -> Vec<Column>
         .enumerate()
         .filter(|(_, name)| is_wanted(args, name));
     let mut columns: Vec<Column> = wanted.map(of).collect();
-    if args.metrics.contains(&Metric::Ase) {
+    if args.asked_metrics().contains(&Metric::Ase) {
         columns.push(Column {
             name: "ase_hours".to_owned(),
             unit: "h",
@@ -225,16 +257,22 @@ fn weather_json(weather: &Weather, clock: Option<&ClockCheck>) -> serde_json::Va
 fn head(
     args: &DaylightArgs,
     settings: &Options,
-    weather: &Weather,
+    weather: Option<&Weather>,
     measures: &Measures,
     sensors: &[Sensor],
 ) -> String {
+    let place = weather.map(|weather| {
+        let hours = measures.occupied_hours();
+        let name = &weather.station.name;
+        format!(
+            "{name}\n{hours} h, {} every day; no blinds; ",
+            args.schedule
+        )
+    });
     format!(
-        "{}\n{} sensors; {} h, {} every day; bounces: {}; no blinds\n\n",
-        weather.station.name,
+        "{}{} sensors; bounces: {}\n\n",
+        place.unwrap_or_default(),
         sensors.len(),
-        measures.occupied_hours(),
-        args.schedule,
         settings.bounces,
     )
 }

@@ -43,7 +43,7 @@ impl Setting {
     fn new() -> Self {
         let weather = weather();
         let light = YearLight::new(&weather, 0.0);
-        let thresholds = vec![300.0, 12_000.0];
+        let thresholds = vec![300.0, 12_000.0, 25_000.0];
         let measures = Measures::new(&weather, &light.hours, Schedule::default(), thresholds);
         Self {
             measures: measures.expect("hours"),
@@ -108,8 +108,8 @@ fn open_ground_has_the_light_of_the_file() {
         .hours
         .iter()
         .filter(|hour| is_counted(hour.record));
-    let expected = hours.filter(|hour| hour.global_lux() >= 12_000.0).count() as f64;
-    let [autonomy, _] = setting.value(&year, 0, "da12000");
+    let expected = hours.filter(|hour| hour.global_lux() >= 25_000.0).count() as f64;
+    let [autonomy, _] = setting.value(&year, 0, "da25000");
     assert!(
         (0.3 * autonomy - expected).abs() <= 1.0,
         "{autonomy} {expected}"

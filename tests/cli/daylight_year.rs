@@ -22,7 +22,7 @@ fn two_days() -> String {
 
 fn daylight(folder: &Path, words: &str) -> Output {
     std::fs::write(folder.join("a.epw"), two_days()).expect("written");
-    std::fs::write(folder.join("a.csv"), "30,1,40\n0,1,0\n").expect("written");
+    std::fs::write(folder.join("a.csv"), "30,1,40\n-30,1,40\n").expect("written");
     Command::new(env!("CARGO_BIN_EXE_skylight"))
         .current_dir(folder)
         .args(["daylight", "colonnade", "--grid", "a.csv", "--quiet"])

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::daylight::weather::Weather;
 use crate::error::Result;
-use crate::output::write_text;
+use crate::output::write_lines;
 use crate::sensors::{Year, YearLight};
 
 /// Writes the illuminances of a year that has kept them.
@@ -13,24 +13,21 @@ use crate::sensors::{Year, YearLight};
 /// # Errors
 /// The file cannot be written.
 pub(super) fn write(path: &Path, weather: &Weather, light: &YearLight, year: &Year) -> Result<()> {
-    write_text(path, &text(weather, light, year))
-}
-
-fn text(weather: &Weather, light: &YearLight, year: &Year) -> String {
-    let mut text = String::new();
     let mut lit = light.hours.iter().enumerate().peekable();
-    for (number, record) in weather.records.iter().enumerate() {
-        let _ = write!(text, "{} {} {}", record.month, record.day, record.hour);
+    let lines = weather.records.iter().enumerate().map(|(number, record)| {
+        let mut line = format!("{} {} {}", record.month, record.day, record.hour);
         let hour = lit.next_if(|(_, hour)| hour.record == number);
         for sensor in &year.sensors {
             match hour {
                 Some((at, _)) => {
-                    let _ = write!(text, " {}", (sensor.lux[at] * 100.0).round() / 100.0);
+                    let lux = f64::from(sensor.lux[at]);
+                    let _ = write!(line, " {}", (lux * 100.0).round() / 100.0);
                 }
-                None => text.push_str(" 0"),
+                None => line.push_str(" 0"),
             }
         }
-        text.push('\n');
-    }
-    text
+        line.push('\n');
+        line
+    });
+    write_lines(path, lines)
 }

@@ -67,7 +67,7 @@ fn a_year_has_the_keys_of_its_metrics() {
     assert_eq!(report["ase"], 0.0);
     assert_eq!(report["blinds"], "none");
     assert_eq!(report["occupied_hours"], 20.0);
-    assert_eq!(report["weather"]["place"], "Havnby, -, DNK");
+    assert_eq!(report["weather"]["place"], "Havnby, DNK");
     assert!(report["weather"]["clock_minutes"].is_null());
     assert!(report["en17037"].is_null());
 }

@@ -9,8 +9,8 @@ use clap::error::ErrorKind;
 use clap::{Arg, Parser, Subcommand};
 
 pub use args::{
-    BakeArgs, BenchArgs, CompareArgs, DaylightArgs, HourArgs, Layout, Map, Motion, SkyArgs, Sweep,
-    Texels, WeatherArgs,
+    BakeArgs, BenchArgs, CompareArgs, DaylightArgs, HourArgs, Layout, Map, Metric, Motion, SkyArgs,
+    Sweep, Texels, WeatherArgs,
 };
 
 use crate::options::{OptionValues, Optional, choice, decides_light, one_line};
@@ -68,10 +68,11 @@ pub enum Command {
         #[command(flatten)]
         options: OptionValues,
     },
-    /// Measure illuminance at points of a model: sun, sky and every diffuse bounce, with standard errors. Needs no device.
+    /// Measure daylight at points of a model, at a moment or over a year: sun, sky and every diffuse bounce, with standard errors. Needs no
+    /// device.
     ///
     /// The options of a picture (its size, camera, tone ..) are accepted and have no effect.
-    #[command(mut_args = hidden_if_of_pictures)]
+    #[command(mut_args = of_sensors)]
     Daylight {
         /// Arguments of its own.
         #[command(flatten)]
@@ -209,6 +210,14 @@ fn hidden_if_of_pictures(arg: Arg) -> Arg {
     let is_shared = arg.get_help_heading().is_some();
     let hidden = is_shared && !decides_light(name) && !OF_THE_COMMAND.contains(&name);
     arg.hide(hidden)
+}
+
+/// As [`hidden_if_of_pictures`], with the bounces.
+fn of_sensors(arg: Arg) -> Arg {
+    if arg.get_long() == Some("bounces") {
+        return arg;
+    }
+    hidden_if_of_pictures(arg)
 }
 
 /// Hides all shared options but those of messages.

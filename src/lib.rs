@@ -47,7 +47,7 @@
 //! - [`gpu`]: Vulkan nouns; knows no pass by name.
 //! - [`passes`]: passes in folders by topic; [`frame`] owns them. [`passes::bounces`]: the hierarchy on the device, the cells, the
 //!   rays that are gathered; [`passes::dome`]: the sky by shadow maps.
-//! - [`sensors`]: illuminance at points with all diffuse bounces, by path tracing on the CPU; no device.
+//! - [`sensors`]: illuminance at points with all diffuse bounces, at a moment or over a year, by path tracing on the CPU; no device.
 //! - [`lecture`]: every formula of the slides with its function, shader and test.
 //! - [`compare`]: two pictures, how far apart: radiometric errors and FLIP.
 //! - [`cli`] and [`options`]: text to options. [`commands`]: drivers of the one frame. [`output`]: files, whole or not at all.

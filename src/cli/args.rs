@@ -6,6 +6,8 @@ use std::path::PathBuf;
 use clap::builder::{ArgPredicate, PathBufValueParser, TypedValueParser};
 use clap::{Args, value_parser};
 
+use crate::daylight::metrics::Schedule;
+use crate::daylight::sun_hours::SunDate;
 use crate::daylight::weather::YearHour;
 use crate::options::{Direction, choice, choice_enum};
 
@@ -193,28 +195,108 @@ pub struct WeatherArgs {
     pub json: bool,
 }
 
-/// Points to measure at, and where to put the result.
+/// Points to measure at, what to measure, and where to put the result.
 #[derive(Debug, Clone, PartialEq, Args)]
 pub struct DaylightArgs {
-    /// An hour of a weather file.
-    #[command(flatten)]
-    pub at: HourArgs,
     /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, island).
     pub scene: PathBuf,
     /// Sensors: lines of x y z, or x y z and a normal (up without one), separated by blanks or commas. A .pts file is Radiance's, with
     /// +Z up; any other has the model's axes. Metres.
     #[arg(long, value_name = "FILE")]
     pub grid: PathBuf,
+    /// Weather file (.epw, .wea): measures its year, every hour with its own sun and Perez' sky; with --hour one moment of it.
+    #[arg(long, value_name = "FILE")]
+    pub weather: Option<PathBuf>,
+    /// A moment instead of the year: the hour of the weather file that holds this time of its clock, local standard time.
+    #[arg(long, value_name = "M-DThh", requires = "weather")]
+    pub hour: Option<YearHour>,
+    /// What to measure instead of a moment, separated by commas; da,cda,udi,sda,ase by default for a year. All but df, vsc and sunhours
+    /// need --weather.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = choice::<Metric>(), conflicts_with = "hour")]
+    pub metrics: Vec<Metric>,
+    /// Dates of sunhours, separated by commas: 3-21, 2026-3-21, or year.
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        default_value = "3-21"
+    )]
+    pub dates: Vec<SunDate>,
+    /// Elevation above which sunhours counts the sun, degrees.
+    #[arg(long, value_name = "DEGREES", value_parser = crate::options::elevation, default_value_t = 0.0)]
+    pub min_elevation: f64,
+    /// Occupied hours of every day, by the clock of the weather file.
+    #[arg(long, value_name = "FROM-TO", default_value_t, requires = "weather")]
+    pub schedule: Schedule,
+    /// Thresholds of daylight autonomy, lux.
+    #[arg(long, value_name = "LUX", value_delimiter = ',', value_parser = crate::options::threshold, allow_hyphen_values = true, default_value = "300", requires = "weather")]
+    pub thresholds: Vec<f64>,
     /// Print JSON instead of a table.
     #[arg(long, conflicts_with = "csv")]
     pub json: bool,
     /// Print CSV instead of a table.
     #[arg(long)]
     pub csv: bool,
-    /// Standard error of each sensor's total at which to stop, relative to the total.
+    /// Also write the illuminance of every hour in Radiance's form: a line for each hour, month, day and hour and the sensors' lux.
+    #[arg(
+        long,
+        value_name = "FILE.ill",
+        conflicts_with = "hour",
+        requires = "weather"
+    )]
+    pub ill: Option<PathBuf>,
+    /// Standard error at which to stop. Of a moment: of each sensor's total, relative to it. Of a year: of each metric, root mean square
+    /// over the sensors; 0.01 is one point of a percentage, or 1 % of an illuminance or a daylight factor.
     #[arg(long, value_name = "R", value_parser = crate::options::ratio, default_value_t = 0.01)]
     pub error: f64,
     /// Most paths of a sensor.
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1024..), default_value_t = 1 << 22)]
     pub max_paths: u32,
+}
+
+impl DaylightArgs {
+    /// Whether anything but a moment is asked for.
+    pub fn asks_for_metrics(&self) -> bool {
+        self.hour.is_none() && (self.weather.is_some() || !self.metrics.is_empty())
+    }
+
+    /// What is measured over the year, or without hours.
+    pub fn asked_metrics(&self) -> Vec<Metric> {
+        if self.metrics.is_empty() {
+            use Metric::{Ase, Cda, Da, Sda, Udi};
+            return vec![Da, Cda, Udi, Sda, Ase];
+        }
+        self.metrics.clone()
+    }
+
+    /// The hour of the weather file, if one is asked for.
+    pub fn at(&self) -> HourArgs {
+        HourArgs {
+            weather: self.weather.clone(),
+            hour: self.hour,
+        }
+    }
+}
+
+impl Metric {
+    /// Whether it is made of the hours of a weather file.
+    pub fn needs_hours(self) -> bool {
+        !matches!(self, Self::Df | Self::Vsc | Self::Sunhours)
+    }
+}
+
+choice_enum! {
+    /// What is measured over a year.
+    pub enum Metric {
+        Df = "df": "Daylight factor: illuminance under the overcast sky of the CIE, percent of that of open ground",
+        Da = "da": "Daylight autonomy: occupied hours with at least the threshold, percent",
+        Cda = "cda": "Continuous daylight autonomy: hours below the threshold count in part",
+        Udi = "udi": "Useful daylight illuminance: below 100, to below 300, to 3000 and above 3000 lux, percent of the occupied hours",
+        Sda = "sda": "Spatial daylight autonomy: sensors with 300 lux in half of the occupied hours, percent (IES LM-83, without blinds)",
+        Ase = "ase": "Annual sunlight exposure: sensors with more than 1000 lux of direct sun in more than 250 occupied hours, percent",
+        En17037 = "en17037": "EN 17037, daylight provision by both methods",
+        Illuminance = "illuminance": "Mean illuminance of all hours, lux",
+        Vsc = "vsc": "Light of the overcast sky without reflection, percent of that of open ground: on a façade the vertical sky component",
+        Sunhours = "sunhours": "Hours in which the sun shines on the sensor on --dates if no cloud hides it",
+    }
 }

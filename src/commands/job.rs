@@ -96,6 +96,16 @@ pub struct Job {
     pub loaded: Loaded,
 }
 
+/// Takes the scene out of what was loaded, as the options want it.
+pub(super) fn scene_of(loaded: &mut Loaded, settings: &Options) -> Scene {
+    let mut scene = std::mem::take(&mut loaded.scene);
+    scene.scale_emission(settings.emission_scale as f32);
+    if settings.phong != Phong::ByFormat {
+        scene.use_phong();
+    }
+    scene
+}
+
 /// Illuminance by the sky below which radiance is kept in 32-bit floats: that of a sky of 1 cd/m².
 const DARK_LUX: f64 = std::f64::consts::PI;
 
@@ -119,11 +129,7 @@ impl Job {
         let settings = Options::resolve(user, &loaded)?;
         let sun = sun_position(&settings)?;
         let daylight = Daylight::new(&conditions(&settings, &sun));
-        let mut scene = std::mem::take(&mut loaded.scene);
-        scene.scale_emission(settings.emission_scale as f32);
-        if settings.phong != Phong::ByFormat {
-            scene.use_phong();
-        }
+        let mut scene = scene_of(&mut loaded, &settings);
         let mut subject = Subject::of(&scene);
         if settings.eye.is_none() && settings.target.is_none() {
             subject = subject.entered(&mut scene);

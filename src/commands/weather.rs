@@ -85,6 +85,19 @@ const GIVEN: [&str; 8] = [
     "dew-point",
 ];
 
+/// Fails with the first option that a weather file gives, too.
+///
+/// # Errors
+/// See above.
+pub(super) fn check_given(options: &OptionValues) -> Result<()> {
+    match GIVEN.iter().find(|name| options.get(name).is_some()) {
+        None => Ok(()),
+        Some(name) => Err(Error::from(OptionsError(format!(
+            "--weather gives place, sun and sky; leave out --{name}"
+        )))),
+    }
+}
+
 /// The options with place, moment and sky of an hour of a weather file, if one is given. Tells what is odd about the file.
 ///
 /// # Errors
@@ -94,11 +107,7 @@ pub fn applied(at: &HourArgs, mut options: OptionValues) -> Result<OptionValues>
         return Ok(options);
     };
     let wrong = |what: String| Error::from(OptionsError(what));
-    if let Some(name) = GIVEN.iter().find(|name| options.get(name).is_some()) {
-        return Err(wrong(format!(
-            "--weather gives place, sun and sky; leave out --{name}"
-        )));
-    }
+    check_given(&options)?;
     let weather = read_weather(file)?;
     let shown = file.display();
     let record = weather.at(hour);
@@ -121,7 +130,8 @@ pub fn applied(at: &HourArgs, mut options: OptionValues) -> Result<OptionValues>
     Ok(options)
 }
 
-fn warnings(weather: &Weather, clock: Option<&ClockCheck>) -> Vec<String> {
+/// What is odd about a file and its clock.
+pub(super) fn warnings(weather: &Weather, clock: Option<&ClockCheck>) -> Vec<String> {
     let mut lines = weather.warnings.clone();
     lines.extend(clock.and_then(ClockCheck::warning));
     lines

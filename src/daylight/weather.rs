@@ -87,12 +87,17 @@ impl Weather {
 
     /// The middle of an interval as a moment.
     pub fn moment(&self, record: &Record) -> DateTime<FixedOffset> {
+        let date = NaiveDate::from_ymd_opt(self.year(), record.month, record.day);
+        self.moment_on(date.unwrap_or_default(), record.hour)
+    }
+
+    /// The moment of a date and an hour, 0..24, of the file's clock.
+    pub fn moment_on(&self, date: NaiveDate, hour: f64) -> DateTime<FixedOffset> {
         let seconds = |hours: f64| (hours * 3600.0).round();
         let zone = FixedOffset::east_opt(seconds(self.station.zone_hours) as i32);
         let zone = zone.unwrap_or_else(|| chrono::Offset::fix(&chrono::Utc));
-        let date = NaiveDate::from_ymd_opt(self.year(), record.month, record.day);
-        let midnight = date.unwrap_or_default().and_time(chrono::NaiveTime::MIN);
-        let local = midnight + Duration::seconds(seconds(record.hour) as i64);
+        let midnight = date.and_time(chrono::NaiveTime::MIN);
+        let local = midnight + Duration::seconds(seconds(hour) as i64);
         DateTime::from_naive_utc_and_offset(local - zone, zone)
     }
 
@@ -107,13 +112,17 @@ impl Weather {
 
     /// Position of the sun in the middle of an interval.
     pub fn sun(&self, record: &Record) -> SunPosition {
+        self.sun_at(self.moment(record))
+    }
+
+    /// Position of the sun at a moment.
+    pub fn sun_at(&self, moment: DateTime<FixedOffset>) -> SunPosition {
         let Place {
             latitude,
             longitude,
         } = self.station.place;
-        // The ephemeris covers both years.
-        spa(self.moment(record), latitude, longitude)
-            .unwrap_or_else(|_| SunPosition::from_true(0.0, -90.0))
+        // The ephemeris covers the years of all files.
+        spa(moment, latitude, longitude).unwrap_or_else(|_| SunPosition::from_true(0.0, -90.0))
     }
 
     /// The measurement for Perez' sky. Missing irradiances are zero.

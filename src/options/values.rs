@@ -327,6 +327,8 @@ ranged! {
     scale: "scale", "", 0.0..=1e6;
     exposure_factor: "exposure", "", 1e-9..=1e9;
     ratio: "ratio", "", 0.0..=1e9;
+    threshold: "threshold", "lux", 1.0..=1e6;
+    elevation: "elevation", "degrees", 0.0..=90.0;
     noise: "noise", "", 1e-6..=1.0;
     irradiance_error: "error", "percent", 0.0..=100.0;
     ao_radius: "radius", "metres", 0.0..=1000.0;

@@ -108,10 +108,30 @@ pub fn write_set(files: &[(PathBuf, Vec<u8>)]) -> Result<()> {
         Ok((path, file))
     });
     for (path, file) in whole.collect::<Result<Vec<_>>>()? {
-        file.persist(path)
-            .map_err(|e| write_error(path, reason(&e.error)))?;
+        persist(path, file)?;
     }
     Ok(())
+}
+
+fn persist(path: &Path, file: tempfile::NamedTempFile) -> Result<()> {
+    let renamed = file.persist(path);
+    renamed.map_err(|e| write_error(path, reason(&e.error)))?;
+    Ok(())
+}
+
+/// Writes a text file piece by piece, for texts larger than memory.
+///
+/// # Errors
+/// The file cannot be written; an existing file stays unchanged.
+pub fn write_lines(path: &Path, lines: impl Iterator<Item = String>) -> Result<()> {
+    let failed = |e: std::io::Error| write_error(path, reason(&e));
+    let mut file = std::io::BufWriter::new(temporary(path)?);
+    for line in lines {
+        file.write_all(line.as_bytes()).map_err(failed)?;
+    }
+    let file = file.into_inner().map_err(|e| failed(e.into_error()))?;
+    file.as_file().sync_all().map_err(failed)?;
+    persist(path, file)
 }
 
 /// Prints to standard output. A closed pipe (`| head`) is not an error.

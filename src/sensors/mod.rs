@@ -3,9 +3,18 @@
 //!
 //! No device is needed. [`read_grid`] reads the points, [`measure`] lights them.
 
+mod cells;
 mod grid;
+mod numbers;
 mod path;
+mod suns;
 mod surface;
+mod unreflected;
+mod walk;
+mod year;
+mod year_light;
+#[cfg(test)]
+mod year_tests;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
@@ -15,6 +24,9 @@ use glam::{DVec3, Vec3};
 pub use self::grid::{GridError, read_grid};
 pub use self::path::Lights;
 pub use self::surface::TracedScene;
+pub use self::unreflected::{sky_components, suns_seen};
+pub use self::year::{SensorYear, Year, YearRun, measure_year};
+pub use self::year_light::YearLight;
 
 use crate::daylight::colour::luminance;
 
@@ -58,7 +70,12 @@ pub struct Accuracy {
     pub max_paths: u32,
     /// Start of the sample sequences.
     pub seed: u32,
+    /// Most bounces; [`ALL_BOUNCES`] is no limit that matters.
+    pub bounces: u32,
 }
+
+/// Bounces after which a path ends in any case: between surfaces that reflect 95 %, less than a millionth of the light is left.
+pub const ALL_BOUNCES: u32 = path::MAX_BOUNCES;
 
 /// Independent estimates from whose spread the standard error comes: randomised quasi-Monte Carlo (Owen 1997).
 const REPLICATES: u32 = 16;
@@ -114,9 +131,9 @@ fn read(
     let (mut traced, mut wanted) = (0, FIRST_ROUND);
     loop {
         for (replicate, sum) in sums.iter_mut().enumerate() {
-            let seed = path::seed(accuracy.seed, number, replicate as u32);
+            let seed = numbers::seed(accuracy.seed, number, replicate as u32);
             for index in traced..wanted {
-                let parts = path::trace(sensor, scene, lights, index, seed);
+                let parts = path::trace(sensor, scene, lights, accuracy.bounces, [index, seed]);
                 sum.iter_mut().zip(parts).for_each(|(s, p)| *s += p);
             }
         }
@@ -156,7 +173,7 @@ mod tests {
     use crate::scene::{Bounds, Material, Part, Scene};
 
     /// Squares, each by its corner and two edges, of reflectance 0.5.
-    fn squares(list: &[[Vec3; 3]]) -> Scene {
+    pub(super) fn squares(list: &[[Vec3; 3]]) -> Scene {
         let corners = |[at, u, v]: [Vec3; 3]| [at, at + u, at + u + v, at + v];
         let positions: Vec<Vec3> = list.iter().copied().flat_map(corners).collect();
         let indices: Vec<u32> = (0..list.len() as u32)
@@ -199,6 +216,7 @@ mod tests {
             relative_error: 2e-3,
             max_paths: 1 << 20,
             seed: 0,
+            bounces: ALL_BOUNCES,
         };
         let (scene, lights) = (TracedScene::new(scene), Lights::new(&daylight));
         measure(&[sensor], &scene, &lights, &accuracy, &|| ())[0]

@@ -8,18 +8,22 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3};
 
 use super::Sensor;
+use super::numbers::Numbers;
 use super::surface::{Met, Point, TracedScene, lifted};
-use crate::daylight::sampling::{cosine_hemisphere, rnd, shuffled_sobol, tea};
+use crate::daylight::sampling::cosine_hemisphere;
 use crate::daylight::sky::Daylight;
 use crate::daylight::sky_sampler::SkySampler;
 use crate::daylight::sunlight::on_disc;
 use crate::daylight::tangent_frame;
 
+/// Bounces whose numbers come from scrambled sequences.
+const SPREAD_BOUNCES: u32 = 2;
+
 /// Bounces after which Russian roulette ends paths.
 const SURE_BOUNCES: u32 = 3;
 
 /// Bounces after which a path ends: between surfaces that reflect 95 %, less than a millionth of the light is left.
-const MAX_BOUNCES: u32 = 256;
+pub(super) const MAX_BOUNCES: u32 = 256;
 
 /// Sun and sky of a moment.
 pub struct Lights<'a> {
@@ -37,50 +41,17 @@ impl<'a> Lights<'a> {
     }
 }
 
-/// The seed of a replicate of a sensor.
-pub(super) fn seed(of_grid: u32, sensor: u32, replicate: u32) -> u32 {
-    tea::<8>(tea::<8>(of_grid, sensor), replicate)
-}
-
-/// Random numbers of a path: points of scrambled sequences for the first decisions, plain ones after that.
-struct Numbers {
-    index: u32,
-    seed: u32,
-    dimension: u32,
-    /// Pairs of numbers that come from scrambled sequences.
-    spread: u32,
-    state: u32,
-}
-
-/// Bounces whose numbers come from scrambled sequences.
-const SPREAD_BOUNCES: u32 = 2;
-
-impl Numbers {
-    fn pair(&mut self) -> DVec2 {
-        self.dimension += 1;
-        if self.dimension <= self.spread {
-            return shuffled_sobol(self.index, tea::<4>(self.seed, self.dimension));
-        }
-        DVec2::new(rnd(&mut self.state), rnd(&mut self.state))
-    }
-}
-
-/// Irradiance estimated by path `index` of a replicate, linear RGB, lux: from the sky, from the sun, from surfaces.
+/// Irradiance estimated by path `index` of a replicate after at most `bounces`, linear RGB, lux: from the sky, from the sun, from surfaces.
 pub(super) fn trace(
     sensor: &Sensor,
     scene: &TracedScene,
     lights: &Lights,
-    index: u32,
-    seed: u32,
+    bounces: u32,
+    [index, seed]: [u32; 2],
 ) -> [DVec3; 3] {
     let has_emitters = scene.is_emissive();
-    let mut numbers = Numbers {
-        index,
-        seed,
-        dimension: 0,
-        spread: SPREAD_BOUNCES * if has_emitters { 4 } else { 3 },
-        state: tea::<8>(index, seed),
-    };
+    let spread = SPREAD_BOUNCES * if has_emitters { 4 } else { 3 };
+    let mut numbers = Numbers::new(index, seed, spread);
     let mut point = Point {
         position: lifted(sensor.position, sensor.normal),
         normal: sensor.normal,
@@ -90,7 +61,7 @@ pub(super) fn trace(
     };
     let [mut sky, mut sun, mut reflected] = [DVec3::ZERO; 3];
     let mut throughput = DVec3::ONE;
-    for bounce in 0..MAX_BOUNCES {
+    for bounce in 0..=bounces.min(MAX_BOUNCES) {
         let from_sun = sun_at(&point, scene, lights, numbers.pair());
         let mut from_sky = sky_at(&point, scene, lights, numbers.pair());
         let mut from_surfaces = if has_emitters {
@@ -100,8 +71,7 @@ pub(super) fn trace(
         };
         let local = cosine_hemisphere(numbers.pair());
         let direction = tangent_frame::to_world(local, point.normal.as_dvec3());
-        let state = &mut numbers.state;
-        let met = scene.first(point.position, direction.as_vec3(), || rnd(state));
+        let met = scene.first(point.position, direction.as_vec3(), || numbers.next());
         let [seen_sky, seen_surface] = seen(&met, local.z / PI, lights);
         from_sky += met.through * seen_sky;
         from_surfaces += met.through * seen_surface;
@@ -114,7 +84,7 @@ pub(super) fn trace(
         throughput *= met.through * next.reflectance;
         if bounce >= SURE_BOUNCES {
             let chance = throughput.max_element().min(1.0);
-            if rnd(&mut numbers.state) >= chance {
+            if numbers.next() >= chance {
                 break;
             }
             throughput /= chance;

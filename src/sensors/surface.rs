@@ -152,6 +152,12 @@ impl<'a> TracedScene<'a> {
         }
     }
 
+    /// Whether panes colour the light that passes.
+    pub(super) fn is_tinted(&self) -> bool {
+        let mut panes = self.panes.iter().flatten();
+        panes.any(|pane| pane.max_element() - pane.min_element() > 1e-6)
+    }
+
     /// Whether any surface emits light.
     pub(super) fn is_emissive(&self) -> bool {
         !self.emitters.list().is_empty()

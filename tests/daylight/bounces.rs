@@ -6,7 +6,7 @@ use glam::{DVec3, Quat, Vec3};
 use skylight::daylight::Daylight;
 use skylight::daylight::sampling::r2;
 use skylight::scene::{LoadOptions, Scene, load_with_progress};
-use skylight::sensors::{Accuracy, Lights, Reading, Sensor, TracedScene, measure};
+use skylight::sensors::{ALL_BOUNCES, Accuracy, Lights, Reading, Sensor, TracedScene, measure};
 
 use crate::model::{Model, constant_sky, matt};
 
@@ -25,6 +25,7 @@ pub fn readings(
         relative_error,
         max_paths: paths,
         seed: 1,
+        bounces: ALL_BOUNCES,
     };
     let (scene, lights) = (TracedScene::new(scene), Lights::new(sky));
     measure(sensors, &scene, &lights, &accuracy, &|| ())

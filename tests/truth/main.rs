@@ -5,6 +5,7 @@ mod common;
 #[path = "../common/truth.rs"]
 mod truth;
 
+mod annual;
 mod bounces;
 mod converged;
 mod preview;

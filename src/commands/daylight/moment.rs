@@ -1,12 +1,13 @@
-//! `skylight daylight`: illuminance at the sensors of a grid, with all diffuse bounces. Needs no device.
+//! `skylight daylight` at a moment: illuminance at the sensors of a grid, with its parts.
 
 use std::fmt::Write as _;
 
 use glam::DVec3;
 use serde_json::json;
 
-use super::job::Job;
-use super::{progress, tell, tell_no_device};
+use super::super::job::Job;
+use super::super::{progress, tell, tell_no_device};
+use super::bounces;
 use crate::cli::DaylightArgs;
 use crate::error::Result;
 use crate::options::{OptionValues, in_world, shortest};
@@ -25,6 +26,7 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
         relative_error: args.error,
         max_paths: args.max_paths,
         seed: job.settings.seed,
+        bounces: bounces(&job.settings),
     };
     let (scene, lights) = (TracedScene::new(&job.scene), Lights::new(&job.daylight));
     let bar = progress(sensors.len() as u64, "sensors", job.settings.quiet);

@@ -1,0 +1,34 @@
+//! `skylight daylight`: light at the sensors of a grid, at a moment or over a year. Needs no device.
+
+mod ill;
+mod moment;
+mod summary;
+mod table;
+mod unreflected;
+mod year;
+
+use super::weather;
+use crate::cli::DaylightArgs;
+use crate::error::Result;
+use crate::options::{OptionValues, Options};
+use crate::passes::bounces::cells::Bounces;
+use crate::sensors::ALL_BOUNCES;
+
+/// Measures metrics if there is a weather file without an hour or some are asked for, else a moment.
+///
+/// # Errors
+/// A grid, a model or a weather file that cannot be read, or invalid options.
+pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
+    if args.asks_for_metrics() {
+        return year::run(args, options);
+    }
+    moment::run(args, &weather::applied(&args.at(), options.clone())?)
+}
+
+/// The limit of bounces.
+fn bounces(settings: &Options) -> u32 {
+    match settings.bounces {
+        Bounces::All => ALL_BOUNCES,
+        Bounces::UpTo(count) => count,
+    }
+}

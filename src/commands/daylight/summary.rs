@@ -1,0 +1,158 @@
+//! What the sensors of a grid say together: sDA, ASE, EN 17037.
+
+use std::fmt::Write as _;
+
+use serde_json::{Value, json};
+
+use super::table::rounded;
+use crate::cli::{DaylightArgs, Metric};
+use crate::daylight::metrics::{
+    EN_17037_LUX, EXPOSED_HOURS, Measures, Passing, SPATIAL_PERCENT, passing,
+};
+use crate::sensors::{Year, YearLight};
+
+/// Figures of the whole grid; those that were not asked for are `None` or null.
+pub(super) struct Summary {
+    sda: Option<Passing>,
+    /// Percent of the sensors.
+    pub ase: Option<f64>,
+    /// Both methods.
+    pub en17037: Value,
+}
+
+/// Levels of EN 17037, table A.1: name, target on half of the plane, minimum on 95 % of it, as numbers of [`EN_17037_LUX`].
+const LEVELS: [(&str, usize, usize); 3] = [("minimum", 1, 0), ("medium", 2, 1), ("high", 3, 2)];
+
+/// Percent of the plane that must reach the target, and the minimum.
+const AREAS: [f64; 2] = [50.0, 95.0];
+
+impl Summary {
+    /// Of a year.
+    pub fn of(args: &DaylightArgs, measures: &Measures, light: &YearLight, year: &Year) -> Self {
+        let asks = |metric| args.asked_metrics().contains(&metric) && !year.sensors.is_empty();
+        let names = measures.names();
+        let column = |name: &str| {
+            let at = names
+                .iter()
+                .position(|own| own == name)
+                .unwrap_or(names.len());
+            let of = |list: &[f64]| list[at];
+            let values: Vec<f64> = year.sensors.iter().map(|s| of(&s.values)).collect();
+            let errors: Vec<f64> = year.sensors.iter().map(|s| of(&s.errors)).collect();
+            (values, errors)
+        };
+        let share = |name: &str, limit: f64| {
+            let (values, errors) = column(name);
+            passing(&values, &errors, limit)
+        };
+        let exposed = || {
+            let is_exposed = year
+                .sensors
+                .iter()
+                .filter(|s| s.exposed_hours > EXPOSED_HOURS);
+            100.0 * is_exposed.count() as f64 / year.sensors.len() as f64
+        };
+        let en17037 = || {
+            let hours = measures.en17037_hours();
+            let by_hours = EN_17037_LUX.map(|lux| share(&format!("en17037_hours_ge{lux}"), hours));
+            let median = measures.median_diffuse_lux(&light.hours);
+            let factors = EN_17037_LUX.map(|lux| 100.0 * lux / median);
+            let by_factor = factors.map(|factor| share("df", factor));
+            json!({
+                "hours": 2.0 * hours,
+                "median_diffuse_lux": rounded(median),
+                "daylight_factors": EN_17037_LUX.iter().zip(factors).map(|(lux, f)| (lux.to_string(), rounded(f).into())).collect::<serde_json::Map<String, Value>>(),
+                "method_1": method(&by_factor),
+                "method_2": method(&by_hours),
+            })
+        };
+        Self {
+            sda: asks(Metric::Sda).then(|| share("da300", SPATIAL_PERCENT)),
+            ase: asks(Metric::Ase).then(|| rounded(exposed())),
+            en17037: if asks(Metric::En17037) {
+                en17037()
+            } else {
+                Value::Null
+            },
+        }
+    }
+
+    /// The share and its error, percent.
+    pub fn sda_json(&self) -> Value {
+        self.sda.map_or(Value::Null, |sda| {
+            json!({ "percent": rounded(sda.percent), "percent_se": rounded(sda.standard_error) })
+        })
+    }
+
+    /// Lines for the eye.
+    pub fn text(&self) -> String {
+        let mut text = "\n".to_owned();
+        if let Some(sda) = self.sda {
+            let _ = writeln!(
+                text,
+                "sDA300/50    {:.1} % of the sensors, standard error {:.1}; without blinds, which LM-83 wants",
+                sda.percent, sda.standard_error
+            );
+        }
+        if let Some(ase) = self.ase {
+            let _ = writeln!(text, "ASE1000,250  {ase:.1} % of the sensors");
+        }
+        if !self.en17037.is_null() {
+            for (name, key) in [("daylight factor", "method_1"), ("hours", "method_2")] {
+                let of = &self.en17037[key];
+                let shares: Vec<String> = EN_17037_LUX
+                    .iter()
+                    .map(|lux| format!("{lux} lux: {}", of["percent"][lux.to_string()]))
+                    .collect();
+                let _ = writeln!(
+                    text,
+                    "EN 17037     by {name}: {}; percent of the sensors with {}",
+                    of["level"].as_str().unwrap_or("none"),
+                    shares.join(", ")
+                );
+            }
+        }
+        text
+    }
+}
+
+/// Shares and the level that they reach.
+fn method(shares: &[Passing; 4]) -> Value {
+    let reached = LEVELS.iter().rev().find(|(_, target, least)| {
+        shares[*target].percent >= AREAS[0] && shares[*least].percent >= AREAS[1]
+    });
+    let object = |of: fn(&Passing) -> f64| {
+        let pairs = EN_17037_LUX.iter().zip(shares);
+        let pairs = pairs.map(|(lux, share)| (lux.to_string(), rounded(of(share)).into()));
+        pairs.collect::<serde_json::Map<String, Value>>()
+    };
+    json!({
+        "level": reached.map_or("none", |(name, ..)| name),
+        "percent": object(|share| share.percent),
+        "percent_se": object(|share| share.standard_error),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_level_needs_target_and_minimum() {
+        let of = |percents: [f64; 4]| {
+            let shares = percents.map(|percent| Passing {
+                percent,
+                standard_error: 0.0,
+            });
+            method(&shares)["level"]
+                .as_str()
+                .unwrap_or_default()
+                .to_owned()
+        };
+        assert_eq!(of([100.0, 96.0, 95.0, 50.0]), "high");
+        assert_eq!(of([100.0, 96.0, 94.0, 80.0]), "medium");
+        assert_eq!(of([95.0, 50.0, 50.0, 50.0]), "minimum");
+        assert_eq!(of([94.9, 90.0, 0.0, 0.0]), "none");
+        assert_eq!(of([100.0, 49.0, 0.0, 0.0]), "none");
+    }
+}

@@ -1,0 +1,76 @@
+//! Columns of what needs no hours of weather: vertical sky component and hours of sun.
+
+use chrono::Datelike;
+
+use super::table::Column;
+use crate::cli::DaylightArgs;
+use crate::daylight::place::Place;
+use crate::daylight::sun_hours::Site;
+use crate::daylight::weather::Weather;
+use crate::error::{Error, Result};
+use crate::options::{Options, OptionsError};
+use crate::sensors::{Sensor, TracedScene, sky_components, suns_seen};
+
+/// The vertical sky component.
+pub(super) fn sky_component(sensors: &[Sensor], scene: &TracedScene, seed: u32) -> Column {
+    let found = sky_components(sensors, scene, seed);
+    Column {
+        name: "vsc".to_owned(),
+        unit: "%",
+        values: found.iter().map(|[value, _]| *value).collect(),
+        errors: found.iter().map(|[_, error]| *error).collect(),
+    }
+}
+
+/// Hours of sun: a column for each of the dates.
+///
+/// # Errors
+/// No place, or a date that does not exist.
+pub(super) fn sun_hours(
+    args: &DaylightArgs,
+    weather: Option<&Weather>,
+    settings: &Options,
+    sensors: &[Sensor],
+    scene: &TracedScene,
+) -> Result<Vec<Column>> {
+    let wrong = |what: String| Error::from(OptionsError(what));
+    let site = site(weather, settings)
+        .ok_or_else(|| wrong("hours of sun need a place; give --place, or --weather".to_owned()))?;
+    let mut columns = Vec::new();
+    for date in &args.dates {
+        let suns = site.suns(*date, args.min_elevation)?;
+        let suns = suns.ok_or_else(|| wrong(format!("{} has no 29 February", site.year)))?;
+        let directions: Vec<_> = suns.suns.iter().map(|sun| sun.as_vec3()).collect();
+        let seen = suns_seen(sensors, scene, &directions);
+        columns.push(Column {
+            name: format!("sun_hours_{}", suns.name),
+            unit: "h",
+            values: seen
+                .iter()
+                .map(|count| *count as f64 * suns.hours)
+                .collect(),
+            errors: vec![0.0; sensors.len()],
+        });
+    }
+    Ok(columns)
+}
+
+fn site(weather: Option<&Weather>, settings: &Options) -> Option<Site> {
+    if let Some(weather) = weather {
+        let zone = *weather.moment(weather.records.first()?).offset();
+        return Some(Site {
+            place: weather.station.place,
+            zone,
+            year: weather.year(),
+        });
+    }
+    let (latitude, longitude, when) = settings.sun.place()?;
+    Some(Site {
+        place: Place {
+            latitude,
+            longitude,
+        },
+        zone: *when.offset(),
+        year: when.year(),
+    })
+}

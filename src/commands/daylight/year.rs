@@ -1,0 +1,278 @@
+//! `skylight daylight` with metrics: over the year of a weather file, or of what needs none.
+
+use serde_json::json;
+
+use super::super::job::{load_options, scene_of};
+use super::super::weather::{check_given, read_weather, warnings};
+use super::super::{interrupt, progress, tell, tell_no_device};
+use super::summary::Summary;
+use super::table::{Column, csv, objects, overview};
+use super::unreflected::{sky_component, sun_hours};
+use super::{bounces, ill};
+use crate::cli::{DaylightArgs, Metric};
+use crate::daylight::metrics::{Measures, SPATIAL_LUX};
+use crate::daylight::weather::Weather;
+use crate::daylight::weather::clock::ClockCheck;
+use crate::error::{Error, Result};
+use crate::options::{OptionValues, Options, OptionsError};
+use crate::output::{check_writable, print};
+use crate::scene;
+use crate::sensors::{
+    Accuracy, Sensor, TracedScene, Year, YearLight, YearRun, measure_year, read_grid,
+};
+
+/// Most records of a weather file: with more, the skies of the year no longer fit into memory.
+const MOST_RECORDS: usize = 60_000;
+
+/// Measures and prints a year, or what needs no hours of it.
+///
+/// # Errors
+/// A grid, a model or a weather file that cannot be read, or invalid options.
+pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
+    let weather = weather(args, options)?;
+    let weather = weather.as_ref();
+    let mut loaded = scene::load_with_progress(
+        Some(&args.scene),
+        &load_options(&options.alone()?),
+        &|_, _| (),
+    )?;
+    let settings = Options::resolve(options, &loaded)?;
+    let scene = scene_of(&mut loaded, &settings);
+    tell_no_device("daylight", &settings);
+    let clock = weather.and_then(ClockCheck::of);
+    let mut told = scene.warnings.clone();
+    told.extend(weather.iter().flat_map(|w| warnings(w, clock.as_ref())));
+    tell(&settings, told.iter())?;
+    let all = read_grid(&args.grid, scene.origin)?;
+    let light = match weather {
+        Some(weather) => YearLight::new(weather, settings.ground_albedo),
+        None => YearLight::overcast(settings.ground_albedo),
+    };
+    let measures = measures(args, weather, &light)?;
+    let traced = TracedScene::new(&scene);
+    let year = measured(args, &settings, &traced, &light, &measures, &all);
+    let sensors = &all[..year.sensors.len()];
+    let odd = oddities(args, &year, &all);
+    tell(&settings, odd.iter())?;
+    told.extend(odd);
+    if let (Some(path), Some(weather)) = (&args.ill, weather) {
+        ill::write(path, weather, &light, &year)?;
+    }
+    let mut columns = columns(args, &measures, &year);
+    let asks = |metric| args.asked_metrics().contains(&metric);
+    if asks(Metric::Vsc) {
+        columns.push(sky_component(sensors, &traced, settings.seed));
+    }
+    if asks(Metric::Sunhours) {
+        columns.extend(sun_hours(args, weather, &settings, sensors, &traced)?);
+    }
+    let summary = Summary::of(args, &measures, &light, &year);
+    print(&if args.json {
+        let report = json!({
+            "sensors": objects(sensors, &columns, scene.origin),
+            "sda": summary.sda_json(),
+            "ase": summary.ase,
+            "en17037": summary.en17037,
+            "blinds": "none",
+            "schedule": args.schedule.to_string(),
+            "occupied_hours": measures.occupied_hours(),
+            "bounces": settings.bounces.to_string(),
+            "paths": year.sensors.first().map_or(0, |sensor| sensor.paths),
+            "weather": weather.map(|weather| weather_json(weather, clock.as_ref())),
+            "warnings": told,
+        });
+        format!("{report:#}\n")
+    } else if args.csv {
+        csv(sensors, &columns, scene.origin)
+    } else {
+        let head = head(args, &settings, weather, &measures, sensors);
+        head + &overview(&columns) + &summary.text()
+    })
+}
+
+/// The weather file, if one is given.
+fn weather(args: &DaylightArgs, options: &OptionValues) -> Result<Option<Weather>> {
+    let wrong = |what: String| Err(Error::from(OptionsError(what)));
+    let Some(file) = &args.weather else {
+        let mut metrics = args.metrics.iter().filter(|metric| metric.needs_hours());
+        return match metrics.next() {
+            Some(metric) => wrong(format!(
+                "{metric} needs the hours of a year; add --weather FILE"
+            )),
+            None => Ok(None),
+        };
+    };
+    check_given(options)?;
+    if let Some(path) = &args.ill {
+        check_writable(path)?;
+    }
+    let weather = read_weather(file)?;
+    if weather.records.len() > MOST_RECORDS {
+        return wrong(format!(
+            "{}: more than {MOST_RECORDS} records; average them to hours",
+            file.display()
+        ));
+    }
+    Ok(Some(weather))
+}
+
+fn measures(args: &DaylightArgs, weather: Option<&Weather>, light: &YearLight) -> Result<Measures> {
+    let Some(weather) = weather else {
+        return Ok(Measures::default());
+    };
+    let mut thresholds = args.thresholds.clone();
+    if args.asked_metrics().contains(&Metric::Sda) && !thresholds.contains(&SPATIAL_LUX) {
+        thresholds.push(SPATIAL_LUX);
+    }
+    let measures = Measures::new(weather, &light.hours, args.schedule, thresholds);
+    measures.map_err(|what| Error::from(OptionsError(what)))
+}
+
+/// Whether a value is part of a metric that was asked for.
+fn is_wanted(args: &DaylightArgs, name: &str) -> bool {
+    let is_of = |metric: &Metric| match metric {
+        Metric::Df => name == "df",
+        Metric::Da => name.starts_with("da"),
+        Metric::Cda => name.starts_with("cda"),
+        Metric::Udi => name.starts_with("udi"),
+        Metric::Sda => name == "da300",
+        Metric::En17037 => name.starts_with("en17037") || name == "df",
+        Metric::Illuminance => name == "mean_lux",
+        Metric::Ase | Metric::Vsc | Metric::Sunhours => false,
+    };
+    args.asked_metrics().iter().any(is_of) || (args.ill.is_some() && name == "mean_lux")
+}
+
+/// Names of the values of a sensor.
+fn names(measures: &Measures) -> Vec<String> {
+    let mut names = measures.names();
+    names.push("df".to_owned());
+    names
+}
+
+fn measured(
+    args: &DaylightArgs,
+    settings: &Options,
+    scene: &TracedScene,
+    light: &YearLight,
+    measures: &Measures,
+    sensors: &[Sensor],
+) -> Year {
+    interrupt::listen();
+    let bar = progress(sensors.len() as u64, "sensors", settings.quiet);
+    let names = names(measures);
+    // The daylight factor of EN 17037 comes along with its hours.
+    let asks_for_factor = args.metrics.contains(&Metric::Df);
+    let counts = |name: &String| is_wanted(args, name) && (name != "df" || asks_for_factor);
+    let wanted = names.iter().map(counts);
+    let year = measure_year(
+        sensors,
+        &YearRun {
+            scene,
+            light,
+            measures,
+            accuracy: Accuracy {
+                relative_error: args.error,
+                max_paths: args.max_paths,
+                seed: settings.seed,
+                bounces: bounces(settings),
+            },
+            wanted: wanted.collect(),
+            keeps_hours: args.ill.is_some(),
+            progress: &|done, error| {
+                bar.set_position(done as u64);
+                if let Some(error) = error {
+                    bar.set_message(format!("sensors, standard error so far {error:.4}"));
+                }
+            },
+            is_stopped: &interrupt::is_interrupted,
+        },
+    );
+    bar.finish_and_clear();
+    year
+}
+
+/// What a reader must know of an incomplete result, one line each.
+fn oddities(args: &DaylightArgs, year: &Year, all: &[Sensor]) -> Vec<String> {
+    let done = year.sensors.len();
+    let mut lines = Vec::new();
+    if interrupt::is_interrupted() {
+        lines.push(format!(
+            "interrupted: {done} of {} sensors are measured",
+            all.len()
+        ));
+    }
+    if year.error > args.error {
+        lines.push(format!(
+            "the standard error is {:.4}, above {}; raise --max-paths or --error",
+            year.error, args.error
+        ));
+    }
+    lines
+}
+
+/// The columns of the metrics that were asked for, those of exposure last.
+fn columns(args: &DaylightArgs, measures: &Measures, year: &Year) -> Vec<Column> {
+    let unit = |name: &str| match name {
+        "mean_lux" => "lux",
+        _ if name.starts_with("en17037") => "h",
+        _ => "%",
+    };
+    let names = names(measures);
+    let of = |(at, name): (usize, &String)| Column {
+        name: name.clone(),
+        unit: unit(name),
+        values: year.sensors.iter().map(|s| s.values[at]).collect(),
+        errors: year.sensors.iter().map(|s| s.errors[at]).collect(),
+    };
+    let wanted = names
+        .iter()
+        .enumerate()
+        .filter(|(_, name)| is_wanted(args, name));
+    let mut columns: Vec<Column> = wanted.map(of).collect();
+    if args.asked_metrics().contains(&Metric::Ase) {
+        columns.push(Column {
+            name: "ase_hours".to_owned(),
+            unit: "h",
+            values: year.sensors.iter().map(|s| s.exposed_hours).collect(),
+            errors: vec![0.0; year.sensors.len()],
+        });
+    }
+    columns
+}
+
+fn weather_json(weather: &Weather, clock: Option<&ClockCheck>) -> serde_json::Value {
+    let station = &weather.station;
+    json!({
+        "place": station.name,
+        "latitude": station.place.latitude,
+        "longitude": station.place.longitude,
+        "zone_hours": station.zone_hours,
+        "hours": weather.records.len() as f64 * weather.step_hours,
+        "clock_minutes": clock.map(|c| c.minutes),
+        "clock_is_off": clock.map(ClockCheck::is_off),
+    })
+}
+
+fn head(
+    args: &DaylightArgs,
+    settings: &Options,
+    weather: Option<&Weather>,
+    measures: &Measures,
+    sensors: &[Sensor],
+) -> String {
+    let place = weather.map(|weather| {
+        let hours = measures.occupied_hours();
+        let name = &weather.station.name;
+        format!(
+            "{name}\n{hours} h, {} every day; no blinds; ",
+            args.schedule
+        )
+    });
+    format!(
+        "{}{} sensors; bounces: {}\n\n",
+        place.unwrap_or_default(),
+        sensors.len(),
+        settings.bounces,
+    )
+}

@@ -1,0 +1,139 @@
+//! The light of every hour of a weather file that has any: Perez' sky over patches, and the sun.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::grey_sky::Distribution;
+use super::patches::Patches;
+use super::perez::AllWeather;
+use super::sun_position::direction;
+use super::weather::Weather;
+
+/// Largest elevation of the sun in Perez' sky, degrees: see [`AllWeather::new`].
+const HIGHEST_SUN_DEG: f64 = 87.0;
+
+/// The light of an hour.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LitHour {
+    /// Number of its record in the weather file.
+    pub record: usize,
+    /// Unit vector toward the sun's centre, without refraction.
+    pub sun: DVec3,
+    /// Illuminance of a horizontal plane by the sky, lux; above 0.
+    pub sky_lux: f64,
+    /// Illuminance by the sun at normal incidence, lux; 0 while its centre is below the horizon.
+    pub sun_lux: f64,
+    distribution: Distribution,
+    /// The sun of the distribution, from the horizon to 3° from the zenith.
+    sky_sun: DVec3,
+}
+
+/// All hours in which the sky gives light, in the order of the file. Missing irradiances are none.
+pub fn lit_hours(weather: &Weather) -> Vec<LitHour> {
+    let hour = |(record, of): (usize, &_)| {
+        let sun = weather.sun(of);
+        let light = AllWeather::new(&weather.measured(of), sun.elevation_deg);
+        let is_up = sun.elevation_deg > 0.0;
+        (light.diffuse_horizontal_lux > 0.0).then(|| LitHour {
+            record,
+            sun: direction(sun.azimuth_deg, sun.elevation_deg),
+            sky_lux: light.diffuse_horizontal_lux,
+            sun_lux: if is_up { light.direct_normal_lux } else { 0.0 },
+            distribution: light.distribution,
+            sky_sun: direction(
+                sun.azimuth_deg,
+                sun.elevation_deg.clamp(0.0, HIGHEST_SUN_DEG),
+            ),
+        })
+    };
+    weather
+        .records
+        .iter()
+        .enumerate()
+        .filter_map(hour)
+        .collect()
+}
+
+impl LitHour {
+    /// Illuminance of open ground by sun and sky, lux.
+    pub fn global_lux(&self) -> f64 {
+        self.sky_lux + self.sun_lux * self.sun.y.max(0.0)
+    }
+}
+
+/// What turns an hour into luminances of patches.
+#[derive(Debug, Clone)]
+pub struct PatchedSky {
+    centres: Vec<DVec3>,
+    weights: Vec<f64>,
+    ground_albedo: f64,
+}
+
+impl PatchedSky {
+    /// For these patches, over ground that reflects `ground_albedo`, 0..=1.
+    pub fn new(patches: &Patches, ground_albedo: f64) -> Self {
+        Self {
+            centres: patches.centres(),
+            weights: patches.horizontal_weights(),
+            ground_albedo,
+        }
+    }
+
+    /// Luminance of every patch, cd/m²: that of its middle, all scaled so that together they give a horizontal plane the light of the sky;
+    /// of patch 0 that of the ground below the horizon.
+    pub fn luminances(&self, hour: &LitHour) -> Vec<f32> {
+        let form = |centre: &DVec3| {
+            let chi = centre.dot(hour.sky_sun).clamp(-1.0, 1.0).acos();
+            let d = &hour.distribution;
+            (d.gradation(centre.y) * d.indicatrix(chi)).max(0.0)
+        };
+        self.scaled(form, hour.sky_lux, hour.global_lux())
+    }
+
+    /// The same for the overcast sky of the CIE that gives open ground `lux`.
+    pub fn overcast(&self, lux: f64) -> Vec<f32> {
+        self.scaled(|centre| 1.0 + 2.0 * centre.y, lux, lux)
+    }
+
+    fn scaled(&self, form: impl Fn(&DVec3) -> f64, sky_lux: f64, global_lux: f64) -> Vec<f32> {
+        let mut values: Vec<f64> = self.centres[1..].iter().map(form).collect();
+        let weights = &self.weights[1..];
+        let sum: f64 = values.iter().zip(weights).map(|(v, w)| v * w).sum();
+        if sum > 0.0 {
+            values.iter_mut().for_each(|value| *value *= sky_lux / sum);
+        } else {
+            // A formula that is nowhere positive: a uniform sky.
+            values.fill(sky_lux / PI);
+        }
+        let ground = self.ground_albedo * global_lux / PI;
+        let all = std::iter::once(ground).chain(values);
+        all.map(|value| value as f32).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_patches_give_open_ground_the_light_of_the_sky() {
+        let patches = Patches::new(4);
+        let sky = PatchedSky::new(&patches, 0.3);
+        let luminances = sky.overcast(10_000.0);
+        let lux: f64 = patches
+            .horizontal_weights()
+            .iter()
+            .zip(&luminances)
+            .map(|(w, l)| w * f64::from(*l))
+            .sum();
+        assert!((lux / 10_000.0 - 1.0).abs() < 1e-6, "{lux}");
+        assert!((f64::from(luminances[0]) / (0.3 * 10_000.0 / PI) - 1.0).abs() < 1e-6);
+        // Moon and Spencer: 9 E/(7 π) at the zenith.
+        let zenith = f64::from(luminances[patches.count() - 1]);
+        assert!(
+            (zenith / (90_000.0 / (7.0 * PI)) - 1.0).abs() < 1e-3,
+            "{zenith}"
+        );
+    }
+}

@@ -1,0 +1,387 @@
+//! A year at the sensors of a grid: hourly illuminances and their metrics, with standard errors.
+//!
+//! E(hour) = Σ over patches of the sky of coefficient times luminance + direct sun + reflected sun (Tregenza & Waters 1983, "Daylight
+//! coefficients"). Rays from the sensor give the coefficients of what it sees, and paths ([`super::walk`]) those of what is reflected: where
+//! they are reflected, the light of the sky and of the suns of the year is gathered ([`super::cells`], [`super::suns`]). The direct sun is
+//! that of each hour itself.
+//!
+//! Sensors are measured in blocks of [`BLOCK`]: the result of a block depends on nothing but its sensors, the scene, the light and the seed.
+
+use std::f64::consts::PI;
+
+use glam::Vec3;
+use ndarray::Array2;
+use rayon::prelude::*;
+
+use super::cells::{CellLight, Cells};
+use super::numbers::{Numbers, seed};
+use super::surface::{TracedScene, lifted};
+use super::walk::{Vertex, outside, walk};
+use super::year_light::{YearLight, grey};
+use super::{Accuracy, Sensor};
+use crate::daylight::colour::LUMINANCE_WEIGHTS;
+use crate::daylight::metrics::Measures;
+use crate::daylight::sampling::tea;
+
+/// Sensors of a block.
+pub const BLOCK: usize = 256;
+
+/// Independent estimates, from which standard errors come.
+const REPLICATES: usize = 8;
+
+/// Paths of a replicate and sensor in the first round.
+const FIRST_ROUND: u32 = 256;
+
+/// Rays to what the sensor sees, for each path.
+const RAYS: u32 = 8;
+
+/// Most of a later one: their points are kept while the sunlight on them is found.
+const MOST_ROUND: u32 = 1024;
+
+/// Most numbers of sunlight that are held at a time, 4 bytes each; with more, cells are larger.
+const MOST_SUNLIGHT: usize = 1 << 25;
+
+/// What to measure.
+pub struct YearRun<'a> {
+    /// The model.
+    pub scene: &'a TracedScene<'a>,
+    /// Sun and sky.
+    pub light: &'a YearLight,
+    /// Metrics, thresholds and hours.
+    pub measures: &'a Measures,
+    /// When to stop. The error is the root mean square over the sensors of a block, of each metric: of percentages 0.01 is one point,
+    /// illuminances and daylight factors have it relative to their value.
+    pub accuracy: Accuracy,
+    /// Of each value, whether its error counts.
+    pub wanted: Vec<bool>,
+    /// Whether to keep the illuminances of every hour.
+    pub keeps_hours: bool,
+    /// Told of progress: sensors that are done, and the error of the block so far.
+    pub progress: &'a (dyn Fn(usize, Option<f64>) + Sync),
+    /// Whether to stop with what there is.
+    pub is_stopped: &'a (dyn Fn() -> bool + Sync),
+}
+
+/// A year at a sensor.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SensorYear {
+    /// Values of [`Measures::names`], and last the daylight factor, percent.
+    pub values: Vec<f64>,
+    /// Their standard errors.
+    pub errors: Vec<f64>,
+    /// Hours of annual sunlight exposure: exact.
+    pub exposed_hours: f64,
+    /// Illuminance of each lit hour, lux, if kept.
+    pub lux: Vec<f32>,
+    /// Paths.
+    pub paths: u32,
+}
+
+/// A year at the sensors of a grid.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Year {
+    /// Of each sensor in the order of the grid; fewer where it was stopped.
+    pub sensors: Vec<SensorYear>,
+    /// Largest error of a block, as [`YearRun::accuracy`] counts it.
+    pub error: f64,
+}
+
+/// Measures a year at all sensors. The same seed gives the same numbers, whatever the number of cores.
+pub fn measure_year(sensors: &[Sensor], run: &YearRun) -> Year {
+    let mut year = Year::default();
+    for (number, block) in sensors.chunks(BLOCK).enumerate() {
+        let Some((measured, error)) = Block::new(block, number * BLOCK, run).measured() else {
+            break;
+        };
+        year.sensors.extend(measured);
+        year.error = year.error.max(error);
+        (run.progress)(year.sensors.len(), None);
+    }
+    year
+}
+
+/// Coefficients of a sensor, summed over paths: replicate after replicate.
+struct Sums {
+    /// Illuminance by a luminance of 1 in each patch.
+    patches: Vec<f32>,
+    /// Illuminance by reflected light of a unit of each sun.
+    suns: Vec<f32>,
+}
+
+/// Sensors that are measured together.
+struct Block<'a> {
+    sensors: &'a [Sensor],
+    /// Number of the first sensor in the grid.
+    first: usize,
+    run: &'a YearRun<'a>,
+    sums: Vec<Sums>,
+    direct: Vec<Vec<f32>>,
+    /// Paths of each replicate and sensor so far.
+    traced: u32,
+}
+
+impl<'a> Block<'a> {
+    fn new(sensors: &'a [Sensor], first: usize, run: &'a YearRun<'a>) -> Self {
+        let light = run.light;
+        let sums = || Sums {
+            patches: vec![0.0; REPLICATES * light.patches.count()],
+            suns: vec![0.0; REPLICATES * light.suns.directions.len()],
+        };
+        let direct = |sensor: &Sensor| light.direct_sun(sensor, run.scene);
+        Self {
+            sums: sensors.iter().map(|_| sums()).collect(),
+            direct: sensors.par_iter().map(direct).collect(),
+            traced: 0,
+            sensors,
+            first,
+            run,
+        }
+    }
+
+    /// Rounds of paths until the error is met; `None` if stopped before the first is done.
+    fn measured(mut self) -> Option<(Vec<SensorYear>, f64)> {
+        let accuracy = &self.run.accuracy;
+        let most = (accuracy.max_paths / REPLICATES as u32).max(FIRST_ROUND);
+        let is_wanted = self.run.wanted.contains(&true);
+        let mut until = FIRST_ROUND;
+        loop {
+            while is_wanted && self.traced < until {
+                let round = (until - self.traced).min(MOST_ROUND);
+                if !self.trace(round) {
+                    return None;
+                }
+                if (self.run.is_stopped)() {
+                    until = self.traced;
+                }
+            }
+            let measured: Vec<SensorYear> = (0..self.sensors.len())
+                .into_par_iter()
+                .map(|at| self.sensor_year(at))
+                .collect();
+            let error = self.error(&measured);
+            (self.run.progress)(self.first, Some(error));
+            let is_met = error <= accuracy.relative_error || self.traced >= most;
+            if is_met || (self.run.is_stopped)() {
+                return Some((measured, error));
+            }
+            // The error falls at least with the square root of the number of paths.
+            let times = (error / accuracy.relative_error).powi(2).clamp(1.2, 64.0);
+            until = (f64::from(self.traced) * times).ceil().min(f64::from(most)) as u32;
+        }
+    }
+
+    /// One more round of paths; false if stopped in the first.
+    fn trace(&mut self, paths: u32) -> bool {
+        for replicate in 0..REPLICATES {
+            let is_first = self.traced == 0;
+            if is_first && (self.run.is_stopped)() {
+                return false;
+            }
+            let vertices = self.walked(paths, replicate);
+            self.gather(&vertices, replicate);
+        }
+        self.traced += paths;
+        true
+    }
+
+    /// Traces the rays and paths of a replicate; the points of each sensor where it is reflected.
+    fn walked(&mut self, paths: u32, replicate: usize) -> Vec<Vec<Vertex>> {
+        let (run, first, traced) = (self.run, self.first, self.traced);
+        let patches = run.light.patches.count();
+        let range = replicate * patches..(replicate + 1) * patches;
+        let sensors = self.sensors.par_iter().zip(&mut self.sums).enumerate();
+        let walked = sensors.map(|(at, (sensor, sums))| {
+            let seed = seed(run.accuracy.seed, (first + at) as u32, replicate as u32);
+            see(
+                sensor,
+                run,
+                [RAYS * traced, RAYS * (traced + paths), seed],
+                &mut sums.patches[range.clone()],
+            );
+            let mut vertices = Vec::new();
+            for index in traced..traced + paths {
+                walk(
+                    sensor,
+                    run.scene,
+                    run.accuracy.bounces,
+                    [index, seed],
+                    &mut vertices,
+                );
+            }
+            vertices
+        });
+        walked.collect()
+    }
+
+    /// Adds the light of the points of a replicate.
+    fn gather(&mut self, vertices: &[Vec<Vertex>], replicate: usize) {
+        let (scene, light) = (self.run.scene, self.run.light);
+        let all: Vec<Vertex> = vertices.iter().flatten().copied().collect();
+        let suns = light.suns.directions.len();
+        let channels = if scene.is_tinted() { 3 } else { 1 };
+        let accuracy = &self.run.accuracy;
+        let seed = seed(
+            accuracy.seed,
+            self.first as u32 ^ (self.traced << 8),
+            !replicate as u32,
+        );
+        let most = (MOST_SUNLIGHT / (channels * suns).max(1)).max(1);
+        let mut coarser = 1.0;
+        let cells = loop {
+            let cells = Cells::new(&all, seed, coarser);
+            if cells.stands_for.len() <= most || coarser > 1e6 {
+                break cells;
+            }
+            coarser *= 2.0;
+        };
+        let lit = |(at, vertex): (usize, &u32)| {
+            let seed = tea::<8>(seed, at as u32);
+            CellLight::new(scene, &all[*vertex as usize], light, channels, seed)
+        };
+        let lit: Vec<CellLight> = cells.stands_for.par_iter().enumerate().map(lit).collect();
+        let mut starts = Vec::with_capacity(vertices.len());
+        let mut start = 0;
+        for list in vertices {
+            starts.push(start);
+            start += list.len();
+        }
+        let patches = light.patches.count();
+        let sensors = self.sums.par_iter_mut().zip(vertices).zip(starts);
+        sensors.for_each(|((sums, vertices), start)| {
+            let patches = &mut sums.patches[replicate * patches..(replicate + 1) * patches];
+            let suns = &mut sums.suns[replicate * suns..(replicate + 1) * suns];
+            for (vertex, cell) in vertices.iter().zip(&cells.of_vertex[start..]) {
+                let light = &lit[*cell as usize];
+                for (patch, weight) in &light.sky {
+                    patches[*patch as usize] += grey((vertex.weight * *weight).as_dvec3());
+                }
+                add(suns, &light.suns, vertex.weight, channels);
+            }
+        });
+    }
+
+    /// What the paths so far tell of a sensor.
+    fn sensor_year(&self, at: usize) -> SensorYear {
+        let (run, direct) = (self.run, &self.direct[at]);
+        let exposed_hours = run.measures.exposed_hours(direct);
+        if self.traced == 0 {
+            return SensorYear {
+                exposed_hours,
+                ..SensorYear::default()
+            };
+        }
+        let sums = &self.sums[at];
+        let mut lux = run.light.indirect(&sums.patches, &sums.suns, REPLICATES);
+        lux /= self.traced as f32;
+        let (values, errors) = jackknife(&lux, |lux| {
+            // The last column is that of the overcast sky.
+            let (hours, factor) = lux.split_at(direct.len());
+            let total: Vec<f32> = hours.iter().zip(direct).map(|(e, sun)| e + sun).collect();
+            let mut values = run.measures.values(&total);
+            values.push(f64::from(factor[0]));
+            values
+        });
+        let hours = if run.keeps_hours {
+            let mean = means(&lux);
+            mean.iter().zip(direct).map(|(e, sun)| e + sun).collect()
+        } else {
+            Vec::new()
+        };
+        SensorYear {
+            values,
+            errors,
+            exposed_hours,
+            lux: hours,
+            paths: self.traced * REPLICATES as u32,
+        }
+    }
+
+    /// Largest error of the wanted values: root mean squares over the sensors.
+    fn error(&self, measured: &[SensorYear]) -> f64 {
+        let run = self.run;
+        let of = |value: usize| {
+            let squares = measured.iter().map(|sensor| {
+                let scale = run.measures.error_scale(value, sensor.values[value]);
+                if scale > 0.0 {
+                    (sensor.errors[value] / scale).powi(2)
+                } else {
+                    0.0
+                }
+            });
+            (squares.sum::<f64>() / measured.len() as f64).sqrt()
+        };
+        let wanted = (0..run.wanted.len()).filter(|value| run.wanted[*value]);
+        wanted.map(of).fold(0.0, f64::max)
+    }
+}
+
+/// Adds what a sensor sees of sky and ground by rays of some numbers.
+fn see(sensor: &Sensor, run: &YearRun, [from, to, seed]: [u32; 3], patches: &mut [f32]) {
+    let start = lifted(sensor.position, sensor.normal);
+    // Not the numbers of the paths.
+    let seed = tea::<8>(seed, 1);
+    for index in from..to {
+        let mut numbers = Numbers::new(index, seed, 1);
+        if let Some((direction, through)) = outside(run.scene, start, sensor.normal, &mut numbers) {
+            let weight = through * (PI / f64::from(RAYS));
+            patches[run.light.patches.index(direction)] += grey(weight);
+        }
+    }
+}
+
+/// Adds the sunlight of a point with its weight, as luminance.
+fn add(sums: &mut [f32], light: &[f32], weight: Vec3, channels: usize) {
+    if sums.is_empty() {
+        return;
+    }
+    if channels == 1 {
+        let weight = grey(weight.as_dvec3());
+        sums.iter_mut()
+            .zip(light)
+            .for_each(|(sum, light)| *sum += weight * light);
+        return;
+    }
+    let shares = LUMINANCE_WEIGHTS.as_vec3() * weight;
+    for (light, share) in light.chunks(sums.len()).zip(shares.to_array()) {
+        sums.iter_mut()
+            .zip(light)
+            .for_each(|(sum, light)| *sum += share * light);
+    }
+}
+
+/// Means of the replicates, which are rows.
+fn means(lux: &Array2<f32>) -> Vec<f32> {
+    let count = lux.nrows() as f32;
+    lux.columns()
+        .into_iter()
+        .map(|column| column.sum() / count)
+        .collect()
+}
+
+/// Values of the mean of all replicates, and their standard errors: Quenouille & Tukey's jackknife, which leaves out one replicate after the
+/// other (Efron & Stein 1981).
+fn jackknife(lux: &Array2<f32>, values: impl Fn(&[f32]) -> Vec<f64>) -> (Vec<f64>, Vec<f64>) {
+    let count = lux.nrows() as f32;
+    let mean = means(lux);
+    let without: Vec<Vec<f64>> = lux
+        .rows()
+        .into_iter()
+        .map(|row| {
+            let rest = mean
+                .iter()
+                .zip(row)
+                .map(|(m, e)| (count * m - e) / (count - 1.0));
+            values(&rest.collect::<Vec<f32>>())
+        })
+        .collect();
+    let count = f64::from(count);
+    let all = values(&mean);
+    let errors = (0..all.len()).map(|value| {
+        let of = || without.iter().map(|list| list[value]);
+        let centre = of().sum::<f64>() / count;
+        let squares: f64 = of().map(|v| (v - centre).powi(2)).sum();
+        ((count - 1.0) / count * squares).sqrt()
+    });
+    let errors = errors.collect();
+    (all, errors)
+}

@@ -65,12 +65,14 @@ pub(super) struct Sample {
 /// Mip bias toward finer levels for converging frames: each sample filters over an eighth of the pixel's width.
 const SHARPEN: f32 = 3.0;
 
+/// The same for moving views, whose picture holds some ten samples: each filters over half of the pixel's width.
+const MOVING_SHARPEN: f32 = 1.0;
+
 impl Sample {
     /// The sample of frame number `index` of an average. Without a number, or if nothing is averaged: the centres of pixel and sun.
     pub fn of(settings: &FrameSettings, daylight: &Daylight, index: Option<u32>) -> Self {
         let sun = daylight.direct_light().direction.as_vec3();
-        let averages = settings.takes_mean() || settings.converges();
-        let Some(index) = index.filter(|_| averages) else {
+        let Some(index) = index.filter(|_| settings.averages()) else {
             return Self::central(sun);
         };
         let sample = Self::new(sun, index, &settings.sampling);
@@ -98,6 +100,17 @@ impl Sample {
             jitter: self.jitter,
             sharpen: self.sharpen,
             window: tile,
+        }
+    }
+
+    /// The sample of frame number `number` of a moving view: another point of the pixels, and the sun's centre.
+    pub fn moving(daylight: &Daylight, number: u32) -> Self {
+        let sun = daylight.direct_light().direction.as_vec3();
+        Self {
+            jitter: offset(Filter::Box, sampling::r2(number)),
+            phase: sampling::radical_inverse(number) as f32,
+            sharpen: MOVING_SHARPEN,
+            ..Self::central(sun)
         }
     }
 

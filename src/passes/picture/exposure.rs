@@ -81,6 +81,12 @@ impl Exposure {
 
     /// The newest average luminance, kcd/m², as one texel.
     pub fn image(&self) -> &Image {
-        &self.luminances[self.newest.get().unwrap_or(0)]
+        self.images()[0]
+    }
+
+    /// The newest average luminance and the one before it, whose contents are undefined with the first picture.
+    pub fn images(&self) -> [&Image; 2] {
+        let newest = self.newest.get().unwrap_or(0);
+        [&self.luminances[newest], &self.luminances[1 - newest]]
     }
 }

@@ -86,7 +86,7 @@ pub fn is_linear(display: &Image) -> bool {
 }
 
 /// Whether a quantity is light, which is exposed and tone mapped.
-fn is_light(show: Show) -> bool {
+pub fn is_light(show: Show) -> bool {
     show.file_unit() != 1.0
 }
 
@@ -106,6 +106,15 @@ fn kilo_range(range: Range) -> (f64, f64) {
 }
 
 impl ToneMap {
+    /// Format of the display values.
+    pub fn format(settings: &ToneSettings) -> Format {
+        if settings.peak.is_some() {
+            LINEAR
+        } else {
+            ENCODED
+        }
+    }
+
     /// Creates the pass for pictures of `size` pixels.
     ///
     /// # Errors
@@ -117,7 +126,7 @@ impl ToneMap {
         let curve = |c: ToneCurve| u32::from(light && !hdr && settings.curve == c);
         let average = light && matches!(settings.scale, Scale::Average { .. });
         let gamma = settings.gamma.is_some() && !false_colour;
-        let format = if hdr { LINEAR } else { ENCODED };
+        let format = Self::format(&settings);
         let pipeline = fullscreen(
             context,
             "tone map",

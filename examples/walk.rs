@@ -72,6 +72,8 @@ impl Walk {
         let subject = Subject::of(&scene).entered(&mut scene);
         let camera = options.camera(&subject, scene.origin);
         let context = Context::new(&ContextOptions::default())?;
+        #[cfg(feature = "hot-reload")]
+        context.reload_shaders()?;
         let mut settings = FrameSettings {
             size: UVec2::new(options.size.width, options.size.height),
             ..FrameSettings::default()
@@ -141,7 +143,12 @@ impl Walk {
             )?;
         }
         let size = pixels.size.map(|edge| edge as usize);
-        Ok(Picture::from_srgb8(size, &pixels.bytes))
+        let rgb: Vec<u8> = pixels
+            .bytes
+            .chunks_exact(4)
+            .flat_map(|p| [p[0], p[1], p[2]])
+            .collect();
+        Ok(Picture::from_srgb8(size, &rgb))
     }
 
     /// The pictures of the walk as a moving view has them.

@@ -12,9 +12,10 @@ vec3 display_of_light(vec3 c) {
     return LINEAR ? c : sqrt(c);
 }
 
-/// A value to be stored in 8 bits, up or down so that the mean over many frames and pixels is the value itself (noise of Jimenez 2014).
+/// A value to be stored in 8 bits, up or down so that the mean over frames and pixels is the value itself: noise of the R2 sequence
+/// (Roberts 2018).
 vec3 rounded(vec3 c, vec2 pixel, float shift) {
     if (LINEAR) return c;
-    float noise = fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715))) + shift);
+    float noise = fract(dot(pixel, vec2(0.7548777, 0.5698403)) + shift);
     return c + (noise - 0.5) / 255.0;
 }

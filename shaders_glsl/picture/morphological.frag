@@ -48,10 +48,12 @@ vec2 covered(float start, float end, float length, float x) {
 vec2 shares(ivec2 pixel, ivec2 along, ivec2 across, int channel) {
     bool is_edge = edges_at(pixel)[channel] > 0.5;
     if (!is_edge) return vec2(0.0);
+    // Not a constant: compilers would unroll the loops, and software devices then run through all of them.
+    int longest = min(LONGEST, textureSize(edges, 0).x);
     int crossing = 1 - channel;
     ivec2 p = pixel;
     float before = 0.0, start = 0.0;
-    for (int i = 0; i < LONGEST; ++i) {
+    for (int i = 0; i < longest; ++i) {
         start = edges_at(p)[crossing] - edges_at(p - across)[crossing];
         bool is_crossed = max(edges_at(p)[crossing], edges_at(p - across)[crossing]) > 0.5;
         if (is_crossed || edges_at(p - along)[channel] < 0.5) break;
@@ -60,7 +62,7 @@ vec2 shares(ivec2 pixel, ivec2 along, ivec2 across, int channel) {
     }
     p = pixel + along;
     float after = 0.0, end = 0.0;
-    for (int i = 0; i < LONGEST; ++i) {
+    for (int i = 0; i < longest; ++i) {
         end = edges_at(p)[crossing] - edges_at(p - across)[crossing];
         bool is_crossed = max(edges_at(p)[crossing], edges_at(p - across)[crossing]) > 0.5;
         if (is_crossed || edges_at(p)[channel] < 0.5) break;

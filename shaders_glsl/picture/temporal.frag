@@ -7,76 +7,74 @@
 // camera, adds the samples of the frames before (Karis 2014, "High Quality Temporal Supersampling"). Display values are between 0 and
 // white, so that no single bright sample decides a pixel.
 //
-// The scene stands still, so the motion of a pixel follows from its depth alone. What was seen there before is another surface if its depth
-// would have moved it elsewhere. Only then, or when the light changes, is the picture before bounded by what is around the pixel now: else
-// thin parts, which most frames miss, would flicker.
+// The scene stands still, so the motion of a pixel follows from its depth alone, and so does whether the picture before shows the same surface
+// there: else it does not count. As long as the light is the same too, it needs no bounds: those that others take from the pixels
+// around would cut off thin parts, which most frames miss, and let them flicker.
 
 layout(location = 0) out vec4 picture; // rgb: display values; a: number of frames in it, of FRAMES
 
-layout(set = 0, binding = 0) uniform sampler2D display;            // this frame, display values
-layout(set = 0, binding = 1) uniform sampler2D depth;              // of this frame: near / distance
-layout(set = 0, binding = 2) uniform sampler2D before;             // the picture before
+// The light is not that of the picture before, which is bounded by what is around the pixel now.
+layout(constant_id = 0) const bool BOUNDED = false;
+
+layout(set = 0, binding = 0) uniform sampler2D display;           // this frame, display values
+layout(set = 0, binding = 1) uniform sampler2D depth;             // of this frame: near / distance
+layout(set = 0, binding = 2) uniform sampler2D before;            // the picture before
 layout(set = 0, binding = 3) uniform sampler2D depth_before;
-layout(set = 0, binding = 4) uniform sampler2D average_luminance;  // that the exposure follows, one texel
-layout(set = 0, binding = 5) uniform sampler2D previous_luminance; // the same of the frame before
+layout(set = 0, binding = 4) uniform sampler2D average_luminance; // one texel; r: that the exposure follows; g: over that of the frame before
 
 layout(push_constant, scalar) uniform Push {
-    vec4 to_u;      // from (pixel, depth, 1) to u of the picture before, times w
+    vec4 to_u;       // from (pixel, depth, 1) to u of the picture before, times w
     vec4 to_v;
     vec4 to_w;
-    float to_depth; // from depth to that of the picture before, times w
-    float parallax; // largest motion between two surfaces that differ by 1 in depth, pixels
-    float most;     // frames that count in the picture before
-    float follows;  // 1: the light is that of the picture before; 0: it has changed
-    float shift;    // of the rounding, 0..1: another one for every frame
+    vec2 half_texel; // of the picture, in u and v
+    float to_depth;  // from depth to that of the picture before, times w
+    float same;      // largest difference in depth before of one and the same surface; negative: none is
+    float most;      // frames that count in the picture before
+    float shift;     // of the rounding, 0..1: another one for every frame
 } push;
 
 const float FRAMES = 255.0;
 
-/// Motion between two surfaces up to which they count as one, pixels.
-const float SAME = 0.125;
-
-/// Relative change of the exposure from which the picture before is of another exposure.
+/// Change of the exposure in a frame from which few frames count, and how many.
 const float EXPOSED = 0.02;
+const float FEW = 2.0;
 
-/// Frames that count of a picture before which had to be bounded.
-const float BOUNDED = 3.0;
-
-/// Whether the exposure has hardly changed.
-float is_exposed_alike() {
-    float a = texelFetch(average_luminance, ivec2(0), 0).r, b = texelFetch(previous_luminance, ivec2(0), 0).r;
-    return abs(a - b) <= EXPOSED * min(a, b) ? 1.0 : 0.0;
+/// The picture before within the values around the pixel.
+vec3 bounded(vec3 old, vec3 now, ivec2 pixel) {
+    const ivec2 sides[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
+    vec3 least = now, most = now;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 beside = clamp(pixel + sides[i], ivec2(0), textureSize(display, 0) - 1);
+        vec3 c = texelFetch(display, beside, 0).rgb;
+        least = min(least, c);
+        most = max(most, c);
+    }
+    return clamp(old, least, most);
 }
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy), last = textureSize(display, 0) - 1;
-    ivec2 low = max(pixel - 1, ivec2(0)), high = min(pixel + 1, last);
-    ivec2 beside[4] = ivec2[4](ivec2(low.x, pixel.y), ivec2(high.x, pixel.y), ivec2(pixel.x, low.y), ivec2(pixel.x, high.y));
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec3 now = texelFetch(display, pixel, 0).rgb;
 
-    // The least and greatest values around, and the nearest surface: the edge of what is in front moves with it.
-    vec3 now = texelFetch(display, pixel, 0).rgb, least = now, most = now;
-    float own = texelFetch(depth, pixel, 0).r, nearest = own;
-    for (int i = 0; i < 4; ++i) {
-        vec3 c = texelFetch(display, beside[i], 0).rgb;
-        least = min(least, c);
-        most = max(most, c);
-        nearest = max(nearest, texelFetch(depth, beside[i], 0).r);
-    }
+    // The nearest surface around: the edge of what is in front moves with it. At an edge the frame before may have met either surface.
+    vec2 centre = gl_FragCoord.xy * 2.0;
+    vec4 above = textureGather(depth, (centre - 1.0) * push.half_texel), below = textureGather(depth, (centre + 1.0) * push.half_texel);
+    vec4 near = max(above, below), far = min(above, below);
+    float nearest = max(max(near.x, near.y), max(near.z, near.w)), farthest = min(min(far.x, far.y), min(far.z, far.w));
 
     vec4 here = vec4(gl_FragCoord.xy, nearest, 1.0);
-    float w = dot(push.to_w, here);
-    vec2 at = vec2(dot(push.to_u, here), dot(push.to_v, here)) / w;
-    bool is_seen = push.most > 0.0 && w > 0.0 && all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)));
-    float expected = push.to_depth * nearest / w;
-    float found = texelFetch(depth_before, clamp(ivec2(at * vec2(last + 1)), ivec2(0), last), 0).r;
-    // At an edge the frame before may have met either surface.
-    float differs = min(abs(found - expected), abs(found - expected - (own - nearest)));
-    float trust = clamp(2.0 - differs * push.parallax / SAME, 0.0, 1.0) * push.follows * is_exposed_alike();
+    float over_w = 1.0 / dot(push.to_w, here);
+    vec2 at = vec2(dot(push.to_u, here), dot(push.to_v, here)) * over_w;
+    float expected = push.to_depth * nearest * over_w, found = textureLod(depth_before, at, 0.0).r;
+    float differs = max(found - expected, expected + farthest - nearest - found);
+    vec2 aside = abs(at - 0.5);
+    bool is_same = differs <= push.same && max(aside.x, aside.y) < 0.5;
 
     vec4 old = textureLod(before, at, 0.0);
-    old.rgb = mix(clamp(old.rgb, least, most), old.rgb, trust);
-    float count = min(old.a * FRAMES, mix(min(BOUNDED, push.most), push.most, trust));
-    if (!is_seen) count = 0.0;
+    float change = texelFetch(average_luminance, ivec2(0), 0).g;
+    float most = BOUNDED || abs(change - 1.0) > EXPOSED ? min(push.most, FEW) : push.most;
+    float count = is_same ? min(old.a * FRAMES, most) : 0.0;
+    if (BOUNDED) old.rgb = bounded(old.rgb, now, pixel);
     // A picture before that does not count may be undefined.
     vec3 mean = light_of_display(now);
     if (count > 0.0) mean = mix(light_of_display(old.rgb), mean, 1.0 / (count + 1.0));

@@ -231,7 +231,7 @@ impl Smooth {
             display: drawn.display,
             depths: [depth, drawn.gbuffer.depth_before().unwrap_or(depth)],
             before: &passes.pictures[old],
-            luminances: drawn.exposure.images(),
+            average_luminance: drawn.exposure.image(),
             motion,
             is_lit_alike: before.is_some_and(|before| before.light == *light),
             number: self.number,

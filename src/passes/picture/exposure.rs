@@ -36,7 +36,7 @@ impl Exposure {
         let image = |name| {
             Image::new(
                 context,
-                &ImageDesc::flat(name, Format::R32_SFLOAT, [1, 1]).stored(),
+                &ImageDesc::flat(name, Format::R32G32B32A32_SFLOAT, [1, 1]).stored(),
             )
         };
         let pipeline = compute(context, "exposure", &shaders::EXPOSURE_COMP, &[])?;
@@ -79,14 +79,8 @@ impl Exposure {
         new
     }
 
-    /// The newest average luminance, kcd/m², as one texel.
+    /// The newest average luminance, kcd/m², as one texel; its second value is the change since the picture before, a factor.
     pub fn image(&self) -> &Image {
-        self.images()[0]
-    }
-
-    /// The newest average luminance and the one before it, whose contents are undefined with the first picture.
-    pub fn images(&self) -> [&Image; 2] {
-        let newest = self.newest.get().unwrap_or(0);
-        [&self.luminances[newest], &self.luminances[1 - newest]]
+        &self.luminances[self.newest.get().unwrap_or(0)]
     }
 }

@@ -2,10 +2,12 @@
 //!
 //! The scene stands still, so depth and the two cameras tell where a surface was in the picture before ([`Reprojection`]). Whether the same surface
 //! was seen there follows from depth too: two surfaces whose motion differs by less than an eighth of a pixel need not be told apart, so
-//! no normals are compared. Where another was seen, or when the light has changed, the picture before is bounded by what is around the
-//! pixel now, and counts for three frames.
+//! no normals are compared. Where another was seen the picture before does not count. When the light has changed it is bounded by what is around the pixel
+//! now, and counts for two frames.
 
 use std::sync::Arc;
+
+use glam::Vec2;
 
 use crate::gpu::{Context, Format, Image, Load, Pipeline, Recorder, Result, Sampler, shaders};
 use crate::gpu_struct;
@@ -16,16 +18,19 @@ use crate::passes::view::Reprojection;
 /// Frames that count in the mean of a moving view: more are steadier, and blur what moves.
 const MOST_FRAMES: f32 = 10.0;
 
+/// Motion between two surfaces up to which they count as one, pixels.
+const SAME: f32 = 0.125;
+
 gpu_struct! {
     /// Motion since the picture before, and how much it counts.
     pub struct Push: push of TEMPORAL_FRAG {
         to_u: [f32; 4],
         to_v: [f32; 4],
         to_w: [f32; 4],
+        half_texel: Vec2,
         to_depth: f32,
-        parallax: f32,
+        same: f32,
         most: f32,
-        follows: f32,
         shift: f32,
     }
 }
@@ -38,8 +43,8 @@ pub struct Inputs<'a> {
     pub depths: [&'a Image; 2],
     /// The picture before; its contents count only with `motion`.
     pub before: &'a Image,
-    /// Average luminance that the exposure follows, in this frame and the one before, as one texel.
-    pub luminances: [&'a Image; 2],
+    /// Average luminance that the exposure follows, and its change, as one texel.
+    pub average_luminance: &'a Image,
     /// Where surfaces were in the picture before; `None`: it does not count.
     pub motion: Option<Reprojection>,
     /// Whether the light is that of the picture before.
@@ -55,7 +60,8 @@ pub(super) fn shift(number: u32) -> f32 {
 
 /// The pass; its caller owns the pictures.
 pub struct Temporal {
-    pipeline: Pipeline,
+    /// For the light of the picture before, and for another.
+    pipelines: [Pipeline; 2],
 }
 
 impl Temporal {
@@ -64,39 +70,56 @@ impl Temporal {
     /// # Errors
     /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, format: Format, is_linear: bool) -> Result<Self> {
-        let constants = [("LINEAR", is_linear.into())];
-        let shader = &shaders::TEMPORAL_FRAG;
-        let pipeline = fullscreen(
-            context,
-            "temporal anti-aliasing",
-            shader,
-            format,
-            &constants,
-        )?;
-        Ok(Self { pipeline })
+        let pipeline = |is_bounded: bool| {
+            let constants = [("LINEAR", is_linear.into()), ("BOUNDED", is_bounded.into())];
+            let shader = &shaders::TEMPORAL_FRAG;
+            fullscreen(
+                context,
+                "temporal anti-aliasing",
+                shader,
+                format,
+                &constants,
+            )
+        };
+        Ok(Self {
+            pipelines: [pipeline(false)?, pipeline(true)?],
+        })
     }
 
     /// Adds a frame to the mean.
     pub fn record(&self, recorder: &mut Recorder, inputs: &Inputs<'_>, target: &Image) {
         let motion = inputs.motion.unwrap_or_default();
+        let size = Vec2::from(inputs.display.size().map(|edge| edge as f32));
         let push = Push {
             to_u: motion.to_u.to_array(),
             to_v: motion.to_v.to_array(),
             to_w: motion.to_w.to_array(),
+            half_texel: 0.5 / size,
             to_depth: motion.to_depth,
-            parallax: motion.parallax,
-            most: inputs.motion.map_or(0.0, |_| MOST_FRAMES - 1.0),
-            follows: f32::from(u8::from(inputs.is_lit_alike)),
+            // No depth differs by more than 1 from another.
+            same: inputs
+                .motion
+                .map_or(-2.0, |motion| (SAME / motion.parallax).min(2.0)),
+            most: MOST_FRAMES - 1.0,
             shift: shift(inputs.number),
         };
+        let [same_light, other_light] = &self.pipelines;
+        let pipeline = if inputs.is_lit_alike {
+            same_light
+        } else {
+            other_light
+        };
         recorder
-            .pass("temporal anti-aliasing", &self.pipeline)
+            .pass("temporal anti-aliasing", pipeline)
             .sample("display", inputs.display, Sampler::Nearest)
             .sample("depth", inputs.depths[0], Sampler::Nearest)
             .sample("before", inputs.before, Sampler::Linear)
             .sample("depth_before", inputs.depths[1], Sampler::Nearest)
-            .sample("average_luminance", inputs.luminances[0], Sampler::Nearest)
-            .sample("previous_luminance", inputs.luminances[1], Sampler::Nearest)
+            .sample(
+                "average_luminance",
+                inputs.average_luminance,
+                Sampler::Nearest,
+            )
             .push(&push)
             .color(target, Load::Discard)
             .draw();

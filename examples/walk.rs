@@ -1,9 +1,9 @@
 //! How well the picture of a moving view is anti-aliased: a walk, each frame against the mean of many samples at the same camera.
 //!
 //! `cargo run --release --example walk -- SCENE [OPTION=VALUE ..] [frames=N] [truth=N] [dome] [pace=METRES] [turn=DEGREES] [out=FOLDER]`, for instance
-//! `walk colonnade camera=pool size=480x270`. Other pairs are options of `skylight render`. It prints for each anti-aliasing the mean FLIP, and the flicker: the energy above 5 Hz,
-//! at 60 frames a second, of what the luma of a pixel differs by from the truth, over pixels at edges of the truth. The truth is the mean of jittered frames with
-//! the light of the cells, so that nothing but the sampling differs; with `dome` it is the converged picture.
+//! `walk colonnade camera=pool size=480x270 ambient=ssao bounces=0 ao-radius=0`, where nothing but the sampling differs. Other pairs are options of `skylight render`. It prints for each anti-aliasing the mean FLIP, and the flicker: the energy above 5 Hz,
+//! at 60 frames a second, of what the luma of a pixel differs by from the truth, over pixels at edges of the truth. The truth is the mean of jittered frames; with `dome` it
+//! is the converged picture.
 
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -16,6 +16,7 @@ use skylight::frame::{AntiAliasing, Frame, FrameSettings, Visibility};
 use skylight::gpu::{Context, ContextOptions, Recorder, Timing, read_back};
 use skylight::options::{Choice, OptionValues, Options, name};
 use skylight::output::{Effort, Encoding, write_png};
+use skylight::passes::occlusion::ssao::SsaoSettings;
 use skylight::passes::picture::tone_map::Scale;
 use skylight::scene::{Camera, LoadOptions, Scene, Subject, load_with_progress};
 
@@ -78,6 +79,11 @@ impl Walk {
             size: UVec2::new(options.size.width, options.size.height),
             ..FrameSettings::default()
         };
+        (settings.lighting.ambient, settings.bounces) = (options.ambient, options.bounces);
+        settings = settings.with_occlusion(SsaoSettings {
+            radius: options.ao_radius as f32,
+            ..settings.ssao
+        });
         settings.tone.scale = Scale::Average {
             key: skylight::daylight::exposure::KEY,
             least: 0.0,
@@ -179,6 +185,8 @@ impl Walk {
         let mut pictures = Vec::new();
         for index in LEAD..LEAD + self.frames {
             let (camera, daylight) = (self.camera(index), self.daylight.clone());
+            // After a frame of a moving view an average goes on with its cells.
+            self.run(|rec| frame.preview(rec, &daylight, &camera))?;
             for sample in 0..self.samples {
                 self.run(|rec| frame.record(rec, &daylight, &camera, sample))?;
             }

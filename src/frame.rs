@@ -276,7 +276,6 @@ impl Frame {
         let drawn = smooth::Drawn {
             display: self.tone_map.image(),
             gbuffer: &self.gbuffer,
-            exposure: &self.exposure,
             view: &view,
             daylight,
         };

@@ -16,11 +16,10 @@ layout(location = 0) out vec4 picture; // rgb: display values; a: number of fram
 // The light is not that of the picture before, which is bounded by what is around the pixel now.
 layout(constant_id = 0) const bool BOUNDED = false;
 
-layout(set = 0, binding = 0) uniform sampler2D display;           // this frame, display values
-layout(set = 0, binding = 1) uniform sampler2D depth;             // of this frame: near / distance
-layout(set = 0, binding = 2) uniform sampler2D before;            // the picture before
+layout(set = 0, binding = 0) uniform sampler2D display;      // this frame, display values; a: 1 if exposed as the frame before
+layout(set = 0, binding = 1) uniform sampler2D depth;        // of this frame: near / distance
+layout(set = 0, binding = 2) uniform sampler2D before;       // the picture before
 layout(set = 0, binding = 3) uniform sampler2D depth_before;
-layout(set = 0, binding = 4) uniform sampler2D average_luminance; // one texel; r: that the exposure follows; g: over that of the frame before
 
 layout(push_constant, scalar) uniform Push {
     vec4 to_u;       // from (pixel, depth, 1) to u of the picture before, times w
@@ -35,8 +34,7 @@ layout(push_constant, scalar) uniform Push {
 
 const float FRAMES = 255.0;
 
-/// Change of the exposure in a frame from which few frames count, and how many.
-const float EXPOSED = 0.02;
+/// Frames that count in a picture before with another light or exposure.
 const float FEW = 2.0;
 
 /// The picture before within the values around the pixel.
@@ -54,7 +52,8 @@ vec3 bounded(vec3 old, vec3 now, ivec2 pixel) {
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec3 now = texelFetch(display, pixel, 0).rgb;
+    vec4 shown = texelFetch(display, pixel, 0);
+    vec3 now = shown.rgb;
 
     // The nearest surface around: the edge of what is in front moves with it. At an edge the frame before may have met either surface.
     vec2 centre = gl_FragCoord.xy * 2.0;
@@ -71,8 +70,7 @@ void main() {
     bool is_same = differs <= push.same && max(aside.x, aside.y) < 0.5;
 
     vec4 old = textureLod(before, at, 0.0);
-    float change = texelFetch(average_luminance, ivec2(0), 0).g;
-    float most = BOUNDED || abs(change - 1.0) > EXPOSED ? min(push.most, FEW) : push.most;
+    float most = BOUNDED || shown.a < 0.5 ? min(push.most, FEW) : push.most;
     float count = is_same ? min(old.a * FRAMES, most) : 0.0;
     if (BOUNDED) old.rgb = bounded(old.rgb, now, pixel);
     // A picture before that does not count may be undefined.

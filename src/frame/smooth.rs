@@ -10,7 +10,6 @@ use super::sample::Sample;
 use crate::daylight::colour::luminance;
 use crate::daylight::sky::Daylight;
 use crate::gpu::{Context, Image, ImageDesc, Recorder, Result};
-use crate::passes::picture::exposure::Exposure;
 use crate::passes::picture::fade;
 use crate::passes::picture::hand_over::HandOver;
 use crate::passes::picture::morphological::Morphological;
@@ -119,7 +118,6 @@ pub(super) struct Drawn<'a> {
     /// Display values of this frame.
     pub display: &'a Image,
     pub gbuffer: &'a Gbuffer,
-    pub exposure: &'a Exposure,
     pub view: &'a View,
     pub daylight: &'a Daylight,
 }
@@ -231,7 +229,6 @@ impl Smooth {
             display: drawn.display,
             depths: [depth, drawn.gbuffer.depth_before().unwrap_or(depth)],
             before: &passes.pictures[old],
-            average_luminance: drawn.exposure.image(),
             motion,
             is_lit_alike: before.is_some_and(|before| before.light == *light),
             number: self.number,

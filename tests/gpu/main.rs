@@ -35,6 +35,7 @@ mod reflections;
 mod shadow;
 mod sheets;
 mod sky;
+mod smooth;
 mod specular;
 mod ssao;
 mod stars;

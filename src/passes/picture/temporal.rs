@@ -37,14 +37,12 @@ gpu_struct! {
 
 /// What the pass reads.
 pub struct Inputs<'a> {
-    /// Display values of this frame.
+    /// Display values of this frame, with whether the exposure is that of the frame before ([`super::tone_map`]).
     pub display: &'a Image,
     /// Reversed depth of this frame and of the one before.
     pub depths: [&'a Image; 2],
     /// The picture before; its contents count only with `motion`.
     pub before: &'a Image,
-    /// Average luminance that the exposure follows, and its change, as one texel.
-    pub average_luminance: &'a Image,
     /// Where surfaces were in the picture before; `None`: it does not count.
     pub motion: Option<Reprojection>,
     /// Whether the light is that of the picture before.
@@ -115,11 +113,6 @@ impl Temporal {
             .sample("depth", inputs.depths[0], Sampler::Nearest)
             .sample("before", inputs.before, Sampler::Linear)
             .sample("depth_before", inputs.depths[1], Sampler::Nearest)
-            .sample(
-                "average_luminance",
-                inputs.average_luminance,
-                Sampler::Nearest,
-            )
             .push(&push)
             .color(target, Load::Discard)
             .draw();

@@ -3,6 +3,8 @@
 //! The shader encodes, by the sRGB curve or by a power law (the lecture's (s R)^(1/γ)): a device that encodes for a format may be off by 0.6 steps of 8 bits,
 //! more than the dither leaves. Light is dithered by a step of 8 bits after the tone curve; false colours and other quantities are not.
 //!
+//! Alpha tells the temporal anti-aliasing whether the exposure is nearly that of the picture before.
+//!
 //! For an HDR screen the display values stay linear, and no curve bends them: up to the screen's peak they are the exposed picture
 //! ([`crate::daylight::hdr`]).
 

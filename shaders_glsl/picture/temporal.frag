@@ -64,8 +64,11 @@ void main() {
     vec4 here = vec4(gl_FragCoord.xy, nearest, 1.0);
     float over_w = 1.0 / dot(push.to_w, here);
     vec2 at = vec2(dot(push.to_u, here), dot(push.to_v, here)) * over_w;
-    float expected = push.to_depth * nearest * over_w, found = textureLod(depth_before, at, 0.0).r;
-    float differs = max(found - expected, expected + farthest - nearest - found);
+    // All that the lookup in the picture before mixes must lie between the surfaces around.
+    float expected = push.to_depth * nearest * over_w;
+    vec4 found = textureGather(depth_before, at);
+    float found_nearest = max(max(found.x, found.y), max(found.z, found.w)), found_farthest = min(min(found.x, found.y), min(found.z, found.w));
+    float differs = max(found_nearest - expected, expected + farthest - nearest - found_farthest);
     vec2 aside = abs(at - 0.5);
     bool is_same = differs <= push.same && max(aside.x, aside.y) < 0.5;
 

@@ -412,7 +412,10 @@ fn anti_aliasing_of_a_file_is_done_or_refused() {
     for (words, remedy) in [
         (&["-o", "a.png", "--aa", "taa"][..], "smaa"),
         (&["-o", "a.exr", "--aa", "smaa"], ".png"),
-        (&["-o", "a.png", "--aa", "smaa", "--show", "normal"], "leave it out"),
+        (
+            &["-o", "a.png", "--aa", "smaa", "--show", "normal"],
+            "leave it out",
+        ),
         (
             &["-o", "a.png", "--aa", "smaa", "--false-colour", "luminance"],
             "leave it out",
@@ -420,7 +423,9 @@ fn anti_aliasing_of_a_file_is_done_or_refused() {
     ] {
         let before = place.contents();
         let words = [&["m.obj"], words].concat();
-        place.render(&words).failed(2, &["--aa", remedy, "--samples"]);
+        place
+            .render(&words)
+            .failed(2, &["--aa", remedy, "--samples"]);
         assert_eq!(place.contents(), before, "{words:?}");
     }
     let mut written = |name: &str, words: &[&str]| {
@@ -429,12 +434,16 @@ fn anti_aliasing_of_a_file_is_done_or_refused() {
             .succeeded();
         png(&place.path().join(name))
     };
-    let (plain, smooth) = (written("off.png", &[]), written("smaa.png", &["--aa", "smaa"]));
+    let (plain, smooth) = (
+        written("off.png", &[]),
+        written("smaa.png", &["--aa", "smaa"]),
+    );
     assert_eq!(plain.0["aa"], "off");
     assert_eq!(smooth.0["aa"], "smaa");
     assert!(plain.2 != smooth.2, "smaa changes nothing");
     // Samples smooth a picture by themselves.
-    let [with, without] = ["taa", "off"].map(|aa| written(&format!("{aa}4.png"), &["--samples", "4", "--aa", aa]));
+    let [with, without] =
+        ["taa", "off"].map(|aa| written(&format!("{aa}4.png"), &["--samples", "4", "--aa", aa]));
     assert!(with.2 == without.2);
 }
 

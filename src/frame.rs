@@ -4,6 +4,7 @@ mod ambient;
 mod average;
 mod sample;
 mod settings;
+mod smooth;
 
 use std::panic::resume_unwind;
 use std::sync::Arc;
@@ -11,6 +12,7 @@ use std::thread::{self, ScopedJoinHandle};
 
 pub use self::sample::{Filter, Sampling, Visibility};
 pub use self::settings::FrameSettings;
+pub use self::smooth::AntiAliasing;
 
 use glam::UVec2;
 
@@ -37,7 +39,7 @@ use crate::scene::{Camera, Scene};
 
 use self::ambient::{AmbientInputs, AmbientNeed, AmbientPasses};
 use self::average::{Average, Lit};
-use self::sample::Sample;
+use self::smooth::Smooth;
 
 /// Frames of an average after which a round of the cells follows.
 const FRAMES_OF_ROUND: u32 = 4;
@@ -79,6 +81,7 @@ pub struct Frame {
     average: Average,
     exposure: Exposure,
     tone_map: ToneMap,
+    smooth: Smooth,
     probe: Probe,
     drawn: Option<Drawn>,
     tiling: Tiling,
@@ -155,6 +158,7 @@ impl Frame {
                 background: joined(background)?,
                 exposure: joined(exposure)?,
                 tone_map: joined(tone_map)?,
+                smooth: Smooth::new(device, &settings)?,
                 probe: Probe::new(device)?,
                 drawn: None,
                 tiling: Tiling::default(),
@@ -193,7 +197,8 @@ impl Frame {
         let (old, device, geometry) = (&self.settings, &self.context, &self.geometry);
         let is_resized = new.size != old.size;
         let is_lit = is_resized || new.lighting != old.lighting;
-        let is_new_gbuffer = is_resized || new.has_faces() != old.has_faces();
+        let is_new_gbuffer = is_resized
+            || (new.has_faces(), new.keeps_depth()) != (old.has_faces(), old.keeps_depth());
         let is_new_shadow = new.shadow_map() != old.shadow_map();
         let is_new_average = Average::is_changed(old, &new);
         let sky_edge = new.sky_edge;
@@ -219,6 +224,8 @@ impl Frame {
         let is_other_air = new.air_need() != old.air_need();
         let air = remade(is_other_air, || new.air(device, geometry))?;
         let tone_map = remade(is_resized || new.tone != old.tone, || new.tone_map(device))?;
+        let is_other_smooth = new.smooth_need() != old.smooth_need();
+        let smooth = remade(is_other_smooth, || Smooth::new(device, &new))?;
 
         // From here on nothing fails.
         replace(&mut self.sky_cube, sky_cube);
@@ -234,6 +241,8 @@ impl Frame {
         replace(&mut self.average, average);
         replace(&mut self.cells, cells);
         replace(&mut self.tone_map, tone_map);
+        replace(&mut self.smooth, smooth);
+        self.smooth.forget();
         self.settings = new;
         self.drawn = None;
         Ok(())
@@ -249,7 +258,7 @@ impl Frame {
         self.draw(rec, daylight, camera, None);
     }
 
-    /// Records a frame. Sky, irradiance and shadow map are redrawn only when their inputs change.
+    /// Records a frame.
     fn draw(
         &mut self,
         rec: &mut Recorder,
@@ -257,8 +266,35 @@ impl Frame {
         camera: &Camera,
         index: Option<u32>,
     ) {
+        if index.is_none() {
+            self.gbuffer.turn();
+            self.smooth.keep(rec, self.tone_map.image());
+        }
+        let view = self.light_up(rec, daylight, camera, index);
+        self.drawn = Some(Drawn { index, view });
+        self.expose(rec);
+        let drawn = smooth::Drawn {
+            display: self.tone_map.image(),
+            gbuffer: &self.gbuffer,
+            view: &view,
+            daylight,
+        };
+        let frames = self.settings.samples;
+        let average = index.filter(|_| self.settings.averages());
+        self.smooth
+            .record(rec, &drawn, average.map(|index| (index, frames)));
+    }
+
+    /// Records the picture in kcd/m² and returns its view. Sky, irradiance and shadow map are redrawn only when their inputs change.
+    fn light_up(
+        &mut self,
+        rec: &mut Recorder,
+        daylight: &Daylight,
+        camera: &Camera,
+        index: Option<u32>,
+    ) -> View {
         let (geometry, settings) = (&self.geometry, &self.settings);
-        let sample = Sample::of(settings, daylight, index);
+        let sample = self.smooth.sample(settings, daylight, index);
         let view = sample.view(camera, settings.size, self.tiling.tile);
         let (Lit { shadow, lighting }, resolve) = self.average.frame(&mut self.preview, index);
         shadow.fit(geometry, &view, sample.sun_direction, sample.texel);
@@ -317,8 +353,7 @@ impl Frame {
         self.background
             .record(rec, &surfaces.depth, &light, &view, frame);
         resolve.record(rec, scene, frame, surfaces, &light, &view);
-        self.drawn = Some(Drawn { index, view });
-        self.expose(rec);
+        view
     }
 
     /// Sets the adaptation rate of automatic exposure: the fraction of the difference in log luminance covered with each following
@@ -327,15 +362,16 @@ impl Frame {
         self.exposure.set_share(share as f32);
     }
 
-    /// Exposes and tone maps the newest picture again, so that exposure adapts further. `rec` must be recording.
-    pub fn expose(&self, rec: &mut Recorder) {
+    /// Exposes and tone maps the newest picture again, so that exposure adapts further, without anti-aliasing. `rec` must be recording.
+    pub fn expose(&mut self, rec: &mut Recorder) {
         let radiance = self.radiance();
         let average = self.exposure.record(rec, radiance);
         self.tone_map
             .record(rec, radiance, average, self.tiling.origin());
+        self.smooth.show_plain();
     }
 
-    /// Tone maps the newest picture again with new settings. `rec` must be recording, with no frame in flight.
+    /// Tone maps the newest picture again with new settings, without anti-aliasing. `rec` must be recording, with no frame in flight.
     ///
     /// # Errors
     /// Fails when the device cannot create the resources. The frame is then unchanged.
@@ -345,9 +381,11 @@ impl Frame {
             ..self.settings
         };
         let tone_map = settings.tone_map(&self.context)?;
+        let smooth = Smooth::new(&self.context, &settings)?;
         let origin = self.tiling.origin();
         tone_map.record(rec, self.radiance(), self.exposure.image(), origin);
         self.tone_map = tone_map;
+        self.smooth = smooth;
         self.settings = settings;
         Ok(())
     }
@@ -409,9 +447,9 @@ impl Frame {
         newest(&self.average, &self.preview, self.drawn)
     }
 
-    /// The picture in display values.
+    /// The picture in display values, anti-aliased.
     pub fn display(&self) -> &Image {
-        self.tone_map.image()
+        self.smooth.image().unwrap_or(self.tone_map.image())
     }
 
     /// The log-average luminance of the newest picture, kcd/m², as one texel.

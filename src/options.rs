@@ -27,7 +27,7 @@ use clap::{ArgAction, Args, Command, value_parser};
 
 pub use crate::daylight::false_colour::{ColourMap, Quantity, Range};
 pub use crate::daylight::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCurve};
-pub use crate::frame::{Filter, Visibility};
+pub use crate::frame::{AntiAliasing, Filter, Visibility};
 pub use crate::gpu::Optional;
 pub use crate::passes::bounces::cells::Bounces;
 pub use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
@@ -216,6 +216,11 @@ options! {
             /// A number is the visibility of the air in km instead: --visual-range.
             #[arg(value_name = "HOW", value_parser = VisibilityParser, default_value_t)]
             visibility: Visibility,
+            /// Anti-aliasing of a moving view and of single frames, of what is displayed alone: the values of .exr and of the read-out,
+            /// other quantities and false colours keep one sample a pixel. In the window the default is taa. Pictures of several samples are smooth
+            /// by these.
+            #[arg(value_name = "HOW", value_parser = choice::<AntiAliasing>(), default_value_t)]
+            aa: AntiAliasing,
             /// Spread of the samples in a pixel.
             #[arg(value_name = "FILTER", value_parser = choice::<Filter>(), default_value_t)]
             filter: Filter,

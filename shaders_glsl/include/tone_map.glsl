@@ -30,7 +30,7 @@ layout(constant_id = 12) const int COLOUR_MAP = TURBO;
 layout(constant_id = 13) const bool HDR = false;
 
 layout(set = 0, binding = 0) uniform sampler2D radiance;          // kcd/m^2
-layout(set = 0, binding = 1) uniform sampler2D average_luminance; // kcd/m^2, one texel
+layout(set = 0, binding = 1) uniform sampler2D average_luminance; // one texel; r: kcd/m^2; g: over that of the picture before
 
 layout(push_constant, scalar) uniform Push {
     float exposure;      // display units for 1 kcd/m^2; with AUTO the display value of the average luminance;
@@ -43,7 +43,10 @@ layout(push_constant, scalar) uniform Push {
     uvec2 origin;        // of this tile in the picture, pixels
 } push;
 
-/// The display value of a pixel; `at`: its centre.
+/// Change of the exposure up to which pictures may be added up.
+const float EXPOSED = 0.02;
+
+/// The display value of a pixel; `at`: its centre. a: 0 if the exposure is not nearly that of the picture before.
 vec4 shown(vec2 at) {
     vec3 c = textureLod(radiance, at / vec2(textureSize(radiance, 0)), 0.0).rgb;
     if (FALSE_COLOUR) {
@@ -53,7 +56,12 @@ vec4 shown(vec2 at) {
         return vec4(SRGB ? srgb_from_linear(colour) : colour, 1.0);
     }
     float exposure = push.exposure;
-    if (AUTO) exposure /= max(textureLod(average_luminance, vec2(0.5), 0.0).r, push.least);
+    float alike = 1.0;
+    if (AUTO) {
+        vec2 average = textureLod(average_luminance, vec2(0.5), 0.0).rg;
+        exposure /= max(average.r, push.least);
+        alike = abs(average.g - 1.0) > EXPOSED ? 0.0 : 1.0;
+    }
     if (GREY) c = vec3(luminance(c));
     c = max(c * exposure + push.offset, 0.0);
     if (EXPONENTIAL) c = tone_exponential(c);
@@ -66,5 +74,5 @@ vec4 shown(vec2 at) {
     if (GAMMA) c = pow(c, vec3(push.inverse_gamma));
     if (SRGB) c = srgb_from_linear(c);
     if (DITHER) c = dithered(c, uvec2(at) + push.origin, 255.0);
-    return vec4(c, 1.0);
+    return vec4(c, alike);
 }

@@ -14,7 +14,7 @@ const uint BINS = 256u;
 
 layout(set = 0, binding = 0) uniform sampler2D radiance;                       // kcd/m^2
 layout(set = 0, binding = 1) uniform sampler2D previous_luminance;             // kcd/m^2, one texel
-layout(set = 0, binding = 2, r32f) uniform writeonly image2DArray average_luminance; // kcd/m^2, one texel
+layout(set = 0, binding = 2, rgba32f) uniform writeonly image2DArray average_luminance; // one texel; r: kcd/m^2; g: over the previous one
 
 layout(push_constant, scalar) uniform Push {
     float black;         // log2 of kcd/m^2: darker samples are ignored
@@ -86,9 +86,7 @@ void main() {
     bool black = median == NOTHING;
     // A black picture looks the same at any exposure.
     float target = black ? 0.0 : median + sum.x / sum.y;
-    if (push.share < 1.0) {
-        float previous = log2(texelFetch(previous_luminance, ivec2(0), 0).r);
-        target = black ? previous : mix(previous, target, push.share);
-    }
-    imageStore(average_luminance, ivec3(0), vec4(exp2(target)));
+    float previous = log2(texelFetch(previous_luminance, ivec2(0), 0).r);
+    if (push.share < 1.0) target = black ? previous : mix(previous, target, push.share);
+    imageStore(average_luminance, ivec3(0), vec4(exp2(target), exp2(target - previous), 0.0, 0.0));
 }

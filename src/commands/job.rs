@@ -209,6 +209,7 @@ impl Job {
             shadow_resolution: s.shadow_size,
             bounces: s.bounces,
             refine: s.refine,
+            aa: s.aa,
             ..FrameSettings::default()
         };
         if s.preset == Some(Preset::Lecture) {

@@ -11,13 +11,13 @@ use crate::daylight::false_colour::{Colours, Quantity, Range};
 use crate::error::Result;
 use crate::frame::Frame;
 use crate::gpu::{Recorder, Timing, read_back};
-use crate::options::{OptionValues, OptionsError, name};
+use crate::options::{AntiAliasing, OptionValues, Options, OptionsError, name};
 use crate::output::{
     Channels, Effort, Encoding, Layer, LayerKind, check_writable, draw_legend, print, write_exr,
     write_png,
 };
 use crate::passes::light::lighting::{Precision, Show};
-use crate::passes::picture::tone_map::ToneSettings;
+use crate::passes::picture::tone_map::{ToneSettings, is_light};
 
 /// Number of samples from which drawing takes much longer than thorough compression.
 const AVERAGED: u32 = 4;
@@ -36,6 +36,7 @@ pub fn run(scene: Option<&Path>, output: &Path, options: &OptionValues) -> Resul
     }
     check_writable(output)?;
     let (job, context) = Job::on_device(scene, options)?;
+    check_anti_aliasing(&job.settings, exr)?;
     let precision = if exr {
         Precision::Float
     } else {
@@ -59,6 +60,26 @@ pub fn run(scene: Option<&Path>, output: &Path, options: &OptionValues) -> Resul
     }?;
     context.check_validation()?;
     print(&format!("{}: {summary}\n", output.display()))
+}
+
+/// Fails where `--aa` would have no effect on a single frame. Pictures of several samples are smooth without it.
+fn check_anti_aliasing(options: &Options, exr: bool) -> Result<()> {
+    let is_picture = is_light(options.show) && options.false_colour.is_none();
+    let what = match options.aa {
+        _ if options.samples > 1 => return Ok(()),
+        AntiAliasing::Off => return Ok(()),
+        AntiAliasing::Taa => {
+            "--aa taa takes the samples of frames before, and a file has none; choose smaa, or --samples 4 or more"
+        }
+        AntiAliasing::Smaa if exr => {
+            "--aa smaa smooths what is displayed, not the values of .exr; leave it out, write .png, or choose --samples 4 or more"
+        }
+        AntiAliasing::Smaa if !is_picture => {
+            "--aa smaa smooths pictures, not other quantities and false colours; leave it out, or choose --samples 4 or more"
+        }
+        AntiAliasing::Smaa => return Ok(()),
+    };
+    Err(OptionsError(what.to_owned()).into())
 }
 
 struct Renderer<'j> {

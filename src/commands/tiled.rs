@@ -20,7 +20,7 @@ use crate::daylight::false_colour::Range;
 use crate::error::Result;
 use crate::frame::{Frame, FrameSettings, Visibility};
 use crate::gpu::{Context, Image, Pixels, Recorder, Timing, read_back};
-use crate::options::OptionsError;
+use crate::options::{AntiAliasing, OptionsError};
 use crate::output::{Encoding, LayerKind, PngRows, write_exr_rows};
 use crate::passes::light::lighting::{Ambient, Precision, Show};
 use crate::passes::picture::tone_map::Scale;
@@ -58,6 +58,10 @@ impl<'j> Tiled<'j> {
         };
         if job.settings.noise.is_some() {
             let what = "--noise is judged on whole pictures, not in tiles; say how many --samples, or choose a smaller --size";
+            return Err(OptionsError(what.to_owned()).into());
+        }
+        if job.settings.samples == 1 && job.settings.aa == AntiAliasing::Smaa {
+            let what = "--aa smaa smooths whole pictures, not tiles; choose --samples 4 or more, or a smaller --size";
             return Err(OptionsError(what.to_owned()).into());
         }
         let occludes = job.settings.visibility == Visibility::Ssao

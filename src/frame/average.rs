@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{FrameSettings, Visibility};
+use super::{AntiAliasing, FrameSettings, Visibility};
 use crate::gpu::{Context, Image, Recorder, Result};
 use crate::passes::bounces::cells::Cells;
 use crate::passes::bounces::gather::Gather;
@@ -40,7 +40,7 @@ pub(super) struct Converging {
     gather: Option<Gather>,
     /// Diffuse sky light, and the means.
     dome: Dome,
-    /// Cross-fade from the preview to the means.
+    /// Cross-fade from the preview to the means, unless display values fade.
     fade: Option<Fade>,
     /// Whether the newest frame was a preview.
     is_previewed: bool,
@@ -64,7 +64,8 @@ impl Average {
             return Ok(Self::None);
         }
         let (sampling, lighting) = (&settings.sampling, settings.lighting);
-        let fades = sampling.visibility == Visibility::Progressive;
+        let fades = sampling.visibility == Visibility::Progressive
+            && settings.anti_aliasing() == AntiAliasing::Off;
         let bounces = settings.gathered();
         Ok(Self::Dome(Box::new(Converging {
             lit: Lit {
@@ -92,6 +93,7 @@ impl Average {
                 s.lighting,
                 s.shadow_resolution,
                 s.gathered(),
+                s.anti_aliasing() == AntiAliasing::Off,
             );
             (s.size, s.takes_mean(), s.converges().then_some(of_dome))
         };

@@ -65,12 +65,14 @@ pub(super) struct Sample {
 /// Mip bias toward finer levels for converging frames: each sample filters over an eighth of the pixel's width.
 const SHARPEN: f32 = 3.0;
 
+/// The same for moving views, whose picture holds some ten samples: each filters over half of the pixel's width.
+const MOVING_SHARPEN: f32 = 1.0;
+
 impl Sample {
     /// The sample of frame number `index` of an average. Without a number, or if nothing is averaged: the centres of pixel and sun.
     pub fn of(settings: &FrameSettings, daylight: &Daylight, index: Option<u32>) -> Self {
         let sun = daylight.direct_light().direction.as_vec3();
-        let averages = settings.takes_mean() || settings.converges();
-        let Some(index) = index.filter(|_| averages) else {
+        let Some(index) = index.filter(|_| settings.averages()) else {
             return Self::central(sun);
         };
         let sample = Self::new(sun, index, &settings.sampling);
@@ -98,6 +100,17 @@ impl Sample {
             jitter: self.jitter,
             sharpen: self.sharpen,
             window: tile,
+        }
+    }
+
+    /// The sample of frame number `number` of a moving view: another point of the pixels, and the sun's centre.
+    pub fn moving(daylight: &Daylight, number: u32) -> Self {
+        let sun = daylight.direct_light().direction.as_vec3();
+        Self {
+            jitter: offset(Filter::Box, sampling::r2(number)),
+            phase: sampling::radical_inverse(number) as f32,
+            sharpen: MOVING_SHARPEN,
+            ..Self::central(sun)
         }
     }
 
@@ -183,6 +196,25 @@ mod tests {
             (variance / expected - 1.0).abs() < 1e-3,
             "{variance} {expected}"
         );
+    }
+
+    #[test]
+    fn a_moving_view_samples_its_pixels_evenly() {
+        // Multiples of 1/g and 1/g² about the middle, g³ = g + 1.
+        let g = 1.324_717_957_244_746;
+        let day = Daylight::new(&crate::daylight::sky::Conditions::default());
+        let jitter = |number: u32| Sample::moving(&day, number).jitter.as_dvec2();
+        let mut sum = DVec2::ZERO;
+        for number in 0..64 {
+            let expected = f64::from(number) * DVec2::new(1.0 / g, 1.0 / (g * g));
+            let expected = (expected + 0.5).fract() - 0.5;
+            assert!((jitter(number) - expected).length() < 1e-6, "{number}");
+            sum += expected;
+            // Eight frames in a row lie around the pixel's centre.
+            let mean = (number..number + 8).map(jitter).sum::<DVec2>() / 8.0;
+            assert!(mean.length() < 0.15, "{number}: {mean}");
+        }
+        assert!((sum / 64.0).length() < 0.03, "{sum}");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::UVec2;
 
 use super::ambient::AmbientNeed;
-use super::{Sampling, Visibility};
+use super::{AntiAliasing, Sampling, Visibility};
 use crate::daylight::exposure::KEY;
 use crate::daylight::tone_curve::{REINHARD_WHITE, ToneCurve};
 use crate::gpu::{Context, Result};
@@ -19,7 +19,7 @@ use crate::passes::light::lighting::{
 use crate::passes::light::lobes::{Lobes, LobesNeed};
 use crate::passes::light::panes::Panes;
 use crate::passes::occlusion::ssao::SsaoSettings;
-use crate::passes::picture::tone_map::{Scale, ToneMap, ToneSettings};
+use crate::passes::picture::tone_map::{Scale, ToneMap, ToneSettings, is_light};
 use crate::passes::sky::air::{Air, LEAST_SCENE};
 use crate::passes::sky::irradiance::IrradianceSettings;
 use crate::passes::sun_shadow::cascades;
@@ -52,6 +52,8 @@ pub struct FrameSettings {
     pub lighting: LightingSettings,
     /// Tone mapping and exposure.
     pub tone: ToneSettings,
+    /// Anti-aliasing of what is displayed of single frames and moving views.
+    pub aa: AntiAliasing,
 }
 
 impl Default for FrameSettings {
@@ -97,6 +99,7 @@ impl Default for FrameSettings {
                 false_colour: None,
                 peak: None,
             },
+            aa: AntiAliasing::default(),
         }
     }
 }
@@ -125,6 +128,11 @@ impl FrameSettings {
     /// Whether the mean of the frames converges to the true visibility of the sky ([`crate::passes::dome::gather::Dome`]).
     pub(super) fn converges(&self) -> bool {
         self.sampling.visibility != Visibility::Ssao
+    }
+
+    /// Whether frames of an average are combined at all.
+    pub(super) fn averages(&self) -> bool {
+        self.takes_mean() || self.converges()
     }
 
     /// The bounces that rays gather in converging frames: those of the settings if the quantity shown has them.
@@ -182,9 +190,30 @@ impl FrameSettings {
         self.converges() || self.lighting.has_lobes()
     }
 
+    /// Whether the depth of the frame before is kept.
+    pub(super) fn keeps_depth(&self) -> bool {
+        self.anti_aliasing() == AntiAliasing::Taa
+    }
+
+    /// The anti-aliasing: none of quantities and false colours, whose values between two surfaces would mean nothing.
+    pub(super) fn anti_aliasing(&self) -> AntiAliasing {
+        let is_picture = is_light(self.tone.show) && self.tone.false_colour.is_none();
+        if is_picture {
+            self.aa
+        } else {
+            AntiAliasing::Off
+        }
+    }
+
+    /// What the anti-aliasing depends on.
+    pub(super) fn smooth_need(&self) -> (UVec2, AntiAliasing, bool) {
+        (self.size, self.anti_aliasing(), self.tone.peak.is_some())
+    }
+
     /// The G-buffer.
     pub(super) fn gbuffer(&self, context: &Arc<Context>, geometry: &Geometry) -> Result<Gbuffer> {
-        Gbuffer::new(context, geometry, self.size.to_array(), self.has_faces())
+        let kinds = (self.has_faces(), self.keeps_depth());
+        Gbuffer::new(context, geometry, self.size.to_array(), kinds)
     }
 
     /// What the light in the lobes of GGX depends on; `None` if it is not shown.

@@ -7,8 +7,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Command};
 
 use super::{
-    Ambient, ColourMap, Filter, IrradianceMethod, Optional, Phong, Quantity, Reflections, Show,
-    SkyModel, SunPositionMethod, ToneCurve, Unit, Up, Visibility,
+    Ambient, AntiAliasing, ColourMap, Filter, IrradianceMethod, Optional, Phong, Quantity,
+    Reflections, Show, SkyModel, SunPositionMethod, ToneCurve, Unit, Up, Visibility,
 };
 
 /// An enum whose variants are values of an option.
@@ -135,6 +135,11 @@ choices! {
     Ambient {
         Cells = "cells": "Cells of irradiance in the scene: the true visibility of the sky, and bounces",
         Ssao = "ssao": "Screen-space ambient occlusion of the open sky, no bounces: the lecture's A",
+    }
+    AntiAliasing {
+        Off = "off": "None: one sample a pixel",
+        Smaa = "smaa": "By the shapes of its edges, from one frame alone",
+        Taa = "taa": "By the samples of the frames before, moved along with the camera",
     }
     Filter {
         Box = "box": "Uniform over the pixel",

@@ -1,6 +1,6 @@
 //! A camera with its picture: its matrices, and the uniform block of the screen-space shaders.
 
-use glam::{Mat3, Mat4, UVec2, Vec2, Vec3};
+use glam::{DMat3, DVec2, DVec4, Mat3, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::gpu_struct;
 use crate::scene::Camera;
@@ -41,6 +41,21 @@ pub struct Window {
     pub origin: UVec2,
     /// Width and height of the whole picture; may be fractional if the part is coarser than the picture.
     pub picture: Vec2,
+}
+
+/// Where the surfaces of a picture were in the one before it, without the jitter of either.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Reprojection {
+    /// Product with (pixel, reversed depth, 1): u of the picture before, 0..1, times w.
+    pub to_u: Vec4,
+    /// The same for v.
+    pub to_v: Vec4,
+    /// The same for w, the distance from the eye before over that from the eye now.
+    pub to_w: Vec4,
+    /// Product with reversed depth: that of the picture before, times w.
+    pub to_depth: f32,
+    /// Largest motion between the pictures of two surfaces whose reversed depth in the picture before differs by 1, pixels.
+    pub parallax: f32,
 }
 
 impl View {
@@ -100,6 +115,40 @@ impl View {
         let ndc = 2.0 * pixel / self.size.as_vec2() - 1.0;
         let ray = (ndc * block.ray_scale + block.ray_offset).extend(-1.0);
         block.eye + block.world_from_view * ray * distance
+    }
+
+    /// Half the extent of the picture at distance 1. In Vulkan, rows run down; the camera's y axis points up.
+    fn half_extent(&self) -> DVec2 {
+        let tan_y = (0.5 * f64::from(self.camera.fov_deg).to_radians()).tan();
+        DVec2::new(tan_y * f64::from(self.aspect()), -tan_y)
+    }
+
+    /// Where what this view sees was in the picture of the view `before`. Both are views of whole pictures.
+    pub fn reprojection(&self, before: &Self) -> Reprojection {
+        let (size, half) = (self.size.as_dvec2(), self.half_extent());
+        let half_before = before.half_extent();
+        let axes = |view: &Self| DMat3::from_mat4(view.camera.world_from_view().as_dmat4());
+        let from_world = axes(before).transpose();
+        let turn = from_world * axes(self);
+        let step = (self.camera.eye - before.camera.eye).as_dvec3();
+        // The position seen from the eye before, over the distance now, is linear in pixel and reversed depth.
+        let per_pixel = [turn.x_axis * half.x, turn.y_axis * half.y];
+        let columns = [
+            per_pixel[0] * 2.0 / size.x,
+            per_pixel[1] * 2.0 / size.y,
+            from_world * step / f64::from(self.camera.near),
+            -per_pixel[0] - per_pixel[1] - turn.z_axis,
+        ];
+        let row = |axis: usize| DVec4::from_array(columns.map(|column| column[axis]));
+        let w = -row(2);
+        let pixels_per_tan = 0.5 * f64::from(before.size.y) / -half_before.y;
+        Reprojection {
+            to_u: (0.5 * (row(0) / half_before.x + w)).as_vec4(),
+            to_v: (0.5 * (row(1) / half_before.y + w)).as_vec4(),
+            to_w: w.as_vec4(),
+            to_depth: before.camera.near / self.camera.near,
+            parallax: (step.length() * pixels_per_tan / f64::from(before.camera.near)) as f32,
+        }
     }
 
     /// The uniform block from which shaders reconstruct positions and rays.
@@ -163,6 +212,67 @@ mod tests {
             let back = part.point(b, part.camera.near / z);
             assert!((back - point).length() < 1e-3, "{back}");
         }
+    }
+
+    #[test]
+    fn surfaces_are_found_where_they_were() {
+        let now = view(Vec2::new(0.25, -0.5));
+        let mut before = view(Vec2::new(-0.3, 0.1));
+        before.camera.eye += Vec3::new(0.3, 0.05, -0.2);
+        before.camera.fov_deg = 55.0;
+        before.camera.near = 0.02;
+        let seen = |view: &View, point: Vec3| {
+            let steady = View {
+                jitter: Vec2::ZERO,
+                ..*view
+            };
+            let clip = steady.clip_from_world() * point.extend(1.0);
+            let ndc = clip.truncate() / clip.w;
+            ((ndc.truncate() + 1.0) * 0.5, ndc.z)
+        };
+        let motion = now.reprojection(&before);
+        for point in [
+            Vec3::new(-2.0, 1.2, -1.5),
+            Vec3::new(0.5, 0.0, 2.0),
+            Vec3::new(-40.0, 8.0, -60.0),
+        ] {
+            let ((uv, depth), (uv_before, depth_before)) =
+                (seen(&now, point), seen(&before, point));
+            let pixel = uv * now.size.as_vec2();
+            let here = Vec4::new(pixel.x, pixel.y, depth, 1.0);
+            let w = motion.to_w.dot(here);
+            let found = Vec2::new(motion.to_u.dot(here), motion.to_v.dot(here)) / w;
+            assert!((found - uv_before).length() < 1e-5, "{found} {uv_before}");
+            let error = motion.to_depth * depth / w / depth_before - 1.0;
+            assert!(error.abs() < 1e-5, "{error}");
+        }
+        // The background moves by the turn of the camera alone.
+        let far = Vec4::new(100.0, 50.0, 0.0, 1.0);
+        let still = now.reprojection(&now);
+        let uv = Vec2::new(still.to_u.dot(far), still.to_v.dot(far)) / still.to_w.dot(far);
+        assert!(
+            (uv * now.size.as_vec2() - far.truncate().truncate()).length() < 1e-3,
+            "{uv}"
+        );
+        assert_eq!((still.parallax, still.to_depth), (0.0, 1.0));
+    }
+
+    #[test]
+    fn parallax_is_the_most_that_two_surfaces_move_apart() {
+        let now = view(Vec2::ZERO);
+        let mut before = now;
+        // A step aside moves surfaces by exactly as much, one forward by less.
+        let aside = now.camera.world_from_view().x_axis.truncate();
+        before.camera.eye -= aside * 0.1;
+        let motion = now.reprojection(&before);
+        let at = |depth: f32| {
+            let here = Vec4::new(320.0, 180.0, depth, 1.0);
+            motion.to_u.dot(here) / motion.to_w.dot(here) * 640.0
+        };
+        let (near, far) = (now.camera.near / 4.0, now.camera.near / 9.0);
+        let apart = (at(near) - at(far)).abs();
+        let expected = motion.parallax * (near - far);
+        assert!((apart / expected - 1.0).abs() < 1e-3, "{apart} {expected}");
     }
 
     #[test]

@@ -407,6 +407,47 @@ fn the_addends_of_layers_sum_to_the_picture() {
 }
 
 #[test]
+fn anti_aliasing_of_a_file_is_done_or_refused() {
+    let place = Place::new();
+    for (words, remedy) in [
+        (&["-o", "a.png", "--aa", "taa"][..], "smaa"),
+        (&["-o", "a.exr", "--aa", "smaa"], ".png"),
+        (
+            &["-o", "a.png", "--aa", "smaa", "--show", "normal"],
+            "leave it out",
+        ),
+        (
+            &["-o", "a.png", "--aa", "smaa", "--false-colour", "luminance"],
+            "leave it out",
+        ),
+    ] {
+        let before = place.contents();
+        let words = [&["m.obj"], words].concat();
+        place
+            .render(&words)
+            .failed(2, &["--aa", remedy, "--samples"]);
+        assert_eq!(place.contents(), before, "{words:?}");
+    }
+    let mut written = |name: &str, words: &[&str]| {
+        place
+            .render(&[&["m.obj", "-o", name], words].concat())
+            .succeeded();
+        png(&place.path().join(name))
+    };
+    let (plain, smooth) = (
+        written("off.png", &[]),
+        written("smaa.png", &["--aa", "smaa"]),
+    );
+    assert_eq!(plain.0["aa"], "off");
+    assert_eq!(smooth.0["aa"], "smaa");
+    assert!(plain.2 != smooth.2, "smaa changes nothing");
+    // Samples smooth a picture by themselves.
+    let [with, without] =
+        ["taa", "off"].map(|aa| written(&format!("{aa}4.png"), &["--samples", "4", "--aa", aa]));
+    assert!(with.2 == without.2);
+}
+
+#[test]
 fn bad_words_end_with_2_and_touch_nothing() {
     let place = Place::new();
     place.put("old.png", "old");

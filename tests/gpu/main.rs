@@ -36,6 +36,7 @@ mod routes;
 mod shadow;
 mod sheets;
 mod sky;
+mod smooth;
 mod specular;
 mod ssao;
 mod stars;

@@ -8,7 +8,7 @@ use crate::daylight::sun_position::azimuth_elevation;
 use crate::error::Result;
 use crate::frame::{Frame, FrameSettings};
 use crate::gpu::{Image, Recorder};
-use crate::options::{OptionValues, Options, Size, SunInput, Visibility};
+use crate::options::{AntiAliasing, OptionValues, Options, Size, SunInput, Visibility, name};
 use crate::passes::light::lighting::Precision;
 use crate::passes::light::probe::Reading;
 use crate::passes::picture::tone_map::{Scale, ToneSettings};
@@ -351,7 +351,7 @@ impl Document {
 }
 
 /// The user's options with the window's size and defaults: enough samples at rest for the true visibility of the sky (except with
-/// the lecture preset), and fewer directions per frame than for a file, which keeps frames short when motion resumes.
+/// the lecture preset), fewer directions per frame than for a file, which keeps frames short when motion resumes, and anti-aliasing.
 fn at_rest(user: &OptionValues, size: Size) -> OptionValues {
     let mut options = user.clone();
     options.set("size", size);
@@ -359,6 +359,7 @@ fn at_rest(user: &OptionValues, size: Size) -> OptionValues {
         options.set_default("visibility", Visibility::Ssao);
     }
     options.set_default("samples", REST_SAMPLES);
+    options.set_default("aa", name(AntiAliasing::Taa));
     options.set_default("dome-directions", REST_DIRECTIONS);
     options
 }

@@ -36,7 +36,7 @@ impl Exposure {
         let image = |name| {
             Image::new(
                 context,
-                &ImageDesc::flat(name, Format::R32_SFLOAT, [1, 1]).stored(),
+                &ImageDesc::flat(name, Format::R32G32B32A32_SFLOAT, [1, 1]).stored(),
             )
         };
         let pipeline = compute(context, "exposure", &shaders::EXPOSURE_COMP, &[])?;
@@ -79,7 +79,7 @@ impl Exposure {
         new
     }
 
-    /// The newest average luminance, kcd/m², as one texel.
+    /// The newest average luminance, kcd/m², as one texel; its second value is the change since the picture before, a factor.
     pub fn image(&self) -> &Image {
         &self.luminances[self.newest.get().unwrap_or(0)]
     }

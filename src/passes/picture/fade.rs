@@ -26,7 +26,7 @@ gpu_struct! {
 pub struct Fade {
     pipeline: Pipeline,
     image: Image,
-    /// Length of the fade, frames.
+    /// Frames of the average.
     frames: u32,
     has_preview: bool,
 }
@@ -46,7 +46,7 @@ impl Fade {
         Ok(Self {
             pipeline: screen(context, "fade", shaders, &[format], Depth::Off, &[])?,
             image: Image::new(context, &desc.target_by(context.route()))?,
-            frames: samples.min(LONGEST),
+            frames: samples,
             has_preview: false,
         })
     }
@@ -84,8 +84,10 @@ impl Fade {
     }
 }
 
-/// Weight of the preview in frame number `index`: a smoothstep from 1 before the first frame to 0 in the last.
-fn share(index: u32, frames: u32) -> f32 {
+/// Weight of the preview in frame number `index` of an average of `frames`: a smoothstep from 1 before the first frame to 0 in the last, or in
+/// the 64th.
+pub fn share(index: u32, frames: u32) -> f32 {
+    let frames = frames.min(LONGEST);
     let t = ((index + 1) as f32 / frames.max(1) as f32).min(1.0);
     1.0 - t * t * (3.0 - 2.0 * t)
 }

@@ -3,6 +3,8 @@
 //! The shader encodes, by the sRGB curve or by a power law (the lecture's (s R)^(1/γ)): a device that encodes for a format may be off by 0.6 steps of 8 bits,
 //! more than the dither leaves. Light is dithered by a step of 8 bits after the tone curve; false colours and other quantities are not.
 //!
+//! Alpha tells the temporal anti-aliasing whether the exposure is nearly that of the picture before.
+//!
 //! For an HDR screen the display values stay linear, and no curve bends them: up to the screen's peak they are the exposed picture
 //! ([`crate::daylight::hdr`]).
 
@@ -87,7 +89,7 @@ pub fn is_linear(display: &Image) -> bool {
 }
 
 /// Whether a quantity is light, which is exposed and tone mapped.
-fn is_light(show: Show) -> bool {
+pub fn is_light(show: Show) -> bool {
     show.file_unit() != 1.0
 }
 
@@ -107,6 +109,15 @@ fn kilo_range(range: Range) -> (f64, f64) {
 }
 
 impl ToneMap {
+    /// Format of the display values.
+    pub fn format(settings: &ToneSettings) -> Format {
+        if settings.peak.is_some() {
+            LINEAR
+        } else {
+            ENCODED
+        }
+    }
+
     /// Creates the pass for pictures of `size` pixels.
     ///
     /// # Errors
@@ -131,7 +142,7 @@ impl ToneMap {
         let curve = |c: ToneCurve| u32::from(light && !hdr && settings.curve == c);
         let average = light && matches!(settings.scale, Scale::Average { .. });
         let gamma = settings.gamma.is_some() && !false_colour;
-        let format = if hdr { LINEAR } else { ENCODED };
+        let format = Self::format(&settings);
         let pipeline = screen_by(
             route,
             context,

@@ -69,6 +69,10 @@ pub struct Surfaces {
     pub depth: Image,
 }
 
+fn depth_image(context: &Arc<Context>, size: [u32; 2]) -> Result<Image> {
+    Image::new(context, &ImageDesc::flat("depth", Format::D32_SFLOAT, size))
+}
+
 impl Surfaces {
     fn new(context: &Arc<Context>, size: [u32; 2], targets: &[Format]) -> Result<Self> {
         let image = |name, format| Image::new(context, &ImageDesc::flat(name, format, size));
@@ -80,7 +84,7 @@ impl Surfaces {
             normal_material: image("normal and material", targets[0])?,
             albedo: target(1, "albedo")?,
             emission: target(2, "emission")?,
-            depth: image("depth", Format::D32_SFLOAT)?,
+            depth: depth_image(context, size)?,
         })
     }
 
@@ -161,6 +165,8 @@ pub struct Gbuffer {
     /// For surfaces with alpha test, normal maps or vertex colours, by kind.
     detailed: BTreeMap<Kind, Pipeline>,
     surfaces: Surfaces,
+    /// Depth of the frame before, if it is kept.
+    depth_before: Option<Image>,
 }
 
 /// Position, normal, texture coordinates; for detailed surfaces also colour and tangent.
@@ -228,7 +234,8 @@ impl Targets {
 }
 
 impl Gbuffer {
-    /// Creates images of `size` pixels and the pipelines that `geometry` needs. `faces`: store the slopes of the face at each pixel.
+    /// Creates images of `size` pixels and the pipelines that `geometry` needs. `faces`: store the slopes of the face at each pixel. `keeps`: keep
+    /// the depth of the frame before.
     ///
     /// # Errors
     /// Fails when the device cannot create the resources.
@@ -236,7 +243,7 @@ impl Gbuffer {
         context: &Arc<Context>,
         geometry: &Geometry,
         size: [u32; 2],
-        faces: bool,
+        (faces, keeps): (bool, bool),
     ) -> Result<Self> {
         // One target of several words: on a software device the number of targets costs more than the amount written.
         let mut formats = vec![if faces {
@@ -262,7 +269,20 @@ impl Gbuffer {
             textured: pipelines(false).collect::<Result<_>>()?,
             detailed: pipelines(true).collect::<Result<_>>()?,
             surfaces: Surfaces::new(context, size, &targets.formats)?,
+            depth_before: keeps.then(|| depth_image(context, size)).transpose()?,
         })
+    }
+
+    /// Keeps the depth as last drawn for the next frame, if it is kept at all.
+    pub fn turn(&mut self) {
+        if let Some(before) = &mut self.depth_before {
+            std::mem::swap(&mut self.surfaces.depth, before);
+        }
+    }
+
+    /// Depth before the last [`Gbuffer::turn`], if it is kept.
+    pub fn depth_before(&self) -> Option<&Image> {
+        self.depth_before.as_ref()
     }
 
     /// The images as last drawn.

@@ -23,6 +23,7 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document, requests: &mut Vec<UiRe
     let settings = &mut document.job.settings;
     choice(ui, "show", &mut settings.show);
     false_colours(ui, settings);
+    choice(ui, "edges in motion", &mut settings.aa);
     ui.add_enabled_ui(!screen.is_hdr, |ui| {
         choice(ui, "tone curve", &mut settings.tonemap)
     })

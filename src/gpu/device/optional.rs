@@ -15,7 +15,7 @@ pub enum Optional {
     FloatFilter,
     /// Blending into 32-bit floats. Without it pictures of 32-bit floats have no stars.
     FloatBlend,
-    /// Storage images of all formats of [`STORED`]. Fallback: fragment shaders run full-screen passes.
+    /// Storage images of the formats of pictures. Fallback: fragment shaders run full-screen passes.
     StoredPictures,
     /// Timestamps of the queue. Fallback: each pass is submitted alone and timed by the clock of the wall.
     Timestamps,

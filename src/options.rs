@@ -30,6 +30,7 @@ pub use crate::daylight::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCur
 pub use crate::frame::{Filter, Visibility};
 pub use crate::gpu::Optional;
 pub use crate::passes::bounces::cells::Bounces;
+pub use crate::passes::dome::route::DomeBy;
 pub use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
 pub use crate::passes::light::lighting::{Ambient, Show};
 use choices::VisibilityParser;
@@ -365,6 +366,9 @@ options! {
             #[arg(value_name = "TEXELS", value_parser = value_parser!(u32).range(64..=4096),
                   default_value_t = DomeSettings::default().map_edge)]
             dome_size: u32,
+            /// How the sky's visibility in them is found. Both converge to the same picture.
+            #[arg(value_name = "HOW", value_parser = choice::<DomeBy>(), default_value_t)]
+            dome_by: DomeBy,
             /// Smooth models without normals below this angle between faces, degrees, 0 to 180.
             #[arg(value_name = "DEGREES", value_parser = values::crease, allow_hyphen_values = true)]
             smooth: Option<f64>,

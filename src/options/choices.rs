@@ -7,8 +7,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Command};
 
 use super::{
-    Ambient, ColourMap, Filter, IrradianceMethod, Optional, Phong, Quantity, Reflections, Show,
-    SkyModel, SunPositionMethod, ToneCurve, Unit, Up, Visibility,
+    Ambient, ColourMap, DomeBy, Filter, IrradianceMethod, Optional, Phong, Quantity, Reflections,
+    Show, SkyModel, SunPositionMethod, ToneCurve, Unit, Up, Visibility,
 };
 
 /// An enum whose variants are values of an option.
@@ -167,6 +167,11 @@ choices! {
     Quantity {
         Luminance = "luminance": "Of the light toward the eye, cd/m²",
         Illuminance = "illuminance": "Of the surface under the pixel, lux",
+    }
+    DomeBy {
+        Auto = "auto": "What costs less, by the numbers of triangles and pixels",
+        Maps = "maps": "A shadow map of the scene for each direction: for scenes of few triangles",
+        Rays = "rays": "A ray from each pixel in each direction: for scenes of many triangles",
     }
     Reflections {
         Open = "open": "Nothing occludes the sky in reflections, as in the lecture's illumination model",

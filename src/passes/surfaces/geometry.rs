@@ -287,6 +287,17 @@ impl Geometry {
         kinds.into_iter()
     }
 
+    /// Whether any surface has holes by its alpha.
+    pub fn has_cut_outs(&self) -> bool {
+        self.kinds().any(|kind| kind.cut_out)
+    }
+
+    /// Triangles of all opaque casters without holes.
+    pub fn casting_triangles(&self) -> usize {
+        let clusters = self.casting.iter().flat_map(|r| &self.clusters[r.clone()]);
+        clusters.map(|cluster| cluster.count as usize / 3).sum()
+    }
+
     /// Whether any material has a ρ_s.
     pub fn is_specular(&self) -> bool {
         self.is_specular || self.is_rough

@@ -212,7 +212,7 @@ options! {
             /// an estimate from the samples, for instance 0.01 (render only).
             #[arg(value_name = "R", value_parser = values::noise, allow_hyphen_values = true)]
             noise: Option<f64>,
-            /// What hides the sky: in single frames what --ambient says, or shadow maps from directions of the sky, which converge to
+            /// What hides the sky: in single frames what --ambient says, or maps or rays in directions of the sky, which converge to
             /// the truth with the samples. From 16 samples on the default is dome. Given as ssao, so is --ambient.
             /// A number is the visibility of the air in km instead: --visual-range.
             #[arg(value_name = "HOW", value_parser = VisibilityParser, default_value_t)]

@@ -234,7 +234,7 @@ choices! {
     }
     Visibility {
         Ssao = "ssao": "Single frames: at once; if given, --ambient is ssao too",
-        Dome | Progressive = "dome": "Shadow maps from directions of the sky: converges to the truth over the samples",
+        Dome | Progressive = "dome": "Shadow maps or rays in directions of the sky: converges to the truth over the samples",
     }
 }
 

@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 
+use glam::DVec3;
 use skylight::daylight::colour::luminance;
+use skylight::daylight::quadrature::SphereQuadrature;
 use skylight::frame::FrameSettings;
 use skylight::passes::dome::route::DomeBy;
 use skylight::passes::light::lighting::Show;
@@ -90,7 +92,7 @@ fn rays_find_the_light_of_an_opening() {
     for (pixel, e) in picture.pixels() {
         let ground = on_ground(&view, picture.size, pixel);
         // Without the foot of the wall, which is a pixel or two wide here.
-        let is_inside = |p: &glam::DVec3| p.x.abs().max(p.z.abs()) < f64::from(ROOM[0]) - 0.1;
+        let is_inside = |p: &DVec3| p.x.abs().max(p.z.abs()) < f64::from(ROOM[0]) - 0.1;
         if let Some(p) = ground.filter(is_inside) {
             found += 1000.0 * luminance(e);
             exact += PI * L * configuration_factor(p);
@@ -98,4 +100,29 @@ fn rays_find_the_light_of_an_opening() {
     }
     println!("floor: {:.4} of the light by the factor", found / exact);
     assert!((found / exact - 1.0).abs() < 0.01, "{}", found / exact);
+}
+
+/// A wide ground shadows nothing from above, so maps leave it out; light from below must not pass it.
+#[test]
+fn the_light_of_the_far_ground_does_not_pass_the_ground_of_the_model() {
+    let mut device = Device::new();
+    let scene = Model::default()
+        .ground(40.0, &matt(0.1))
+        .cube([0.0, 1.0, 0.0], 1.0, &matt(0.7))
+        .build();
+    let day = clear_day(150.0, 50.0);
+    let view = camera([0.0, 1.0, 3.0], [0.0, 1.0, 0.0]);
+    for way in [DomeBy::Maps, DomeBy::Rays] {
+        let set = showing(Show::Sky, by(way, dome(16, 64)));
+        let picture = device.picture(&scene, set, &day, &view);
+        let wall = luminance(picture.at(8, 8));
+        // Half of the sky is before a wall: its light on the wall without any from below.
+        let of_sky =
+            SphereQuadrature::upper(128, 256).irradiance(DVec3::Z, |d| day.sky_radiance(d));
+        let of_sky = luminance(of_sky) * 0.7 / PI * 1e-3;
+        assert!(
+            (wall / of_sky - 1.0).abs() < 0.02,
+            "{way:?}: {wall} {of_sky}"
+        );
+    }
 }

@@ -1,12 +1,12 @@
-//! Sky light with true visibility: shadow maps from sampled sky directions, averaged over many frames.
+//! Sky light with true visibility from sampled sky directions, averaged over many frames.
 //!
 //! [`SkySampler`] importance samples a few directions per frame by luminance. For each one, the frame draws a depth map into a
-//! tile of one image. Per pixel it sums V L cos θ / p over these directions (N), and the same without V (D). The means over the
+//! tile of one image or traces a ray from each pixel, see [`crate::passes::dome::route`]. Per pixel it sums V L cos θ / p over these directions (N), and the same without V (D). The means over the
 //! frames converge to ∫ V L cos dω and to the unoccluded E, which the irradiance cube has without noise (U). The picture shows
 //! N · U / D: exact from the first frame on where the sky is unoccluded; elsewhere errors of N and D partly cancel. U / D tends
 //! to 1, so no bias remains.
 //!
-//! The ground below the horizon is a light source too: directions of the lower hemisphere also get maps.
+//! The ground below the horizon is a light source too: directions of the lower hemisphere are among them.
 
 use std::sync::Arc;
 

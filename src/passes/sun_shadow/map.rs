@@ -130,7 +130,7 @@ impl Casters {
                     draws.push(&Push {
                         shadow_from_world: tile.view.shadow_from_world.to_cols_array_2d(),
                     });
-                    geometry.draw_positions(draws, &tile.cull());
+                    geometry.draw_positions(draws, &tile.cull(), tile.view.toward.y < 0.0);
                 }
             });
         if let Some(pipeline) = &self.cut_outs {

@@ -35,6 +35,9 @@ const float FAR = 1e30;
 // Smallest magnitude of a component of a direction: its inverse must be finite.
 const float TINY = 1e-20;
 
+// Step of the grid in a pixel to which the corners of drawn triangles are moved, pixels.
+layout(constant_id = 37) const float CORNER_STEP = 0.0;
+
 // Offset of ray origins from their surface, relative to the largest coordinate: covers the rounding of float32.
 const float LIFT = 3e-5;
 
@@ -47,11 +50,22 @@ vec3 lifted(vec3 position, vec3 normal) {
     return position + lift_at(position) * normal;
 }
 
-/// A point that is seen from `eye`, lifted off its surface toward it: nothing is in between, not even another wall of an acute corner.
-vec3 lifted_to_eye(vec3 position, vec3 normal, vec3 eye) {
+/// How far a point that is reconstructed from a picture may be off its surface, metres a metre from the eye. `size`: of the picture, pixels.
+float corner_error(vec2 ray_scale, vec2 size) {
+    vec2 pixel = 2.0 * abs(ray_scale) / size;
+    return CORNER_STEP * max(pixel.x, pixel.y);
+}
+
+/// A point of a picture, seen from `eye`, lifted off its surface. `error`: of `corner_error`.
+vec3 lifted_from(vec3 position, vec3 normal, vec3 eye, float error) {
+    return position + (lift_at(position) + error * length(eye - position)) * normal;
+}
+
+/// The same, lifted toward the eye but for the error: nothing is in between, not even another wall of an acute corner.
+vec3 lifted_to_eye(vec3 position, vec3 normal, vec3 eye, float error) {
     vec3 away = eye - position;
     float height = max(dot(away, normal), 0.05 * length(away));
-    return position + away * min(lift_at(position) / height, 0.5);
+    return position + away * min(lift_at(position) / height, 0.5) + error * length(away) * normal;
 }
 
 /// A point that is seen from `eye`, lifted off its face to the side of a light: for faces that are seen from behind, too.

@@ -1,5 +1,5 @@
 // The sun's shadow: a single map, or cascades for large scenes; with PCSS, penumbrae of physical width.
-// Needs bvh.glsl, `shadow_map`, `sun_glass`, `sun`, `view`, CASCADES and PCSS.
+// Needs bvh.glsl, `depth`, `shadow_map`, `sun_glass`, `sun`, `view`, CASCADES and PCSS.
 
 layout(set = 0, binding = 11, scalar) uniform Cascades {
     mat4 from_world[4]; // the finest first; their maps lie side by side
@@ -216,7 +216,7 @@ bool is_at_foot(Sunlit lit, float n_dot_l, int k) {
 /// V of a point near the edge of a shadow. At the foot of walls and where they meet, the filter and the offsets take light from the other
 /// side of them; there rays decide. Ordinary edges of shadows stay as soft as the map has them.
 float at_edge(Sunlit lit, vec3 world, vec3 n, float n_dot_l, int k) {
-    vec3 origin = lifted_to_eye(world, n, view.eye);
+    vec3 origin = lifted_to_eye(world, n, view.eye, corner_error(view.ray_scale, vec2(textureSize(depth, 0))));
     float foot = foot_of(n_dot_l, k);
     bool has_own = lit.own.apart < NO_TEXEL;
     // In a loop, so that the rays are one piece of code.

@@ -108,7 +108,8 @@ float plane_visibility(vec3 world, vec3 n, vec3 face) {
     LitInPlane lit = lit_in_plane(shadow_map, sun.shadow_from_world, sun.planes, window, sun.depth_bias, world, face);
     if (!lit.is_edge || dot(face, sun.direction) <= 0.0) return float(lit.is_lit);
     // Rays do not know the holes of cut-outs: they overrule the map only where those do not count.
-    bool is_stopped = traced(lifted_to_eye(world, face, view.eye), sun.direction, FAR, true, lit.is_lit ? OPAQUE_ONLY : CUT_OUTS_BLOCK).distance < FAR;
+    vec3 origin = lifted_to_eye(world, face, view.eye, corner_error(view.ray_scale, vec2(textureSize(depth, 0))));
+    bool is_stopped = traced(origin, sun.direction, FAR, true, lit.is_lit ? OPAQUE_ONLY : CUT_OUTS_BLOCK).distance < FAR;
     return float(!is_stopped);
 }
 

@@ -87,7 +87,8 @@ vec3 above(Point p, vec3 l) {
 
 /// Radiance along a ray, kcd/m^2: of the surface that it meets, or of the sky.
 vec3 seen(Point p, vec3 l, vec3 sky, uint state) {
-    vec3 origin = lifted(p.world, dot(p.face, p.n) > SAME_FACE ? p.face : p.n);
+    vec3 side = dot(p.face, p.n) > SAME_FACE ? p.face : p.n;
+    vec3 origin = lifted_from(p.world, side, view.eye, corner_error(view.ray_scale, vec2(textureSize(depth, 0))));
     Hit hit = closest(origin, l, FAR);
     if (hit.distance == FAR) return sky;
     if (!LIT) return vec3(0.0);

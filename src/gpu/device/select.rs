@@ -29,6 +29,8 @@ pub struct DeviceSummary {
     pub optional: Vec<(Optional, bool)>,
     /// Maximum edge of an image that is drawn, pixels: the least of the limits on images, framebuffers and viewports.
     pub max_image_edge: u32,
+    /// Bits of the grid in a pixel to which corners of triangles are moved.
+    pub sub_pixel_bits: u32,
     /// Bits of the timestamps that count; 0: there are none.
     pub timestamp_bits: u32,
     /// For a driver on top of another interface (MoltenVK): features of Vulkan that it lacks. None of them is used.
@@ -39,6 +41,11 @@ impl DeviceSummary {
     /// Whether this optional feature is used.
     pub fn has(&self, optional: Optional) -> bool {
         self.optional.contains(&(optional, true))
+    }
+
+    /// Step of the grid to which corners of triangles are moved, pixels.
+    pub fn corner_step(&self) -> f32 {
+        (-(self.sub_pixel_bits as f32)).exp2()
     }
 
     /// Whether the device is a software rasterizer on the CPU.
@@ -157,14 +164,11 @@ fn candidate(
         name: text(&properties.device_name),
         kind,
         api: version_text(version),
-        driver: format!(
-            "{} {}",
-            text(&driver.driver_name),
-            text(&driver.driver_info)
-        ),
+        driver: driver_text(&driver),
         missing,
         optional: offered.list(without),
         max_image_edge: needs::largest_target(&properties.limits),
+        sub_pixel_bits: properties.limits.sub_pixel_precision_bits,
         timestamp_bits,
         portability: portability.map(|p| p.unused),
     };
@@ -175,6 +179,11 @@ fn candidate(
         lacks_for_window,
         rank,
     })
+}
+
+fn driver_text(driver: &vk::PhysicalDeviceDriverProperties<'_>) -> String {
+    let [name, info] = [text(&driver.driver_name), text(&driver.driver_info)];
+    format!("{name} {info}")
 }
 
 fn version_text(version: u32) -> String {
@@ -295,6 +304,7 @@ mod tests {
                 missing: missing.iter().map(|m| (*m).to_owned()).collect(),
                 optional: Vec::new(),
                 max_image_edge: 16384,
+                sub_pixel_bits: 8,
                 timestamp_bits: 64,
                 portability: None,
             },

@@ -17,7 +17,7 @@ use crate::scene::{Emitter, Emitters, Mean, Reflectances, Scene, Triangle};
 const COLUMNS: usize = 1024;
 
 /// Constants of pipelines that trace rays.
-pub type RayConstants = [(&'static str, u32); 4];
+pub type RayConstants = [(&'static str, u32); 5];
 
 /// The hierarchy in images.
 pub struct Tree {
@@ -26,6 +26,8 @@ pub struct Tree {
     node_columns: u32,
     triangle_columns: u32,
     most_steps: u32,
+    /// Of the device, pixels: see `corner_error` in `include/bvh.glsl`.
+    corner_step: f32,
     numbers: Vec<u32>,
     emitters: Image,
     emitter_columns: u32,
@@ -77,6 +79,7 @@ impl Tree {
             node_columns,
             triangle_columns,
             most_steps: (wide.nodes.len() + bvh.triangles().len()) as u32,
+            corner_step: recorder.context().summary().corner_step(),
             numbers,
             emitters: table,
             emitter_columns,
@@ -92,17 +95,19 @@ impl Tree {
             ("NODE_COLUMNS", self.node_columns),
             ("TRIANGLE_COLUMNS", self.triangle_columns),
             ("MOST_STEPS", self.most_steps),
+            ("CORNER_STEP", self.corner_step.to_bits()),
         ]
     }
 
     /// Constants of pipelines that trace rays and sample the emitters.
-    pub fn constants_with_emitters(&self) -> [(&'static str, u32); 7] {
-        let [index, nodes, triangles, steps] = self.constants();
+    pub fn constants_with_emitters(&self) -> [(&'static str, u32); 8] {
+        let [index, nodes, triangles, steps, corners] = self.constants();
         [
             index,
             nodes,
             triangles,
             steps,
+            corners,
             ("EMITTERS", self.emitter_count),
             ("EMITTER_COLUMNS", self.emitter_columns),
             ("EMITTED", self.emitted.to_bits()),

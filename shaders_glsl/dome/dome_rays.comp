@@ -29,7 +29,8 @@ bool is_reached(int k, vec3 world, vec3 n, vec3 face) {
     vec3 toward = dome.toward[k].xyz;
     if (is_turned_away(face, n, toward)) return false;
     if (MAPS && !is_lit_in_map(k, world, face)) return false;
-    return traced(lifted_toward(world, face, toward, view.eye), toward, FAR, true, OPAQUE_ONLY).distance == FAR;
+    float error = corner_error(view.ray_scale, vec2(textureSize(depth, 0)));
+    return traced(lifted_toward(world, face, toward, view.eye, error), toward, FAR, true, OPAQUE_ONLY).distance == FAR;
 }
 
 #include "dome_light.glsl"

@@ -100,15 +100,16 @@ layout(set = 0, binding = 30) uniform sampler2D lobes; // kcd/m^2
 float plane_visibility(vec3 world, vec3 n, vec3 face) {
     if (is_turned_away(face, n, sun.direction)) return 0.0;
     vec4 window = vec4(vec2(0.0), vec2(textureSize(shadow_map, 0)));
+    float error = corner_error(view.ray_scale, vec2(textureSize(depth, 0)));
     if (SUN_BY_RAYS) {
         if (CUT_OUTS && !is_lit_in_plane(shadow_map, sun.shadow_from_world, sun.planes, window, sun.depth_bias, world, face)) return 0.0;
-        vec3 origin = lifted_toward(world, face, sun.direction, view.eye);
+        vec3 origin = lifted_toward(world, face, sun.direction, view.eye, error);
         return float(traced(origin, sun.direction, FAR, true, OPAQUE_ONLY).distance == FAR);
     }
     LitInPlane lit = lit_in_plane(shadow_map, sun.shadow_from_world, sun.planes, window, sun.depth_bias, world, face);
     if (!lit.is_edge || dot(face, sun.direction) <= 0.0) return float(lit.is_lit);
     // Rays do not know the holes of cut-outs: they overrule the map only where those do not count.
-    vec3 origin = lifted_to_eye(world, face, view.eye, corner_error(view.ray_scale, vec2(textureSize(depth, 0))));
+    vec3 origin = lifted_to_eye(world, face, view.eye, error);
     bool is_stopped = traced(origin, sun.direction, FAR, true, lit.is_lit ? OPAQUE_ONLY : CUT_OUTS_BLOCK).distance < FAR;
     return float(!is_stopped);
 }

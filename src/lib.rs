@@ -14,7 +14,7 @@
 //!                         background ──► average ──► exposure ──► tone map ──► window | PNG | EXR
 //!                                         ▲   ▲
 //!   dome: the sky's true visibility, by   │   └── gather: the bounces, by rays from the pixels,
-//!   shadow maps from its directions ──────┘       lit where they end by the sun and the cells
+//!   maps or rays in its directions ───────┘       lit where they end by the sun and the cells
 //! ```
 //!
 //! [`frame::Frame::record`] draws that picture from top to bottom. While something moves, [`frame::Frame::preview`] leaves the

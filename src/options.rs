@@ -30,6 +30,7 @@ pub use crate::daylight::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCur
 pub use crate::frame::{AntiAliasing, Filter, Visibility};
 pub use crate::gpu::Optional;
 pub use crate::passes::bounces::cells::Bounces;
+pub use crate::passes::dome::route::DomeBy;
 pub use crate::passes::dome::specular::{Mirrors, Phong, Reflections};
 pub use crate::passes::light::lighting::{Ambient, Show};
 use choices::VisibilityParser;
@@ -211,7 +212,7 @@ options! {
             /// an estimate from the samples, for instance 0.01 (render only).
             #[arg(value_name = "R", value_parser = values::noise, allow_hyphen_values = true)]
             noise: Option<f64>,
-            /// What hides the sky: in single frames what --ambient says, or shadow maps from directions of the sky, which converge to
+            /// What hides the sky: in single frames what --ambient says, or maps or rays in directions of the sky, which converge to
             /// the truth with the samples. From 16 samples on the default is dome. Given as ssao, so is --ambient.
             /// A number is the visibility of the air in km instead: --visual-range.
             #[arg(value_name = "HOW", value_parser = VisibilityParser, default_value_t)]
@@ -370,6 +371,9 @@ options! {
             #[arg(value_name = "TEXELS", value_parser = value_parser!(u32).range(64..=4096),
                   default_value_t = DomeSettings::default().map_edge)]
             dome_size: u32,
+            /// How the sky's visibility in them is found. Both converge to the same picture.
+            #[arg(value_name = "HOW", value_parser = choice::<DomeBy>(), default_value_t)]
+            dome_by: DomeBy,
             /// Smooth models without normals below this angle between faces, degrees, 0 to 180.
             #[arg(value_name = "DEGREES", value_parser = values::crease, allow_hyphen_values = true)]
             smooth: Option<f64>,

@@ -68,6 +68,11 @@ vec3 lifted_to_eye(vec3 position, vec3 normal, vec3 eye, float error) {
     return position + away * min(lift_at(position) / height, 0.5) + error * length(away) * normal;
 }
 
+/// The same, lifted off its face to the side of a light: for faces that are seen from behind, too.
+vec3 lifted_toward(vec3 position, vec3 face, vec3 toward, vec3 eye, float error) {
+    return dot(face, toward) > 0.0 ? lifted_to_eye(position, face, eye, error) : lifted_from(position, -face, eye, error);
+}
+
 struct Hit {
     float distance;    // FAR: nothing was hit
     uint triangle;     // position in the image

@@ -10,9 +10,12 @@ layout(set = 0, binding = 9, scalar) uniform Dome {
     vec4 light[16];  // contribution to the irradiance at normal incidence, klx; a: 1 for the sky, 0 for the ground
 } dome;
 
-/// Whether the light of direction k reaches a point of a face with shading normal n.
+/// Whether the map of direction k shows nothing between the light and a point of a face.
+bool is_lit_in_map(int k, vec3 world, vec3 face) {
+    return is_lit_in_plane(maps, dome.clip_from_world[k], dome.planes[k], dome.window[k], dome.toward[k].a, world, face);
+}
+
+/// Whether the light of direction k reaches a point of a face with shading normal n, by its map.
 bool is_lit_from(int k, vec3 world, vec3 n, vec3 face) {
-    vec4 toward = dome.toward[k];
-    if (is_turned_away(face, n, toward.xyz)) return false;
-    return is_lit_in_plane(maps, dome.clip_from_world[k], dome.planes[k], dome.window[k], toward.a, world, face);
+    return !is_turned_away(face, n, dome.toward[k].xyz) && is_lit_in_map(k, world, face);
 }

@@ -39,6 +39,9 @@ layout(constant_id = 6) const bool SHOW_BOUNCES = false;
 // Whether the air dims the surface.
 layout(constant_id = 7) const bool AIR = false;
 
+// Rays have told which directions are visible.
+layout(constant_id = 8) const bool RAYS = false;
+
 layout(set = 0, binding = 0) uniform sampler2D depth;
 layout(set = 0, binding = 1) uniform usampler2D normal_material;
 layout(set = 0, binding = 2) uniform sampler2D albedo;         // with ALBEDO_IMAGE; else any
@@ -50,33 +53,27 @@ layout(set = 0, binding = 8, scalar) uniform View { VIEW_BLOCK } view;
 layout(set = 0, binding = 10) uniform sampler2D materials; // see materials.glsl
 layout(set = 0, binding = 12) uniform usampler2D bounced; // with BOUNCES: irradiance from other surfaces, see half_size.glsl; else any
 
+layout(set = 0, binding = 15) uniform sampler2D sky_light; // with RAYS, see dome_rays.comp; else any
+
 layout(push_constant, scalar) uniform Push {
     vec3 ground; // radiance below the horizon, kcd/m^2
     float share; // of this frame in the means, 0..1
     ivec2 chosen; // pixel of each square of two by two that has a texel of `bounced`
 } push;
 
-/// The light of this frame's directions on a face; rgb: with V; a: its luminance without V. Without V the ground's part has a
-/// closed form and needs no sampling.
-vec4 light_of_directions(vec3 world, vec3 n, vec3 face) {
-    vec3 visible = vec3(0.0);
-    float whole = luminance(push.ground) * (0.5 * PI * (1.0 - n.y));
-    for (int k = 0; k < DIRECTIONS; ++k) {
-        float cosine = dot(n, dome.toward[k].xyz);
-        if (cosine <= 0.0) continue;
-        vec3 light = dome.light[k].rgb * cosine;
-        whole += luminance(light) * dome.light[k].a;
-        if (is_lit_from(k, world, n, face)) visible += light;
-    }
-    return vec4(visible, whole);
+bool is_reached(int k, vec3 world, vec3 n, vec3 face) {
+    return is_lit_from(k, world, n, face);
 }
+
+#include "dome_light.glsl"
 
 /// Adds the light of the sky at a surface; `reflected`: the fraction of irradiance that is shown.
 void gather(vec2 uv, float d, uvec3 own, vec3 reflected) {
     vec3 ray = view_ray(uv, view.ray_scale, view.ray_offset);
     vec3 n = normal_unpack(own.x);
     vec3 world = view.eye + view.world_from_view * (ray * (view.near / d));
-    sky = light_of_directions(world, n, view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale));
+    if (RAYS) sky = textureLod(sky_light, uv, 0.0);
+    else sky = light_of_directions(world, n, view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale), push.ground);
     vec3 open = filtered(sky_irradiance, n, 0.0).rgb;
 #ifdef ILLUMINANCE
     illuminance.xyz = vec3(luminance(sky.rgb), sky.a, luminance(open));

@@ -38,6 +38,9 @@ layout(constant_id = 11) const bool FRESNEL = false;
 layout(constant_id = 12) const bool AMBIENT = true;
 // A single shadow comparison in the plane of the face, for averaged frames, whose mean softens the edges.
 layout(constant_id = 13) const bool PLANE_SHADOW = false;
+// With PLANE_SHADOW: rays find what is before the sun; the map holds cut-outs alone, if there are any.
+layout(constant_id = 52) const bool SUN_BY_RAYS = false;
+layout(constant_id = 53) const bool CUT_OUTS = false;
 // rho_d is stored per pixel; otherwise the scene has no maps, and rho_d is in the table of materials.
 layout(constant_id = 14) const bool ALBEDO_IMAGE = true;
 // Number of the sun's shadow maps, side by side.
@@ -92,10 +95,16 @@ layout(set = 0, binding = 30) uniform sampler2D lobes; // kcd/m^2
 float plane_visibility(vec3 world, vec3 n, vec3 face) {
     if (is_turned_away(face, n, sun.direction)) return 0.0;
     vec4 window = vec4(vec2(0.0), vec2(textureSize(shadow_map, 0)));
+    float error = corner_error(view.ray_scale, vec2(textureSize(depth, 0)));
+    if (SUN_BY_RAYS) {
+        if (CUT_OUTS && !is_lit_in_plane(shadow_map, sun.shadow_from_world, sun.planes, window, sun.depth_bias, world, face)) return 0.0;
+        vec3 origin = lifted_toward(world, face, sun.direction, view.eye, error);
+        return float(traced(origin, sun.direction, FAR, true, OPAQUE_ONLY).distance == FAR);
+    }
     LitInPlane lit = lit_in_plane(shadow_map, sun.shadow_from_world, sun.planes, window, sun.depth_bias, world, face);
     if (!lit.is_edge || dot(face, sun.direction) <= 0.0) return float(lit.is_lit);
     // Rays do not know the holes of cut-outs: they overrule the map only where those do not count.
-    vec3 origin = lifted_to_eye(world, face, view.eye, corner_error(view.ray_scale, vec2(textureSize(depth, 0))));
+    vec3 origin = lifted_to_eye(world, face, view.eye, error);
     bool is_stopped = traced(origin, sun.direction, FAR, true, lit.is_lit ? OPAQUE_ONLY : CUT_OUTS_BLOCK).distance < FAR;
     return float(!is_stopped);
 }
@@ -135,7 +144,8 @@ vec4 lit(vec2 at) {
     float n_dot_l = dot(n, sun.direction);
 
     float V = 0.0;
-    if (n_dot_l > 0.0) {
+    // A software device also shades pixels that the depth test drops: theirs is no place for a ray to start.
+    if (n_dot_l > 0.0 && d > 0.0) {
         if (PLANE_SHADOW) V = plane_visibility(world, n, view.world_from_view * face_normal(own.z, ray.xy, 0.5 * vec2(textureSize(depth, 0)) / view.ray_scale));
         else V = sun_visibility(world, n, n_dot_l, TRACES);
     }

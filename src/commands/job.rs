@@ -254,6 +254,7 @@ impl Job {
             dome: DomeSettings {
                 directions: s.dome_directions,
                 map_edge: s.dome_size,
+                by: s.dome_by,
                 seed: s.seed,
                 ..DomeSettings::default()
             },

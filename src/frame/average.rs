@@ -69,14 +69,26 @@ impl Average {
         let bounces = settings.gathered();
         Ok(Self::Dome(Box::new(Converging {
             lit: Lit {
-                shadow: Shadow::perspective(context, geometry, settings.shadow_resolution)?,
+                shadow: Shadow::perspective(
+                    context,
+                    geometry,
+                    settings.shadow_resolution,
+                    lighting.sun_by_rays,
+                )?,
                 lighting: Lighting::converging(context, tree.constants(), size, lighting)?,
             },
             gather: bounces
                 .is_any()
                 .then(|| Gather::new(context, tree, size, bounces))
                 .transpose()?,
-            dome: Dome::new(context, geometry, size, sampling.dome, lighting, bounces)?,
+            dome: Dome::new(
+                context,
+                (geometry, tree),
+                size,
+                sampling.dome,
+                lighting,
+                bounces,
+            )?,
             fade: fades
                 .then(|| Fade::new(context, size, settings.samples))
                 .transpose()?,
@@ -212,7 +224,14 @@ impl<'a> Resolve<'a> {
                     air: light.air,
                     bounced,
                 };
-                let picture = dome.record(rec, geometry, &gathered, light.daylight, view, index);
+                let picture = dome.record(
+                    rec,
+                    (geometry, tree),
+                    &gathered,
+                    light.daylight,
+                    view,
+                    index,
+                );
                 match fade {
                     Some((fade, (preview, is_previewed))) => {
                         fade.record(rec, preview, picture, index, is_previewed)

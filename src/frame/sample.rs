@@ -17,7 +17,7 @@ pub enum Visibility {
     /// That of a single frame, see [`Ambient`](crate::passes::light::lighting::Ambient).
     #[default]
     Ssao,
-    /// Shadow maps from sampled sky directions: their mean over the samples converges to the true visibility.
+    /// Shadow maps or rays in sampled sky directions: their mean over the samples converges to the true visibility.
     Dome,
     /// `Dome`, cross-faded from a preview, for a view that comes to rest.
     Progressive,
@@ -38,7 +38,7 @@ pub enum Filter {
 pub struct Sampling {
     /// How the sky's visibility is computed.
     pub visibility: Visibility,
-    /// Directions and shadow maps of [`Visibility::Dome`].
+    /// Directions of [`Visibility::Dome`], and their maps or rays.
     pub dome: DomeSettings,
     /// The pixel filter.
     pub filter: Filter,

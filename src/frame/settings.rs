@@ -11,7 +11,8 @@ use crate::daylight::tone_curve::{REINHARD_WHITE, ToneCurve};
 use crate::gpu::{Context, Result};
 use crate::passes::bounces::cells::{Bounces, Cells};
 use crate::passes::bounces::tree::{RayConstants, Tree};
-use crate::passes::dome::specular::Mirrors;
+use crate::passes::dome::route::DomeBy;
+use crate::passes::dome::specular::{Mirrors, Reflections};
 use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{
     Ambient, EmissionSource, Lighting, LightingSettings, Precision, Shadows, Show,
@@ -85,6 +86,8 @@ impl Default for FrameSettings {
                 fresnel: false,
                 shadows: Shadows::default(),
                 mirrors: Mirrors::default(),
+                sun_by_rays: false,
+                cut_outs: false,
             },
             tone: ToneSettings {
                 show,
@@ -272,7 +275,7 @@ impl FrameSettings {
     }
 
     /// Adjusts the settings to a scene: no specular lookups without ρ_s, no albedo image without textures, no emission without L_e, no air in
-    /// small scenes, cascades for large ones.
+    /// small scenes, cascades for large ones, maps or rays of the dome.
     pub(super) fn for_scene(mut self, context: &Context, geometry: &Geometry) -> Self {
         let shadows = &mut self.lighting.shadows;
         if shadows.cascades == 0 {
@@ -288,6 +291,19 @@ impl FrameSettings {
         self.lighting.air &= geometry.bounds().diagonal() >= LEAST_SCENE;
         self.lighting.has_albedo = geometry.has_albedo();
         self.lighting.emission = geometry.emission_source();
+        self.sampling.dome.by = self.dome_by(geometry);
+        self.lighting.sun_by_rays = self.converges() && self.sampling.dome.by == DomeBy::Rays;
+        self.lighting.cut_outs = geometry.has_cut_outs();
         self
+    }
+
+    /// Maps or rays of the dome: what costs less, but maps where lobes look light up in them.
+    fn dome_by(&self, geometry: &Geometry) -> DomeBy {
+        if self.lighting.mirrors.reflections == Reflections::Hidden {
+            return DomeBy::Maps;
+        }
+        let (dome, size) = (self.sampling.dome, self.size.as_u64vec2());
+        let triangles = geometry.casting_triangles();
+        dome.by.chosen(triangles, size.x * size.y)
     }
 }

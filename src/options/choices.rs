@@ -7,7 +7,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Command};
 
 use super::{
-    Ambient, AntiAliasing, ColourMap, Filter, IrradianceMethod, Optional, Phong, Quantity,
+    Ambient, AntiAliasing, ColourMap, DomeBy, Filter, IrradianceMethod, Optional, Phong, Quantity,
     Reflections, Show, SkyModel, SunPositionMethod, ToneCurve, Unit, Up, Visibility,
 };
 
@@ -174,6 +174,11 @@ choices! {
         Luminance = "luminance": "Of the light toward the eye, cd/m²",
         Illuminance = "illuminance": "Of the surface under the pixel, lux",
     }
+    DomeBy {
+        Auto = "auto": "What costs less, by the numbers of triangles and pixels",
+        Maps = "maps": "A shadow map of the scene for each direction: for scenes of few triangles",
+        Rays = "rays": "A ray from each pixel in each direction: for scenes of many triangles",
+    }
     Reflections {
         Open = "open": "Nothing occludes the sky in reflections, as in the lecture's illumination model",
         Hidden = "hidden": "What occludes the sky elsewhere does so in reflections, as in the lecture's rendering equation",
@@ -235,7 +240,7 @@ choices! {
     }
     Visibility {
         Ssao = "ssao": "Single frames: at once; if given, --ambient is ssao too",
-        Dome | Progressive = "dome": "Shadow maps from directions of the sky: converges to the truth over the samples",
+        Dome | Progressive = "dome": "Shadow maps or rays in directions of the sky: converges to the truth over the samples",
     }
 }
 

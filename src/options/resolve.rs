@@ -4,7 +4,7 @@ use clap::parser::ValueSource;
 use glam::{DVec3, Vec3};
 
 use super::{
-    Ambient, OptionValues, Options, OptionsError, Preset, Reflections, SkyModel, Switch,
+    Ambient, DomeBy, OptionValues, Options, OptionsError, Preset, Reflections, SkyModel, Switch,
     Visibility, all_tables, long, name, tables,
 };
 use crate::daylight::atmosphere::air::Air;
@@ -128,6 +128,10 @@ impl Options {
                 self.sky
             );
             return Err(OptionsError(what));
+        }
+        if self.reflections == Reflections::Hidden && self.dome_by == DomeBy::Rays {
+            let what = "--reflections hidden needs the maps of the dome; leave out --dome-by rays";
+            return Err(OptionsError(what.to_owned()));
         }
         // Occlusion in reflections comes from the dome's shadow maps.
         if self.reflections == Reflections::Hidden && self.visibility == Visibility::Ssao {

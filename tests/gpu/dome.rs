@@ -13,7 +13,7 @@ use skylight::passes::light::lighting::Show;
 use skylight::scene::{Camera, Scene};
 
 /// Settings with dome visibility and `samples` frames.
-fn dome(edge: u32, samples: u32) -> FrameSettings {
+pub fn dome(edge: u32, samples: u32) -> FrameSettings {
     let mut set = settings(edge, edge);
     set.samples = samples;
     set.sampling.visibility = Visibility::Dome;

@@ -5,6 +5,7 @@ use skylight::daylight::colour::luminance;
 use skylight::daylight::glass::{internal_transmittance, pane};
 use skylight::frame::FrameSettings;
 use skylight::passes::bounces::cells::Bounces;
+use skylight::passes::dome::route::DomeBy;
 use skylight::passes::light::lighting::Show;
 use skylight::scene::{Camera, Material, Scene};
 
@@ -32,9 +33,18 @@ fn below() -> Camera {
     camera([0.0, 1.5, 0.01], [0.0, 0.0, 0.0])
 }
 
-fn both() -> [(&'static str, FrameSettings); 2] {
-    let rays = with_bounces(Bounces::UpTo(0), converged(24, 16, 64));
-    [("single", single(24, 16)), ("converged", rays)]
+/// Single and converged pictures; the sky's visibility and the sun's by maps and by rays.
+fn ways() -> [(&'static str, FrameSettings); 3] {
+    let converged = |by: DomeBy| {
+        let mut set = with_bounces(Bounces::UpTo(0), converged(24, 16, 64));
+        set.sampling.dome.by = by;
+        set
+    };
+    [
+        ("single", single(24, 16)),
+        ("converged by maps", converged(DomeBy::Maps)),
+        ("converged by rays", converged(DomeBy::Rays)),
+    ]
 }
 
 #[test]
@@ -42,7 +52,7 @@ fn the_sun_passes_a_pane_by_its_angle_and_colour() {
     let mut device = Device::new();
     for elevation in [70.0, 35.0, 15.0] {
         let day = clear_day(160.0, elevation);
-        for (name, set) in both() {
+        for (name, set) in ways() {
             let set = showing(Show::Sun, set);
             let mut lit = |scene: &Scene| {
                 let picture = device.picture(scene, set, &day, &below());
@@ -69,7 +79,7 @@ fn a_uniform_sky_passes_a_pane_from_cells_and_from_shadow_maps() {
     let day = constant_sky(1000.0);
     let scene = roofed(Some(&glass([0.7; 3])));
     let expected = 0.5 * hemispherical_transmittance(0.7);
-    for (name, set) in both() {
+    for (name, set) in ways() {
         let set = showing(Show::Sky, set);
         let found = mean(&device.picture(&scene, set, &day, &below()));
         println!("{name}: {found:.4} of {expected:.4} kcd/m2");
@@ -96,7 +106,7 @@ fn a_pane_between_two_bodies_is_no_wall() {
         model.cube([-1.2, 0.05, 0.0], 0.05, &matt(0.5)).build()
     };
     let expected = hemispherical_transmittance(0.8);
-    for (name, set) in both() {
+    for (name, set) in ways() {
         let set = showing(Show::Sky, set);
         let mut lit = |scene: &Scene| mean(&device.picture(scene, set, &day, &below()));
         let ratio = lit(&scene(Some(&glass([0.8; 3])))) / lit(&scene(None));
@@ -131,7 +141,7 @@ fn the_view_through_a_pane_is_dimmed_and_mirrors_what_is_there() {
             fov_deg: 1.0,
             ..camera([0.0, 3.0, 0.0], [sin as f32, 3.0 - cos as f32, 1e-3])
         };
-        for (name, set) in both() {
+        for (name, set) in ways() {
             let mut seen = |view: &Camera| {
                 let picture = device.picture(&scene, set, &day, view);
                 picture.at(12, 8)

@@ -17,6 +17,7 @@ mod convergence;
 mod culling;
 mod details;
 mod dome;
+mod dome_by;
 mod emission;
 mod furnace;
 mod glass;

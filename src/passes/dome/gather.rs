@@ -1,12 +1,12 @@
-//! Sky light with true visibility: shadow maps from sampled sky directions, averaged over many frames.
+//! Sky light with true visibility from sampled sky directions, averaged over many frames.
 //!
 //! [`SkySampler`] importance samples a few directions per frame by luminance. For each one, the frame draws a depth map into a
-//! tile of one image. Per pixel it sums V L cos θ / p over these directions (N), and the same without V (D). The means over the
+//! tile of one image or traces a ray from each pixel, see [`crate::passes::dome::route`]. Per pixel it sums V L cos θ / p over these directions (N), and the same without V (D). The means over the
 //! frames converge to ∫ V L cos dω and to the unoccluded E, which the irradiance cube has without noise (U). The picture shows
 //! N · U / D: exact from the first frame on where the sky is unoccluded; elsewhere errors of N and D partly cancel. U / D tends
 //! to 1, so no bias remains.
 //!
-//! The ground below the horizon is a light source too: directions of the lower hemisphere also get maps.
+//! The ground below the horizon is a light source too: directions of the lower hemisphere are among them.
 
 use std::sync::Arc;
 
@@ -22,12 +22,15 @@ use crate::gpu_struct;
 
 use crate::passes::bounces::cells::Bounces;
 use crate::passes::bounces::gather::HalfSize;
+use crate::passes::bounces::tree::Tree;
+use crate::passes::dome::maps::DomeMaps;
+use crate::passes::dome::rays::SkyRays;
+use crate::passes::dome::route::DomeBy;
 use crate::passes::dome::specular::SpecularSky;
 use crate::passes::light::lighting::{LightingSettings, Show};
 use crate::passes::light::panes::BeforePicture;
 use crate::passes::sky::air::AirBefore;
 use crate::passes::sun_shadow::fit::ShadowView;
-use crate::passes::sun_shadow::map::{Casters, Tile};
 use crate::passes::sun_shadow::perspective::{Receivers, fit};
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::surfaces::geometry::Geometry;
@@ -95,6 +98,8 @@ pub struct DomeSettings {
     pub directions: u32,
     /// Edge of a map, texels.
     pub map_edge: u32,
+    /// How the visibility is found. [`crate::frame::Frame`] chooses between maps and rays.
+    pub by: DomeBy,
     /// Seed of the sample sequences.
     pub seed: u32,
     /// Whether the picture's fourth channel holds the illuminance, klx, regardless of the quantity shown; for read-outs.
@@ -106,6 +111,7 @@ impl Default for DomeSettings {
         Self {
             directions: 12,
             map_edge: 1024,
+            by: DomeBy::default(),
             seed: 0,
             illuminance: false,
         }
@@ -141,10 +147,11 @@ pub(in crate::passes) const BIAS_TEXELS: f32 = 1.0;
 /// The dome passes and their images.
 pub struct Dome {
     settings: DomeSettings,
-    casters: Casters,
     gather: Pipeline,
     resolve: Pipeline,
-    maps: Image,
+    /// Maps of everything or, with rays, of cut-outs and panes of glass, if there are any.
+    maps: Option<DomeMaps>,
+    rays: Option<SkyRays>,
     /// Alternating means: sky light and other light, see `dome_gather.glsl`.
     means: [[Image; 2]; 2],
     /// Alternating means of the illuminance terms, if enabled.
@@ -161,11 +168,6 @@ const GROUND: u32 = 0x0640_0000;
 
 const FORMAT: Format = Format::R32G32B32A32_SFLOAT;
 
-/// Tiles per row of the atlas.
-fn columns(directions: u32) -> u32 {
-    f64::from(directions).sqrt().ceil() as u32
-}
-
 /// Whether the quantity shown includes sky light.
 fn shows_sky(show: Show) -> bool {
     matches!(
@@ -181,7 +183,7 @@ impl Dome {
     /// Fails when the device cannot create the resources.
     pub fn new(
         context: &Arc<Context>,
-        geometry: &Geometry,
+        (geometry, tree): (&Geometry, &Tree),
         size: [u32; 2],
         settings: DomeSettings,
         lighting: LightingSettings,
@@ -193,13 +195,13 @@ impl Dome {
             let desc = ImageDesc::flat(name, FORMAT, size);
             Image::new(context, &desc.target_by(context.route()))
         };
-        let tiles = columns(settings.directions);
-        let rows = settings.directions.div_ceil(tiles);
-        let atlas = [tiles * settings.map_edge, rows * settings.map_edge];
-        let depth = Format::D32_SFLOAT;
+        let maps = DomeMaps::new(context, geometry, settings)?;
+        let (directions, has_maps) = (settings.directions, maps.is_some());
+        let rays = (settings.by == DomeBy::Rays)
+            .then(|| SkyRays::new(context, tree, size, directions, has_maps))
+            .transpose()?;
         Ok(Self {
             settings,
-            casters: Casters::new(context, geometry)?.with_panes(context, geometry)?,
             gather: gather_pipeline(context, geometry, settings, lighting, bounces)?,
             resolve: screen(
                 context,
@@ -212,7 +214,8 @@ impl Dome {
                 Depth::Off,
                 &[("ILLUMINANCE", settings.illuminance.into())],
             )?,
-            maps: Image::new(context, &ImageDesc::flat("dome maps", depth, atlas))?,
+            maps,
+            rays,
             means: [
                 [image("sky mean 0")?, image("rest mean 0")?],
                 [image("sky mean 1")?, image("rest mean 1")?],
@@ -228,11 +231,11 @@ impl Dome {
         })
     }
 
-    /// Draws the shadow maps of frame number `index` and adds its light to the means; 0 starts new means.
+    /// Finds the visibility in the directions of frame number `index` and adds its light to the means; 0 starts new means.
     pub fn record(
         &mut self,
         recorder: &mut Recorder,
-        geometry: &Geometry,
+        (geometry, tree): (&Geometry, &Tree),
         gathered: &Gathered<'_>,
         daylight: &Daylight,
         view: &View,
@@ -256,19 +259,33 @@ impl Dome {
                 )
             })
             .collect();
-        if self.is_shown {
-            self.draw_maps(recorder, geometry, &views);
-        }
         let block = self.block(&lights, &views, daylight);
         let push = Push {
             ground: kilo(daylight.ground_luminance),
             share: 1.0 / (index + 1) as f32,
             chosen: gathered.bounced.map_or(IVec2::ZERO, |b| b.chosen),
         };
+        if self.is_shown {
+            if let Some(maps) = &self.maps {
+                maps.record(recorder, geometry, &views);
+            }
+            if let Some(rays) = &self.rays {
+                let scene = (tree, maps_or_any(&self.maps, gathered));
+                rays.record(
+                    recorder,
+                    scene,
+                    gathered.surfaces,
+                    view,
+                    &block,
+                    push.ground,
+                );
+            }
+        }
         self.gather(recorder, gathered, view, &block, &push);
         self.resolve(recorder);
         if let Some(specular) = &mut self.specular {
-            let (maps, picture) = ((&self.maps, &block), &self.radiance);
+            let maps = maps_or_any(&self.maps, gathered);
+            let (maps, picture) = ((maps, &block), &self.radiance);
             specular.record(recorder, gathered, view, maps, picture, index);
         }
         self.image()
@@ -321,36 +338,16 @@ impl Dome {
         (all - of_ground, of_ground)
     }
 
-    /// First texel of a tile.
-    fn origin(&self, k: usize) -> [u32; 2] {
-        let (k, tiles) = (k as u32, columns(self.settings.directions));
-        [k % tiles, k / tiles].map(|i| i * self.settings.map_edge)
-    }
-
-    fn draw_maps(&self, recorder: &mut Recorder, geometry: &Geometry, views: &[ShadowView]) {
-        let tile = |(k, view): (usize, &ShadowView)| Tile {
-            view: *view,
-            mask: None,
-            origin: self.origin(k),
-            edge: self.settings.map_edge,
-        };
-        let tiles: Vec<Tile> = views.iter().enumerate().map(tile).collect();
-        self.casters
-            .record(recorder, "dome maps", geometry, &tiles, &self.maps);
-    }
-
     fn block(&self, lights: &[DomeLight], views: &[ShadowView], daylight: &Daylight) -> DomeBlock {
         let of_sky = self.counts(daylight).0 as usize;
         let directions = lights.iter().zip(views).enumerate();
-        DomeBlock::new(directions.map(|(k, (light, view))| {
-            let ([x, y], edge) = (self.origin(k), self.settings.map_edge);
-            Direction {
-                toward: light.direction.as_vec3(),
-                light: kilo(light.illuminance),
-                is_sky: k < of_sky,
-                view,
-                window: [x, y, edge],
-            }
+        let window = |k| self.maps.as_ref().map_or([0; 3], |maps| maps.window(k));
+        DomeBlock::new(directions.map(|(k, (light, view))| Direction {
+            toward: light.direction.as_vec3(),
+            light: kilo(light.illuminance),
+            is_sky: k < of_sky,
+            view,
+            window: window(k),
         }))
     }
 
@@ -369,6 +366,7 @@ impl Dome {
         let bounced = gathered
             .bounced
             .map_or(&surfaces.normal_material, |b| b.image);
+        let sky_light = self.rays.as_ref().map_or(old_sky, SkyRays::light);
         let pass = recorder.pass("dome: gather", &self.gather);
         let pass = gathered.panes.sampled_by(pass, gathered.materials);
         let pass = surfaces.sampled_by(pass, gathered.materials);
@@ -378,7 +376,8 @@ impl Dome {
             .sample("frame", gathered.frame, Sampler::Nearest)
             .sample("previous_sky", old_sky, Sampler::Nearest)
             .sample("previous_rest", old_rest, Sampler::Nearest)
-            .sample("maps", &self.maps, Sampler::Nearest)
+            .sample("maps", maps_or_any(&self.maps, gathered), Sampler::Nearest)
+            .sample("sky_light", sky_light, Sampler::Nearest)
             .sample("sky_irradiance", gathered.sky_irradiance, Sampler::Linear)
             .sample("bounced", bounced, Sampler::Nearest)
             .uniform("view", &view.block())
@@ -412,6 +411,12 @@ impl Dome {
     }
 }
 
+/// The maps; without any another image, since the binding must be written.
+fn maps_or_any<'a>(maps: &'a Option<DomeMaps>, gathered: &Gathered<'a>) -> &'a Image {
+    let any = &gathered.surfaces.depth;
+    maps.as_ref().map_or(any, DomeMaps::image)
+}
+
 fn gather_pipeline(
     context: &Arc<Context>,
     geometry: &Geometry,
@@ -441,6 +446,7 @@ fn gather_pipeline(
         ("SHOW_OCCLUSION", (show == Show::Occlusion).into()),
         ("SKY", shows_sky(show).into()),
         ("DIRECTIONS", settings.directions),
+        ("RAYS", (settings.by == DomeBy::Rays).into()),
         ("AIR", air.into()),
         ("ALBEDO_IMAGE", geometry.has_albedo().into()),
         ("PANES", geometry.has_panes().into()),

@@ -231,6 +231,10 @@ pub struct LightingSettings {
     pub shadows: Shadows,
     /// Settings of the specular terms.
     pub mirrors: Mirrors,
+    /// Whether rays find what is before the sun in converging frames; the map then holds cut-outs alone. Set by [`crate::frame::Frame`].
+    pub sun_by_rays: bool,
+    /// Whether the scene has cut-outs. Set by [`crate::frame::Frame`].
+    pub cut_outs: bool,
 }
 
 impl LightingSettings {
@@ -381,6 +385,8 @@ impl Lighting {
         constants.push(("AMBIENT", (!is_converging).into()));
         constants.push(("CELLS", (settings.ambient == Ambient::Cells).into()));
         constants.push(("PLANE_SHADOW", is_converging.into()));
+        constants.push(("SUN_BY_RAYS", settings.sun_by_rays.into()));
+        constants.push(("CUT_OUTS", settings.cut_outs.into()));
         constants.push(("MIRRORED", settings.show.is_mirrored().into()));
         constants.push(("PANES", settings.panes.is_some().into()));
         constants.push(("CASCADES", settings.shadows.cascades.max(1)));

@@ -41,6 +41,7 @@ pub(in crate::passes) struct Casters {
     cut_outs: Option<Pipeline>,
     /// For panes of glass, if they are drawn and there are any.
     panes: Option<Pipeline>,
+    draws_solids: bool,
 }
 
 /// A shadow map in an atlas.
@@ -77,14 +78,28 @@ impl Tile {
 impl Casters {
     /// Creates the pipelines. Panes of glass are not drawn.
     pub fn new(context: &Arc<Context>, geometry: &Geometry) -> Result<Self> {
-        let has_holes = geometry.kinds().any(|kind| kind.cut_out);
+        let has_holes = geometry.has_cut_outs();
         Ok(Self {
             solid: pipeline(context, "shadow map", false)?,
             cut_outs: has_holes
                 .then(|| pipeline(context, "shadow map, cut-outs", true))
                 .transpose()?,
             panes: None,
+            draws_solids: true,
         })
+    }
+
+    /// Draws only what has holes or lets light through: rays find the rest.
+    pub fn without_solids(self) -> Self {
+        Self {
+            draws_solids: false,
+            ..self
+        }
+    }
+
+    /// Whether nothing is drawn.
+    pub fn is_empty(&self) -> bool {
+        !self.draws_solids && self.cut_outs.is_none() && self.panes.is_none()
     }
 
     /// Also draws panes of glass by chance, for the mean of many maps.
@@ -110,12 +125,12 @@ impl Casters {
             .depth(maps, Load::Clear([0.0; 4]))
             .within(first, size)
             .draws(|draws| {
-                for tile in tiles {
+                for tile in tiles.iter().filter(|_| self.draws_solids) {
                     draws.window(tile.origin, [tile.edge; 2], tile.rectangle());
                     draws.push(&Push {
                         shadow_from_world: tile.view.shadow_from_world.to_cols_array_2d(),
                     });
-                    geometry.draw_positions(draws, &tile.cull());
+                    geometry.draw_positions(draws, &tile.cull(), tile.view.toward.y < 0.0);
                 }
             });
         if let Some(pipeline) = &self.cut_outs {
@@ -181,6 +196,9 @@ fn pipeline(context: &Arc<Context>, name: &str, holes: bool) -> Result<Pipeline>
     )
 }
 
+/// Edge of a map in which nothing is looked up, texels.
+const UNUSED: u32 = 16;
+
 /// How the map is fitted.
 #[derive(Debug, Clone, Copy)]
 enum Fit {
@@ -218,7 +236,8 @@ impl Shadow {
         Self::new(context, geometry, size, fit)
     }
 
-    /// One map for averaged frames, `resolution` texels on a side.
+    /// One map for averaged frames, `resolution` texels on a side; `by_rays`: of cut-outs and panes of glass alone, since rays find
+    /// the other casters.
     ///
     /// # Errors
     /// Fails when the device is out of memory.
@@ -226,9 +245,15 @@ impl Shadow {
         context: &Arc<Context>,
         geometry: &Geometry,
         resolution: u32,
+        by_rays: bool,
     ) -> Result<Self> {
-        let size = [resolution; 2];
-        Self::new(context, geometry, size, Fit::Perspective)
+        let is_used = !by_rays || geometry.has_cut_outs() || geometry.has_panes();
+        let size = [if is_used { resolution } else { UNUSED }; 2];
+        let mut shadow = Self::new(context, geometry, size, Fit::Perspective)?;
+        if by_rays {
+            shadow.casters = shadow.casters.without_solids();
+        }
+        Ok(shadow)
     }
 
     fn new(context: &Arc<Context>, geometry: &Geometry, size: [u32; 2], fit: Fit) -> Result<Self> {

@@ -138,6 +138,8 @@ pub struct Geometry {
     panes: Vec<Part>,
     /// Cluster ranges of opaque casters, in index order; no two touch.
     casting: Vec<Range<usize>>,
+    /// The same with a ground that casts no shadow.
+    opaque: Vec<Range<usize>>,
     surfaces: Vec<Surface>,
     textures: Vec<(Image, Sampler)>,
     white: Image,
@@ -193,7 +195,8 @@ impl Geometry {
             )?,
             clusters,
             details,
-            casting: casting(&parts),
+            casting: joined_ranges(parts.iter().filter(|p| p.casts && !p.kind.cut_out)),
+            opaque: joined_ranges(parts.iter().filter(|p| !p.kind.cut_out)),
             parts,
             panes,
             is_specular: surfaces.iter().any(|s| s.is_specular),
@@ -266,14 +269,20 @@ impl Geometry {
         }
     }
 
-    /// Draws all opaque casters that `cull` keeps, positions only.
-    pub fn draw_positions(&self, draws: &mut Draws<'_, '_>, cull: &Cull) {
+    /// Draws all opaque casters that `cull` keeps, positions only; for light from below (`is_below`) also the ground, which shadows nothing
+    /// from above.
+    pub fn draw_positions(&self, draws: &mut Draws<'_, '_>, cull: &Cull, is_below: bool) {
         if self.clusters.is_empty() {
             return;
         }
         draws.geometry(&[&self.positions], &self.indices);
         // A run may go on over culled clusters, so each range has its own: between them are panes and cut-outs.
-        for range in &self.casting {
+        let ranges = if is_below {
+            &self.opaque
+        } else {
+            &self.casting
+        };
+        for range in ranges {
             for run in Runs::new(&self.clusters[range.clone()], cull) {
                 run.draw(draws);
             }
@@ -285,6 +294,17 @@ impl Geometry {
         let mut kinds: Vec<Kind> = self.parts.iter().map(|p| p.kind).collect();
         kinds.dedup();
         kinds.into_iter()
+    }
+
+    /// Whether any surface has holes by its alpha.
+    pub fn has_cut_outs(&self) -> bool {
+        self.kinds().any(|kind| kind.cut_out)
+    }
+
+    /// Triangles of all opaque casters without holes.
+    pub fn casting_triangles(&self) -> usize {
+        let clusters = self.casting.iter().flat_map(|r| &self.clusters[r.clone()]);
+        clusters.map(|cluster| cluster.count as usize / 3).sum()
     }
 
     /// Whether any material has a ρ_s.
@@ -472,10 +492,9 @@ fn internal(transmittance: [f32; 3]) -> Vec3 {
     Vec3::from(transmittance.map(one))
 }
 
-/// Cluster ranges of opaque casters, in index order; those that touch are one, so that runs continue from part to part.
-fn casting(parts: &[Part]) -> Vec<Range<usize>> {
-    let solid = parts.iter().filter(|p| p.casts && !p.kind.cut_out);
-    let mut ranges: Vec<Range<usize>> = solid.map(|p| p.clusters.clone()).collect();
+/// Cluster ranges of parts, in index order; those that touch are one, so that runs continue from part to part.
+fn joined_ranges<'p>(parts: impl Iterator<Item = &'p Part>) -> Vec<Range<usize>> {
+    let mut ranges: Vec<Range<usize>> = parts.map(|p| p.clusters.clone()).collect();
     ranges.sort_by_key(|range| range.start);
     ranges.dedup_by(|next, before| {
         let touches = before.end == next.start;

@@ -81,7 +81,7 @@ fn motion(now: &View, before: &View) -> Option<Reprojection> {
 /// The pass that smooths a frame of a moving view.
 enum Moving {
     Morphological(Box<Morphological>),
-    Temporal(Temporal),
+    Temporal(Box<Temporal>),
 }
 
 /// The passes and the pictures that they keep.
@@ -138,7 +138,8 @@ impl Smooth {
                     Some(Moving::Morphological(Box::new(pass)))
                 }
                 AntiAliasing::Taa => {
-                    Some(Moving::Temporal(Temporal::new(context, format, is_linear)?))
+                    let pass = Temporal::new(context, format, is_linear)?;
+                    Some(Moving::Temporal(Box::new(pass)))
                 }
             })
         };

@@ -428,7 +428,7 @@ fn anti_aliasing_of_a_file_is_done_or_refused() {
             .failed(2, &["--aa", remedy, "--samples"]);
         assert_eq!(place.contents(), before, "{words:?}");
     }
-    let mut written = |name: &str, words: &[&str]| {
+    let written = |name: &str, words: &[&str]| {
         place
             .render(&[&["m.obj", "-o", name], words].concat())
             .succeeded();

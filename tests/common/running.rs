@@ -55,6 +55,15 @@ fn listen(stderr: ChildStderr) -> (Arc<Mutex<String>>, Option<JoinHandle<()>>) {
     (said, Some(thread))
 }
 
+/// CPU time of a process that has not been waited for, seconds.
+fn cpu_seconds(pid: u32) -> f64 {
+    let text = fs::read_to_string(format!("/proc/{pid}/stat")).expect("it runs");
+    let after_name = text.rsplit(')').next().expect("fields");
+    let fields: Vec<&str> = after_name.split_whitespace().collect();
+    let ticks = |i: usize| fields[i].parse::<f64>().expect("a number");
+    (ticks(11) + ticks(12)) / 100.0
+}
+
 pub fn program(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_skylight"));
     command
@@ -156,11 +165,7 @@ impl Running {
 
     /// CPU time of the program so far, seconds.
     pub fn cpu_seconds(&self) -> f64 {
-        let text = fs::read_to_string(format!("/proc/{}/stat", self.pid())).expect("it runs");
-        let after_name = text.rsplit(')').next().expect("fields");
-        let fields: Vec<&str> = after_name.split_whitespace().collect();
-        let ticks = |i: usize| fields[i].parse::<f64>().expect("a number");
-        (ticks(11) + ticks(12)) / 100.0
+        cpu_seconds(self.pid())
     }
 
     /// Performs an action that changes the picture, and returns the new picture once it no longer changes.
@@ -181,12 +186,18 @@ impl Running {
         self.ended()
     }
 
-    /// Waits until the program exits; returns its output.
+    /// Waits until the program exits; returns its output. On a busy machine a program at work gets little time, so that its CPU time is
+    /// limited, and the time in which it uses none.
     pub fn ended(mut self) -> Output {
         let mut child = self.child.take().expect("it runs");
-        let started = Instant::now();
+        let started = cpu_seconds(child.id());
+        let (mut used, mut idle_since) = (0.0, Instant::now());
         while child.try_wait().expect("a state").is_none() {
-            if started.elapsed() > PATIENCE {
+            let now = cpu_seconds(child.id()) - started;
+            if now > used {
+                (used, idle_since) = (now, Instant::now());
+            }
+            if used.max(idle_since.elapsed().as_secs_f64()) > PATIENCE.as_secs_f64() {
                 child.kill().expect("it runs");
                 panic!("the program does not end");
             }

@@ -120,6 +120,14 @@ impl Display {
         let _ = cookie.expect("sent").check();
     }
 
+    /// Takes the keyboard focus from all windows.
+    pub fn unfocus(&self) {
+        let cookie =
+            self.connection
+                .set_input_focus(InputFocus::NONE, x11rb::NONE, x11rb::CURRENT_TIME);
+        cookie.expect("sent").check().expect("no focus");
+    }
+
     /// Width and height of a window, pixels.
     pub fn size(&self, window: Window) -> [u32; 2] {
         let geometry = self
@@ -266,6 +274,16 @@ impl Display {
         if let Some(held) = shift {
             self.fake(3, self.keycode(held), [0, 0]);
         }
+    }
+
+    /// Presses the key of a character and keeps it down.
+    pub fn hold(&self, character: char) {
+        self.fake(2, self.keycode(character.into()), [0, 0]);
+    }
+
+    /// Lets the key of a character go.
+    pub fn let_go(&self, character: char) {
+        self.fake(3, self.keycode(character.into()), [0, 0]);
     }
 
     pub fn typed(&self, character: char) {

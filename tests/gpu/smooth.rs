@@ -1,6 +1,4 @@
 //! Anti-aliasing of what is displayed: temporal means against means of many samples, what is rejected, and what is never touched.
-//!
-//! Verified to fail without the jitter, with the depth of the frame before left out of the comparison, and with the picture before kept after a jump.
 
 use crate::gpu::{Device, Model, camera, constant_sky, matt, settings};
 use glam::Vec3;

@@ -15,4 +15,5 @@ mod faults;
 mod hot_reload;
 mod life;
 mod rest;
+mod screens;
 mod surfaces;

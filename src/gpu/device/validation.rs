@@ -108,10 +108,10 @@ impl Log {
     }
 }
 
-/// A message on one line, starting with its identifier: older layers include it in the text, newer ones report it separately.
+/// A message on one line, starting with its identifier: older layers put it before the text, newer ones report it separately.
 fn one_line(identifier: &str, text: &str) -> String {
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    if text.contains(identifier) {
+    if text.contains(&format!("[ {identifier} ]")) {
         text
     } else {
         format!("{identifier}: {text}")

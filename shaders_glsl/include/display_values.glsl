@@ -3,6 +3,10 @@
 // The display values are linear, for an HDR screen.
 layout(constant_id = 40) const bool LINEAR = false;
 
+/// Frames of alpha 1, and the most that a mean has.
+const float FRAMES = 255.0;
+const float MOST_FRAMES = 10.0;
+
 /// Linear light of display values, nearly: a square for the sRGB curve. Its root takes them back exactly.
 vec3 light_of_display(vec3 c) {
     return LINEAR ? c : c * c;

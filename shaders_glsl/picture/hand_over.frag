@@ -5,7 +5,7 @@
 
 // From the smoothed picture of a moving view to that of a view at rest, in display values.
 
-layout(location = 0) out vec4 picture; // rgb: display values; a: 1, as many frames as count
+layout(location = 0) out vec4 picture; // rgb: display values; a: as many frames as count
 
 layout(set = 0, binding = 0) uniform sampler2D display; // of the view at rest
 layout(set = 0, binding = 1) uniform sampler2D before;  // of the moving view
@@ -24,5 +24,5 @@ void main() {
         vec3 mean = mix(light_of_display(c), light_of_display(held), push.share);
         c = rounded(display_of_light(mean), gl_FragCoord.xy, push.shift);
     }
-    picture = vec4(c, 1.0);
+    picture = vec4(c, MOST_FRAMES / FRAMES);
 }

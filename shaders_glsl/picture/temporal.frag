@@ -11,7 +11,7 @@
 // there: else it does not count. As long as the light is the same too, it needs no bounds: those that others take from the pixels
 // around would cut off thin parts, which most frames miss, and let them flicker.
 
-layout(location = 0) out vec4 picture; // rgb: display values; a: number of frames in it, of FRAMES
+layout(location = 0) out vec4 picture; // rgb: display values; a: number of frames in it, of FRAMES, and EDGE more at edges
 
 // The light is not that of the picture before, which is bounded by what is around the pixel now.
 layout(constant_id = 0) const bool BOUNDED = false;
@@ -28,11 +28,11 @@ layout(push_constant, scalar) uniform Push {
     vec2 half_texel; // of the picture, in u and v
     float to_depth;  // from depth to that of the picture before, times w
     float same;      // largest difference in depth before of one and the same surface; negative: none is
-    float most;      // frames that count in the picture before
     float shift;     // of the rounding, 0..1: another one for every frame
 } push;
 
-const float FRAMES = 255.0;
+/// Added to the number of frames where surfaces that move apart meet.
+const float EDGE = 128.0;
 
 /// Frames that count in a picture before with another light or exposure.
 const float FEW = 2.0;
@@ -64,20 +64,20 @@ void main() {
     vec4 here = vec4(gl_FragCoord.xy, nearest, 1.0);
     float over_w = 1.0 / dot(push.to_w, here);
     vec2 at = vec2(dot(push.to_u, here), dot(push.to_v, here)) * over_w;
-    // All that the lookup in the picture before mixes must lie between the surfaces around.
-    float expected = push.to_depth * nearest * over_w;
-    vec4 found = textureGather(depth_before, at);
-    float found_nearest = max(max(found.x, found.y), max(found.z, found.w)), found_farthest = min(min(found.x, found.y), min(found.z, found.w));
-    float differs = max(found_nearest - expected, expected + farthest - nearest - found_farthest);
+    float expected = push.to_depth * nearest * over_w, found = textureLod(depth_before, at, 0.0).r;
+    float differs = max(found - expected, expected + farthest - nearest - found);
     vec2 aside = abs(at - 0.5);
     bool is_same = differs <= push.same && max(aside.x, aside.y) < 0.5;
 
+    // A pixel at an edge mixes two surfaces that move apart: where there is no edge now, the mean of such pixels does not count.
     vec4 old = textureLod(before, at, 0.0);
-    float most = BOUNDED || shown.a < 0.5 ? min(push.most, FEW) : push.most;
-    float count = is_same ? min(old.a * FRAMES, most) : 0.0;
+    float mark = old.a * FRAMES;
+    bool is_edge = push.same >= 0.0 && nearest - farthest > push.same, was_edge = mark > MOST_FRAMES + 0.5;
+    float most = BOUNDED || shown.a < 0.5 ? FEW : MOST_FRAMES - 1.0;
+    float count = is_same && (is_edge || !was_edge) ? min(mark < EDGE ? mark : mark - EDGE, most) : 0.0;
     if (BOUNDED) old.rgb = bounded(old.rgb, now, pixel);
     // A picture before that does not count may be undefined.
     vec3 mean = light_of_display(now);
     if (count > 0.0) mean = mix(light_of_display(old.rgb), mean, 1.0 / (count + 1.0));
-    picture = vec4(rounded(display_of_light(mean), gl_FragCoord.xy, push.shift), (count + 1.0) / FRAMES);
+    picture = vec4(rounded(display_of_light(mean), gl_FragCoord.xy, push.shift), (count + 1.0 + (is_edge ? EDGE : 0.0)) / FRAMES);
 }

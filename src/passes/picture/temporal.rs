@@ -15,9 +15,6 @@ use crate::gpu_struct;
 use crate::passes::fullscreen;
 use crate::passes::view::Reprojection;
 
-/// Frames that count in the mean of a moving view: more are steadier, and blur what moves.
-const MOST_FRAMES: f32 = 10.0;
-
 /// Motion between two surfaces up to which they count as one, pixels.
 const SAME: f32 = 0.125;
 
@@ -30,7 +27,6 @@ gpu_struct! {
         half_texel: Vec2,
         to_depth: f32,
         same: f32,
-        most: f32,
         shift: f32,
     }
 }
@@ -98,7 +94,6 @@ impl Temporal {
             same: inputs
                 .motion
                 .map_or(-2.0, |motion| (SAME / motion.parallax).min(2.0)),
-            most: MOST_FRAMES - 1.0,
             shift: shift(inputs.number),
         };
         let [same_light, other_light] = &self.pipelines;

@@ -70,6 +70,7 @@ impl<'j> Tiled<'j> {
         let (size, coarser, window) = plan.overview(occludes);
         let settings = FrameSettings {
             size,
+            of_picture: Some(job.frame_settings(job.settings.show, precision).size),
             ..job.frame_settings(job.settings.show, precision)
         };
         let mut recorder = Recorder::new(context, Timing::Off)?;

@@ -33,6 +33,8 @@ use crate::passes::surfaces::geometry::Geometry;
 pub struct FrameSettings {
     /// Width and height, pixels.
     pub size: UVec2,
+    /// Width and height of the picture of which frames are tiles, pixels; `None`: frames are whole. What suits a picture must suit all tiles.
+    pub of_picture: Option<UVec2>,
     /// Number of frames averaged into a picture; 1 samples the pixel centres and the sun's centre.
     pub samples: u32,
     /// How the frames differ, and how the sky's visibility is computed.
@@ -63,6 +65,7 @@ impl Default for FrameSettings {
         let (show, ssao) = (Show::Beauty, SsaoSettings::default());
         Self {
             size: UVec2::new(1280, 720),
+            of_picture: None,
             samples: 1,
             sampling: Sampling::default(),
             sky_edge: 256,
@@ -302,8 +305,8 @@ impl FrameSettings {
         if self.lighting.mirrors.reflections == Reflections::Hidden {
             return DomeBy::Maps;
         }
-        let (dome, size) = (self.sampling.dome, self.size.as_u64vec2());
+        let size = self.of_picture.unwrap_or(self.size).as_u64vec2();
         let triangles = geometry.casting_triangles();
-        dome.by.chosen(triangles, size.x * size.y)
+        self.sampling.dome.by.chosen(triangles, size.x * size.y)
     }
 }

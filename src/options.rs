@@ -44,7 +44,9 @@ pub use values::{
     AerosolInput, AoResolution, Direction, ExposureMode, Fresnel, Hdr, Penumbra, Place, Preset,
     RouteChoice, Size, SolarTime, Switch, When,
 };
-pub(crate) use values::{elevation, exposure_factor, ratio, sun as direction, threshold};
+pub(crate) use values::{
+    elevation, exposure_factor, inset, plane_height, ratio, spacing, sun as direction, threshold,
+};
 
 use crate::daylight::atmosphere::air::Air;
 use crate::daylight::hdr::HDR_PEAK;

@@ -202,8 +202,21 @@ pub struct DaylightArgs {
     pub scene: PathBuf,
     /// Sensors: lines of x y z, or x y z and a normal (up without one), separated by blanks or commas. A .pts file is Radiance's, with
     /// +Z up; any other has the model's axes. Metres.
-    #[arg(long, value_name = "FILE")]
-    pub grid: PathBuf,
+    #[arg(long, value_name = "FILE", required_unless_present = "plane")]
+    pub grid: Option<PathBuf>,
+    /// Makes the sensors instead: this height above the floor of every room, metres. A room has walls, a ceiling and a level floor. The
+    /// grid is fitted between its walls.
+    #[arg(long, value_name = "M", conflicts_with = "grid", value_parser = crate::options::plane_height)]
+    pub plane: Option<f64>,
+    /// Largest distance from one made sensor to the next, metres.
+    #[arg(long, value_name = "M", requires = "plane", default_value_t = 0.5, value_parser = crate::options::spacing)]
+    pub spacing: f64,
+    /// Least distance of made sensors from walls and furniture, metres.
+    #[arg(long, value_name = "M", requires = "plane", default_value_t = 0.0, value_parser = crate::options::inset)]
+    pub inset: f64,
+    /// Materials of floors on which to make sensors, separated by commas, instead of those of rooms that are found.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plane")]
+    pub rooms: Vec<String>,
     /// Weather file (.epw, .wea): measures its year, every hour with its own sun and Perez' sky; with --hour one moment of it.
     #[arg(long, value_name = "FILE")]
     pub weather: Option<PathBuf>,

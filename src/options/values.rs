@@ -328,6 +328,9 @@ ranged! {
     exposure_factor: "exposure", "", 1e-9..=1e9;
     ratio: "ratio", "", 0.0..=1e9;
     threshold: "threshold", "lux", 1.0..=1e6;
+    plane_height: "height above the floor", "m", 0.0..=100.0;
+    spacing: "spacing", "m", 0.02..=100.0;
+    inset: "distance from walls", "m", 0.0..=100.0;
     elevation: "elevation", "degrees", 0.0..=90.0;
     noise: "noise", "", 1e-6..=1.0;
     irradiance_error: "error", "percent", 0.0..=100.0;

@@ -28,6 +28,28 @@ pub enum GridError {
         /// What is wrong, and what belongs there.
         what: String,
     },
+    /// No material has the name of a floor.
+    #[error("no material \"{name}\" for --rooms; the model has {known}")]
+    UnknownFloor {
+        /// The name.
+        name: String,
+        /// Those of the model.
+        known: String,
+    },
+    /// Nowhere is a place for a made sensor.
+    #[error("{}", if *is_named { "no sensor fits above the floors of --rooms; choose a smaller --inset or another --plane" } else { "no room with a place for sensors, a level floor below a ceiling between walls; name the materials of floors with --rooms, or give --grid FILE" })]
+    NoRoom {
+        /// Whether floors were named.
+        is_named: bool,
+    },
+    /// A floor has too many samples.
+    #[error(
+        "a floor of {metres} m is too large to look for rooms at this spacing; name the materials of floors with --rooms, or choose a larger --spacing"
+    )]
+    LargeFloor {
+        /// Its length.
+        metres: u32,
+    },
     /// It has no sensor.
     #[error("{}: no sensors; each line is x y z, or x y z and a normal", path.display())]
     Empty {

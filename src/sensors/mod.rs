@@ -7,6 +7,7 @@ mod cells;
 mod grid;
 mod numbers;
 mod path;
+mod plane;
 mod suns;
 mod surface;
 mod unreflected;
@@ -23,6 +24,7 @@ use glam::{DVec3, Vec3};
 
 pub use self::grid::{GridError, read_grid};
 pub use self::path::Lights;
+pub use self::plane::{Planes, make_grid};
 pub use self::surface::TracedScene;
 pub use self::unreflected::{sky_components, suns_seen};
 pub use self::year::{SensorYear, Year, YearRun, measure_year};

@@ -56,3 +56,28 @@ fn bad_grids_are_named_in_one_line() {
         assert!(line.contains("grid.csv") && line.contains(what), "{line}");
     }
 }
+
+#[test]
+fn sensors_are_of_a_file_or_made_and_where_none_fits_one_line_says_so() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let ended = |words: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_skylight"))
+            .current_dir(folder.path())
+            .args(["daylight", "colonnade", "--metrics", "vsc"])
+            .args(words)
+            .output()
+            .expect("it runs");
+        let line = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code(), line)
+    };
+    let (code, line) = ended(&[]);
+    assert!(code == Some(2) && line.contains("--grid"), "{line}");
+    let (code, line) = ended(&["--grid", "g.csv", "--plane", "0.8"]);
+    assert!(code == Some(2) && line.contains("--plane"), "{line}");
+    let (code, line) = ended(&["--plane", "0.8", "--rooms", "carpet"]);
+    assert!(
+        code == Some(1) && line.contains("no material \"carpet\""),
+        "{line}"
+    );
+    assert_eq!(line.lines().count(), 1, "{line}");
+}

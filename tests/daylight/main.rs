@@ -12,6 +12,7 @@ mod ggx;
 mod glass;
 mod grey_skies;
 mod irradiance;
+mod made_grids;
 mod moon;
 mod reference;
 mod rooms;

@@ -12,7 +12,8 @@ use crate::cli::DaylightArgs;
 use crate::error::Result;
 use crate::options::{OptionValues, Options};
 use crate::passes::bounces::cells::Bounces;
-use crate::sensors::ALL_BOUNCES;
+use crate::scene::Scene;
+use crate::sensors::{ALL_BOUNCES, Planes, Sensor, make_grid, read_grid};
 
 /// Measures metrics if there is a weather file without an hour or some are asked for, else a moment.
 ///
@@ -23,6 +24,23 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
         return year::run(args, options);
     }
     moment::run(args, &weather::applied(&args.at(), options.clone())?)
+}
+
+/// The sensors of the file, or those that are made.
+///
+/// # Errors
+/// A file that cannot be read, or no place for a sensor.
+fn sensors(args: &DaylightArgs, scene: &Scene) -> Result<Vec<Sensor>> {
+    if let Some(path) = &args.grid {
+        return Ok(read_grid(path, scene.origin)?);
+    }
+    let planes = Planes {
+        height: args.plane.unwrap_or_default() as f32,
+        spacing: args.spacing as f32,
+        inset: args.inset as f32,
+        floors: args.rooms.clone(),
+    };
+    Ok(make_grid(scene, &planes)?)
 }
 
 /// The limit of bounces.

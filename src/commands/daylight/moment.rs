@@ -7,12 +7,12 @@ use serde_json::json;
 
 use super::super::job::Job;
 use super::super::{progress, tell, tell_no_device};
-use super::bounces;
+use super::{bounces, sensors};
 use crate::cli::DaylightArgs;
 use crate::error::Result;
 use crate::options::{OptionValues, in_world, shortest};
 use crate::output::print;
-use crate::sensors::{Accuracy, Lights, Reading, Sensor, TracedScene, measure, read_grid};
+use crate::sensors::{Accuracy, Lights, Reading, Sensor, TracedScene, measure};
 
 /// Measures all sensors and prints them in the order of the file.
 ///
@@ -21,7 +21,7 @@ use crate::sensors::{Accuracy, Lights, Reading, Sensor, TracedScene, measure, re
 pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
     let job = Job::new(Some(&args.scene), options)?;
     tell_no_device("daylight", &job.settings);
-    let sensors = read_grid(&args.grid, job.scene.origin)?;
+    let sensors = sensors(args, &job.scene)?;
     let accuracy = Accuracy {
         relative_error: args.error,
         max_paths: args.max_paths,

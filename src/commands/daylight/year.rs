@@ -8,7 +8,7 @@ use super::super::{interrupt, progress, tell, tell_no_device};
 use super::summary::Summary;
 use super::table::{Column, csv, objects, overview};
 use super::unreflected::{sky_component, sun_hours};
-use super::{bounces, ill};
+use super::{bounces, ill, sensors};
 use crate::cli::{DaylightArgs, Metric};
 use crate::daylight::metrics::{Measures, SPATIAL_LUX};
 use crate::daylight::weather::Weather;
@@ -17,9 +17,7 @@ use crate::error::{Error, Result};
 use crate::options::{OptionValues, Options, OptionsError};
 use crate::output::{check_writable, print};
 use crate::scene;
-use crate::sensors::{
-    Accuracy, Sensor, TracedScene, Year, YearLight, YearRun, measure_year, read_grid,
-};
+use crate::sensors::{Accuracy, Sensor, TracedScene, Year, YearLight, YearRun, measure_year};
 
 /// Most records of a weather file: with more, the skies of the year no longer fit into memory.
 const MOST_RECORDS: usize = 60_000;
@@ -43,7 +41,7 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
     let mut told = scene.warnings.clone();
     told.extend(weather.iter().flat_map(|w| warnings(w, clock.as_ref())));
     tell(&settings, told.iter())?;
-    let all = read_grid(&args.grid, scene.origin)?;
+    let all = sensors(args, &scene)?;
     let light = match weather {
         Some(weather) => YearLight::new(weather, settings.ground_albedo),
         None => YearLight::overcast(settings.ground_albedo),

@@ -42,7 +42,7 @@ fn a_changed_shader_is_seen_and_a_broken_one_is_told() {
     sleep(Duration::from_secs(2));
     assert!(difference(&before, &running.picture()) < 0.01);
 
-    let swapped = good.replace("return vec4(c, 1.0);", "return vec4(c.bgr, 1.0);");
+    let swapped = good.replace("return vec4(c, alike);", "return vec4(c.bgr, alike);");
     assert_ne!(good, swapped, "{STAGE} has changed: adapt this test");
     fs::write(&file, &swapped).expect("written");
     let red = running.after(|d| d.typed('r'));

@@ -93,11 +93,7 @@ fn screen_by(
     }
 }
 
-/// A full-screen pipeline with one render target, by fragments alone: images of a window cannot be stored to.
-#[cfg_attr(
-    not(feature = "window"),
-    allow(dead_code, reason = "a program without a window presents nothing")
-)]
+/// A full-screen pipeline with one render target, by fragments alone: anti-aliasing of display values, and presenting, whose images cannot be stored to.
 fn fullscreen(
     context: &Arc<Context>,
     name: &str,

@@ -7,10 +7,11 @@ use serde_json::json;
 
 use super::super::job::Job;
 use super::super::{progress, tell, tell_no_device};
+use super::table::place;
 use super::{bounces, sensors};
 use crate::cli::DaylightArgs;
 use crate::error::Result;
-use crate::options::{OptionValues, in_world, shortest};
+use crate::options::{OptionValues, in_world};
 use crate::output::print;
 use crate::sensors::{Accuracy, Lights, Reading, Sensor, TracedScene, measure};
 
@@ -65,15 +66,14 @@ fn imprecise(rows: &[(Sensor, Reading)], args: &DaylightArgs) -> Option<String> 
 
 /// Columns of JSON and CSV: metres, unit vector, lux.
 fn columns(sensor: &Sensor, reading: &Reading, origin: DVec3) -> [(&'static str, f64); 11] {
-    let [x, y, z] = in_world(sensor.position, origin);
-    let [nx, ny, nz] = sensor.normal.to_array().map(shortest);
+    let [x, y, z, nx, ny, nz] = place(sensor, origin);
     [
-        ("x", x),
-        ("y", y),
-        ("z", z),
-        ("nx", nx),
-        ("ny", ny),
-        ("nz", nz),
+        x,
+        y,
+        z,
+        nx,
+        ny,
+        nz,
         ("sky_direct_lux", reading.sky_direct),
         ("sun_direct_lux", reading.sun_direct),
         ("reflected_lux", reading.reflected),

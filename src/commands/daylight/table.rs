@@ -33,8 +33,8 @@ impl Column {
     }
 }
 
-/// Position and normal of a sensor in the model's axes.
-fn place(sensor: &Sensor, origin: DVec3) -> [(&'static str, f64); 6] {
+/// Position and normal of a sensor in the model's axes, with their keys in JSON and CSV.
+pub(super) fn place(sensor: &Sensor, origin: DVec3) -> [(&'static str, f64); 6] {
     let [x, y, z] = in_world(sensor.position, origin);
     let [nx, ny, nz] = sensor.normal.to_array().map(shortest);
     [

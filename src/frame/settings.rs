@@ -6,8 +6,6 @@ use glam::UVec2;
 
 use super::ambient::AmbientNeed;
 use super::{AntiAliasing, Sampling, Visibility};
-use crate::daylight::exposure::KEY;
-use crate::daylight::tone_curve::{REINHARD_WHITE, ToneCurve};
 use crate::gpu::{Context, Result};
 use crate::passes::bounces::cells::{Bounces, Cells};
 use crate::passes::bounces::tree::{RayConstants, Tree};
@@ -20,7 +18,7 @@ use crate::passes::light::lighting::{
 use crate::passes::light::lobes::{Lobes, LobesNeed};
 use crate::passes::light::panes::Panes;
 use crate::passes::occlusion::ssao::SsaoSettings;
-use crate::passes::picture::tone_map::{Scale, ToneMap, ToneSettings, is_light};
+use crate::passes::picture::tone_map::{ToneMap, ToneSettings, is_light};
 use crate::passes::sky::air::{Air, LEAST_SCENE};
 use crate::passes::sky::irradiance::IrradianceSettings;
 use crate::passes::sun_shadow::cascades;
@@ -92,19 +90,7 @@ impl Default for FrameSettings {
                 sun_by_rays: false,
                 cut_outs: false,
             },
-            tone: ToneSettings {
-                show,
-                curve: ToneCurve::default(),
-                scale: Scale::Average {
-                    key: KEY,
-                    least: 0.0,
-                },
-                white: REINHARD_WHITE,
-                gamma: None,
-                depth_scale: 1.0,
-                false_colour: None,
-                peak: None,
-            },
+            tone: ToneSettings::default(),
             aa: AntiAliasing::default(),
         }
     }

@@ -4,11 +4,8 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
-use crate::daylight::exposure::KEY;
-use crate::daylight::tone_curve::{REINHARD_WHITE, ToneCurve};
 use crate::gpu::{Context, Format, Image, ImageDesc, Recorder, Result, Route, RouteTimes};
-use crate::passes::light::lighting::Show;
-use crate::passes::picture::tone_map::{Scale, ToneMap, ToneSettings};
+use crate::passes::picture::tone_map::{ToneMap, ToneSettings};
 
 /// Edge of the picture, pixels.
 const EDGE: u32 = 1024;
@@ -36,7 +33,7 @@ pub fn measured(context: &Arc<Context>) -> Result<RouteTimes> {
     let picture = Image::new(context, &ImageDesc::flat("radiance", format, [EDGE; 2]))?;
     let average = Image::new(context, &ImageDesc::flat("average", format, [1; 2]))?;
     let mut time = |route| {
-        let pass = ToneMap::by(route, context, [EDGE; 2], settings())?;
+        let pass = ToneMap::by(route, context, [EDGE; 2], ToneSettings::default())?;
         recorder.begin()?;
         recorder.clear(&picture, [3.0, 2.0, 1.0, 1.0]);
         recorder.clear(&average, [2.0; 4]);
@@ -51,21 +48,4 @@ pub fn measured(context: &Arc<Context>) -> Result<RouteTimes> {
         fragment: time(Route::Fragment)?,
         compute: time(Route::Compute)?,
     })
-}
-
-/// A picture of the window.
-fn settings() -> ToneSettings {
-    ToneSettings {
-        show: Show::Beauty,
-        curve: ToneCurve::default(),
-        scale: Scale::Average {
-            key: KEY,
-            least: 0.0,
-        },
-        white: REINHARD_WHITE,
-        gamma: None,
-        depth_scale: 1.0,
-        false_colour: None,
-        peak: None,
-    }
 }

@@ -12,8 +12,9 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
+use crate::daylight::exposure::KEY;
 use crate::daylight::false_colour::{ColourMap, Colours, Range};
-use crate::daylight::tone_curve::ToneCurve;
+use crate::daylight::tone_curve::{REINHARD_WHITE, ToneCurve};
 use crate::gpu::{
     Context, Depth, Format, Image, ImageDesc, Load, Pipeline, Recorder, Result, Route, Sampler,
     shaders,
@@ -70,6 +71,25 @@ pub struct ToneSettings {
     pub false_colour: Option<Colours>,
     /// Highest display value of an HDR screen: the display values are linear then, without tone curve, gamma and dither. `None`: encoded, 0..=1.
     pub peak: Option<f64>,
+}
+
+/// Of light, exposed by its average.
+impl Default for ToneSettings {
+    fn default() -> Self {
+        Self {
+            show: Show::Beauty,
+            curve: ToneCurve::default(),
+            scale: Scale::Average {
+                key: KEY,
+                least: 0.0,
+            },
+            white: REINHARD_WHITE,
+            gamma: None,
+            depth_scale: 1.0,
+            false_colour: None,
+            peak: None,
+        }
+    }
 }
 
 /// The tone mapping pass and its picture.

@@ -154,13 +154,35 @@ impl Running {
 
     /// Whether one of its threads runs, or waits for a processor: on a busy machine the CPU time of a program at work grows slowly.
     pub fn is_working(&self) -> bool {
+        self.states().any(|state| "RD".contains(state))
+    }
+
+    /// The state of each thread, as in `/proc/PID/stat`.
+    fn states(&self) -> impl Iterator<Item = char> {
         let tasks = fs::read_dir(format!("/proc/{}/task", self.pid()));
         let stats = tasks
             .into_iter()
             .flatten()
             .filter_map(|task| fs::read_to_string(task.ok()?.path().join("stat")).ok());
         let state = |text: String| text.rsplit(") ").next()?.chars().next();
-        stats.filter_map(state).any(|state| "RD".contains(state))
+        stats.filter_map(state)
+    }
+
+    fn signal(&self, name: &str) {
+        let words = format!("kill -s {name} {}", self.pid());
+        let status = Command::new("sh").args(["-c", &words]).status();
+        assert!(status.expect("a shell").success());
+    }
+
+    /// What is shown while the program is stopped: it goes on from there, so that no frame is missed on a busy machine.
+    pub fn stopped_picture(&self) -> Picture {
+        self.signal("STOP");
+        until("a stopped program", || {
+            self.states().all(|state| state == 'T').then_some(())
+        });
+        let shown = self.display.picture(self.window, None);
+        self.signal("CONT");
+        shown
     }
 
     /// CPU time of the program so far, seconds.

@@ -62,15 +62,16 @@ fn sky(picture: &Picture) -> [f32; 3] {
     sum.map(|v| v / ((right - left + 1) * (bottom - top + 1)) as f32)
 }
 
-/// Whether two pictures have the same daylight.
+/// Whether two pictures have the same daylight. Pictures of eight bits that fade into each other are up to a step of them off; half an
+/// hour is many steps.
 fn same_light(a: &Picture, b: &Picture) -> bool {
     let (a, b) = (sky(a), sky(b));
-    (0..3).all(|c| (a[c] - b[c]).abs() < 0.002)
+    (0..3).all(|c| (a[c] - b[c]).abs() < 0.01)
 }
 
 /// The pictures of a window that comes to rest after a change of the light, from the first one in the final light on.
 fn coming_to_rest(running: &Running) -> Vec<Picture> {
-    let shown = || running.display.picture(running.window, None);
+    let shown = || running.stopped_picture();
     // Half an hour forward and back: the original daylight again, from the first preview on.
     let first = until("a picture", || {
         let now = shown();
@@ -81,7 +82,7 @@ fn coming_to_rest(running: &Running) -> Vec<Picture> {
         (!same_light(&first, &shown())).then_some(())
     });
     running.display.key('H'.into(), true);
-    // Records every picture until nothing changes for a while, and nothing is at work: a busy machine may be slow to draw.
+    // Records the pictures until nothing changes for a while, and nothing is at work: a busy machine may be slow to draw.
     let (mut seen, mut changed) = (Vec::<Picture>::new(), Instant::now());
     let mut work = running.cpu_seconds();
     loop {

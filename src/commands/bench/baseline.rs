@@ -184,6 +184,8 @@ mod tests {
             p5_ms: median_ms * (1.0 - spread),
             p95_ms: median_ms * (1.0 + spread),
             cpu_median_ms: None,
+            mean_ms: None,
+            cpu_mean_ms: None,
         }
     }
 

@@ -20,6 +20,12 @@ pub struct Summary {
     pub p95_ms: f64,
     /// Median CPU time of all threads, milliseconds. `None` when unknown: device timestamps do not include it.
     pub cpu_median_ms: Option<f64>,
+    /// Mean wall time, milliseconds: it counts what only some frames do. `None` in files of older versions.
+    #[serde(default)]
+    pub mean_ms: Option<f64>,
+    /// Mean CPU time of all threads, milliseconds. `None` when unknown.
+    #[serde(default)]
+    pub cpu_mean_ms: Option<f64>,
 }
 
 impl Samples {
@@ -48,6 +54,8 @@ impl Samples {
             p5_ms,
             p95_ms,
             cpu_median_ms: (!self.cpu.is_empty()).then(|| quantile(&self.cpu, 0.5)),
+            mean_ms: mean(&self.wall),
+            cpu_mean_ms: mean(&self.cpu),
         }
     }
 }
@@ -57,6 +65,11 @@ impl Summary {
     pub fn spread(&self) -> f64 {
         0.5 * (self.p95_ms - self.p5_ms) / self.median_ms
     }
+}
+
+/// The arithmetic mean, if there are samples.
+fn mean(samples: &[f64]) -> Option<f64> {
+    (!samples.is_empty()).then(|| samples.iter().sum::<f64>() / samples.len() as f64)
 }
 
 /// The `q` quantile (0..1) by nearest rank. NaN without samples.
@@ -91,6 +104,7 @@ mod tests {
         samples.push(4.0, 7.0);
         let summary = samples.summary();
         assert_eq!(summary.cpu_median_ms, Some(7.0));
+        assert_eq!((summary.mean_ms, summary.cpu_mean_ms), (Some(3.0), Some(7.0)));
         assert_eq!((summary.p5_ms, summary.p95_ms), (2.0, 4.0));
         assert_eq!(summary.spread(), 0.5);
     }

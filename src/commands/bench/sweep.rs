@@ -319,6 +319,8 @@ mod tests {
             p5_ms: median_ms,
             p95_ms: median_ms,
             cpu_median_ms: cpu,
+            mean_ms: None,
+            cpu_mean_ms: None,
         };
         let sizes = [1e3, 1e4, 1e5];
         let times = sizes.map(|s| time(2.0 * s, Some(s.sqrt()))).to_vec();

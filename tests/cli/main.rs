@@ -17,6 +17,7 @@ mod gpu_check;
 mod mitsuba_bake;
 mod moment;
 mod options;
+mod peers;
 mod sky;
 mod tiles;
 mod town;

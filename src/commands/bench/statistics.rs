@@ -104,7 +104,10 @@ mod tests {
         samples.push(4.0, 7.0);
         let summary = samples.summary();
         assert_eq!(summary.cpu_median_ms, Some(7.0));
-        assert_eq!((summary.mean_ms, summary.cpu_mean_ms), (Some(3.0), Some(7.0)));
+        assert_eq!(
+            (summary.mean_ms, summary.cpu_mean_ms),
+            (Some(3.0), Some(7.0))
+        );
         assert_eq!((summary.p5_ms, summary.p95_ms), (2.0, 4.0));
         assert_eq!(summary.spread(), 0.5);
     }

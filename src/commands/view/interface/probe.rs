@@ -3,7 +3,7 @@
 use egui::{Align2, Grid, Ui};
 use glam::{DVec3, Vec2, Vec3};
 
-use super::{air, corner};
+use super::{air, read_out};
 use crate::commands::view::document::Document;
 use crate::daylight::colour::luminance;
 use crate::passes::light::probe::{Reading, SurfaceReading};
@@ -45,7 +45,7 @@ impl Probe {
 
     pub(super) fn show(&self, ui: &Ui, document: &Document) {
         let Some(reading) = &self.reading else { return };
-        corner(ui, "probe", Align2::RIGHT_BOTTOM, [-12.0, -12.0], |ui| {
+        read_out(ui, "probe", Align2::RIGHT_BOTTOM, [-12.0, -12.0], |ui| {
             Grid::new("probe").spacing([12.0, 3.0]).show(ui, |ui| {
                 picture(ui, reading);
                 match &reading.surface {

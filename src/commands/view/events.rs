@@ -104,8 +104,11 @@ impl App {
                 }
             }
             WindowEvent::Touch(touch) => {
+                let scale = stage.ui().pixels_per_point();
+                let [x, y] = [touch.location.x, touch.location.y].map(|v| v as f32 / scale);
+                let is_taken = self.interface.is_at(stage.ui(), egui::pos2(x, y));
                 let controls = self.document.as_mut().map(|d| &mut d.controls);
-                self.touches.on_touch(touch, height, consumed, controls);
+                self.touches.on_touch(touch, height, is_taken, controls);
             }
             _ => return,
         }

@@ -2,6 +2,7 @@
 //! else is requested from the event loop.
 
 mod air;
+mod boxes;
 mod clock;
 mod help;
 mod legend;
@@ -18,7 +19,7 @@ mod timings;
 pub(super) use clock::shift;
 pub(super) use notes::Notes;
 
-use egui::{Align2, CollapsingHeader, FocusDirection, Panel, ScrollArea, Ui};
+use egui::{CollapsingHeader, Context, FocusDirection, Order, Panel, Pos2, Rect, ScrollArea, Ui};
 use glam::DVec3;
 
 use crate::options::Choice;
@@ -30,6 +31,7 @@ use super::keys::Action;
 use super::stage::Stage;
 use super::style;
 
+use boxes::{corner, read_out};
 use clock::Clock;
 use probe::Probe;
 use sky_dome::SkyDome;
@@ -62,6 +64,8 @@ pub(super) struct Interface {
     sky_dome: SkyDome,
     timings: TimingChart,
     light: light::Readout,
+    /// What the panel leaves of the window, points.
+    free: Rect,
 }
 
 impl Interface {
@@ -78,7 +82,15 @@ impl Interface {
             sky_dome: SkyDome::default(),
             timings: TimingChart::default(),
             light: light::Readout::default(),
+            free: Rect::EVERYTHING,
         }
+    }
+
+    /// Whether panel or boxes are at a place of the window, points, and take a finger that goes down there. egui tells it of the
+    /// pointer alone, and knows of a finger no sooner than at the next layout.
+    pub(super) fn is_at(&self, context: &Context, place: Pos2) -> bool {
+        let layer = context.layer_id_at(place);
+        layer.is_some_and(|layer| layer.order != Order::Background) || !self.free.contains(place)
     }
 
     /// Whether the panels are shown.
@@ -207,6 +219,7 @@ impl Interface {
             help::show(ui, &mut self.help);
         }
         self.notes.show(ui, self.is_visible);
+        self.free = ui.available_rect_before_wrap();
         requests
     }
 
@@ -268,80 +281,4 @@ fn choice<T: Choice>(ui: &mut Ui, label: &str, value: &mut T) -> bool {
             }
         });
     changed
-}
-
-/// A box anchored to a corner of the image, which takes the pointer.
-fn corner(
-    ui: &Ui,
-    id: &str,
-    anchor: Align2,
-    offset: [f32; 2],
-    content: impl FnOnce(&mut Ui),
-) -> egui::Response {
-    egui::Area::new(egui::Id::new(id))
-        .anchor(anchor, offset)
-        .interactable(true)
-        .show(ui.ctx(), |ui| style::backdrop().show(ui, content))
-        .response
-}
-
-/// The same of what is read alone: the pointer reaches the image through it. A read-out of what is under the pointer that took it
-/// would come and go forever.
-fn read_out(
-    ui: &Ui,
-    id: &str,
-    anchor: Align2,
-    offset: [f32; 2],
-    content: impl FnOnce(&mut Ui),
-) -> egui::Response {
-    egui::Area::new(egui::Id::new(id))
-        .anchor(anchor, offset)
-        .interactable(false)
-        .show(ui.ctx(), |ui| {
-            ui.style_mut().interaction.selectable_labels = false;
-            style::backdrop().show(ui, content)
-        })
-        .response
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use egui::{Context, Event, Pos2, RawInput, Rect, Response, vec2};
-
-    /// Whether a box counts as interface when the pointer is on it, in three layouts of a window of this many pixels a point.
-    fn takes_pointer(scale: f32, show: impl Fn(&Ui) -> Response) -> [bool; 3] {
-        let context = Context::default();
-        let mut at = Pos2::ZERO;
-        let mut lay_out = || {
-            let size = vec2(960.0, 270.0) / scale;
-            let mut input = RawInput {
-                screen_rect: Some(Rect::from_min_size(Pos2::ZERO, size)),
-                events: vec![Event::PointerMoved(at)],
-                ..RawInput::default()
-            };
-            let root = input.viewports.entry(input.viewport_id).or_default();
-            root.native_pixels_per_point = Some(scale);
-            let output = context.run_ui(input, |ui| at = show(ui).rect.center());
-            drop(output);
-            context.is_pointer_over_egui()
-        };
-        // The first layouts find its size, and the pointer its place.
-        (lay_out(), lay_out());
-        [lay_out(), lay_out(), lay_out()]
-    }
-
-    #[test]
-    fn the_pointer_reaches_the_picture_through_a_read_out_and_not_through_a_box() {
-        let content = |ui: &mut Ui| {
-            ui.label("luminance");
-        };
-        let anchor = Align2::RIGHT_BOTTOM;
-        for scale in [1.0, 1.5, 2.0] {
-            let read = |ui: &Ui| read_out(ui, "a", anchor, [-12.0; 2], content);
-            assert_eq!(takes_pointer(scale, read), [false; 3], "{scale}");
-            let box_of = |ui: &Ui| corner(ui, "a", anchor, [-12.0; 2], content);
-            assert_eq!(takes_pointer(scale, box_of), [true; 3], "{scale}");
-        }
-    }
 }

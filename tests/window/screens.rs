@@ -11,13 +11,13 @@ use skylight::compare::Picture;
 /// A view whose picture at rest does not depend on what was drawn before.
 fn view(size: &'static str) -> Vec<&'static str> {
     [
-        &["--size", size, "--samples", "2", "--validate"][..],
+        &["--quiet", "--size", size, "--samples", "2", "--validate"][..],
         &DIRECT,
     ]
     .concat()
 }
 
-/// The rightmost column in which two pictures differ, and the first.
+/// The first and the last column in which two pictures differ.
 fn columns_that_differ(a: &Picture, b: &Picture) -> [usize; 2] {
     let [width, _] = a.size;
     let differ = |x: &usize| {

@@ -112,6 +112,20 @@ pub enum Command {
         #[command(flatten)]
         args: CompareArgs,
     },
+    /// Prove the device that is there: what it draws against reference values, closed forms and the CPU.
+    ///
+    /// Exit code 1 when a check fails.
+    Validate {
+        /// Part of a device's name, or its number.
+        #[arg(long, value_name = "NAME|INDEX")]
+        device: Option<String>,
+        /// Machine-readable instead of a table.
+        #[arg(long)]
+        json: bool,
+        /// Do without something that the device has, as on devices that lack it.
+        #[arg(long, value_name = "FEATURE", value_parser = choice::<Optional>())]
+        without: Option<Optional>,
+    },
     /// List the Vulkan devices and what each lacks.
     Info {
         /// Instead: draw the bundled scene, and tell where the time goes before its first picture is there.

@@ -11,7 +11,7 @@ use exr::meta::attribute::{ChannelDescription, SampleType, Text};
 use exr::meta::header::Header;
 
 use super::exr::{BT709, ENCODING, attributes, full_name};
-use super::{Channels, Metadata, reason, temporary, write_error};
+use super::{Channels, Metadata, persist, reason, temporary, write_error};
 use crate::error::{Error, Result};
 
 /// Rows per block of the file. The rows of each band except the last must be a multiple of it.
@@ -69,9 +69,7 @@ pub fn write_exr_rows(
     }
     let synced = file.as_file().sync_all();
     synced.map_err(|e| write_error(path, reason(&e)))?;
-    file.persist(path)
-        .map_err(|e| write_error(path, reason(&e.error)))?;
-    Ok(())
+    persist(path, file)
 }
 
 /// The channels in file order: sorted by name.

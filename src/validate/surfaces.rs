@@ -53,13 +53,13 @@ pub fn within_the_box() -> Camera {
 /// # Errors
 /// The device fails.
 pub fn cells(device: &mut Device) -> Result<Vec<Check>> {
-    let mut check = Check::relative("cells, a box that glows", "Σ ρⁿ", "kcd/m²", 0.01);
+    let mut check = Check::relative("cells, a box that glows", "Σ ρⁿ", "kcd/m²", 0.02);
     for (reflectance, bounces, most) in [(0.5, Bounces::All, 64), (0.5, Bounces::UpTo(2), 2)] {
         let scene = closed_box(2.0, &glowing(reflectance, 1000.0));
-        let mut settings = from_cells(24, 16);
+        let mut settings = from_cells(12, 8);
         settings.bounces = bounces;
         let expected: f64 = (0..=most).map(|n| f64::from(reflectance).powi(n)).sum();
-        let picture = previewed(device, &scene, settings, &within_the_box(), 48)?;
+        let picture = previewed(device, &scene, settings, &within_the_box(), 24)?;
         for (pixel, value) in picture.pixels() {
             let at = || format!("ρ {reflectance}, {bounces:?}, pixel {pixel:?}");
             check.see(luminance(value), expected, expected, at);

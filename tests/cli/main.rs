@@ -18,6 +18,8 @@ mod mitsuba_bake;
 mod moment;
 mod options;
 mod sky;
+mod streams;
 mod tiles;
 mod town;
+mod validate;
 mod weather;

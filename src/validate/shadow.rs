@@ -3,7 +3,7 @@
 use glam::{DVec3, UVec2, Vec2};
 
 use super::check::Check;
-use super::device::{Device, Picture, camera, on_ground, settings};
+use super::device::{Device, Picture, camera, on_ground, pixel_ray, settings};
 use super::model::{Model, clear_day, matt};
 use crate::daylight::sky::Daylight;
 use crate::frame::FrameSettings;
@@ -82,26 +82,55 @@ pub fn ground_point(camera: &Camera, depth: &Picture, pixel: [usize; 2]) -> Opti
     (seen > 0.0 && (seen / along - 1.0).abs() < 1e-3).then_some(p)
 }
 
-/// Compares V with the analytic shadow of a square under the sun at `azimuth` and `elevation`, degrees; returns the number of dark pixels, and of
+/// Compares the depth of every pixel with the nearer of the square and the plane, but for pixels at edges.
+fn compare_depth(check: &mut Check, depth: &Picture, camera: &Camera) {
+    let eye = camera.eye.as_dvec3();
+    for (pixel, seen) in depth.pixels() {
+        let ray = pixel_ray(camera, depth.size, pixel);
+        // Where the ray meets the horizontal square of this height: how deep within its edge, metres, and how far along the axis.
+        let hit = |height: f64, half: f64| {
+            let distance = (height - eye.y) / ray.y;
+            let at = eye + ray * distance;
+            let inside = half - at.x.abs().max(at.z.abs());
+            let along = distance * ray.dot(camera.forward().as_dvec3());
+            (if distance > 0.0 { inside } else { f64::MIN }, along)
+        };
+        let (square, ground) = (hit(3.0, 2.0), hit(0.0, 12.0));
+        if square.0.abs() < 0.1 || ground.0.abs() < 0.5 {
+            continue;
+        }
+        let expected = match (square.0 > 0.0, ground.0 > 0.0) {
+            (true, _) => square.1,
+            (false, true) => ground.1,
+            (false, false) => 0.0,
+        };
+        let at = || format!("pixel {pixel:?}");
+        check.see(seen.x, expected, expected.max(1.0), at);
+    }
+}
+
+/// Compares V with the analytic shadow of a square under the sun at `azimuth` and `elevation`, degrees, and the depths; returns the number of dark pixels, and of
 /// those at edges, which are not compared.
 ///
 /// # Errors
 /// The device fails.
 pub fn compare_square(
     device: &mut Device,
-    check: &mut Check,
+    [check, depths]: [&mut Check; 2],
     [azimuth, elevation]: [f64; 2],
 ) -> Result<[usize; 2]> {
     let grey = matt(0.5);
     let scene = Model::default()
-        .ground(12.0, &grey)
         .square([0.0, 3.0, 0.0], 2.0, &grey)
+        // Behind what is drawn before it: the depth test hides it.
+        .ground(12.0, &grey)
         .build();
     let camera = camera([7.0, 8.0, 14.0], [0.0, 0.0, 0.0]);
     let day = clear_day(azimuth, elevation);
     let sun = day.sun_direction;
     let margin = EDGE_TEXELS * texel(&scene, &day, &camera);
     let (visibility, depth) = draw(device, &scene, &day, &camera)?;
+    compare_depth(depths, &depth, &camera);
     let (mut dark, mut skipped) = (0, 0);
     for (pixel, v) in visibility.pixels() {
         let Some(p) = ground_point(&camera, &depth, pixel) else {
@@ -127,13 +156,14 @@ pub fn compare_square(
 /// The device fails.
 pub fn square(device: &mut Device) -> Result<Vec<Check>> {
     let mut check = Check::absolute("shadow of a floating square, V", "geometry", "", 1e-6);
+    let mut depths = Check::relative("depth of square and plane", "geometry", "m", 1e-4);
     let mut seen = Check::absolute("pixels in that shadow", "at least 500", "", 0.0);
     for sun in [[180.0, 80.0], [100.0, 45.0], [250.0, 30.0]] {
-        let [dark, _] = compare_square(device, &mut check, sun)?;
+        let [dark, _] = compare_square(device, [&mut check, &mut depths], sun)?;
         let dark = dark as f64;
         seen.see(dark, dark.max(500.0), 1.0, || {
             format!("sun {}° {}°", sun[0], sun[1])
         });
     }
-    Ok(vec![check, seen])
+    Ok(vec![check, seen, depths])
 }

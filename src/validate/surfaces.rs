@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::check::Check;
-use super::device::{Device, Picture, camera, from_cells};
+use super::device::{Device, Picture, camera, from_cells, settings};
 use super::model::{Model, clear_day, closed_box, constant_sky, glass, glowing, matt};
 use crate::daylight::colour::luminance;
 use crate::daylight::glass::{internal_transmittance, pane};
@@ -148,13 +148,13 @@ pub fn seen_through(
 pub fn panes(device: &mut Device) -> Result<Vec<Check>> {
     let mut sun = Check::relative("glass, the sun through it", "Fresnel, Beer", "", 3e-3);
     for elevation in [70.0, 15.0] {
-        let [found, expected] = sun_through(device, from_cells(24, 16), elevation)?;
+        let [found, expected] = sun_through(device, settings(24, 16), elevation)?;
         let at = || format!("sun at {elevation}°");
         sun.see_colour(found, expected, expected.min_element(), at);
     }
     let mut view = Check::relative("glass, the view and its mirror", "Fresnel, Beer", "", 5e-3);
     for degrees in [0.0, 50.0] {
-        let both = seen_through(device, from_cells(24, 16), degrees)?;
+        let both = seen_through(device, settings(24, 16), degrees)?;
         for (what, [found, expected]) in ["through", "mirrored"].into_iter().zip(both) {
             let at = || format!("{what}, {degrees}° from the normal");
             view.see_colour(found, expected, expected.min_element(), at);

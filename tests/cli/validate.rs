@@ -3,8 +3,11 @@
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
+use std::thread;
 
 use serde_json::Value;
+
+use crate::pretended::Layer;
 
 /// The README's table begins behind this line.
 const BEGIN: &str = "<!-- skylight validate, on Mesa 22.3.6's lavapipe -->\n\n```\n";
@@ -93,4 +96,43 @@ fn the_device_passes_and_the_readme_has_its_table() {
         faults.is_empty(),
         "the README's table is of another program:\n{faults}"
     );
+}
+
+/// Faults of drivers, by the words of the layer, and a check that sees each.
+const FAULTS: [(&str, &str); 4] = [
+    ("nearest", "random numbers"),
+    ("short", "atmosphere, table of the air"),
+    ("deep", "depth of square and plane"),
+    ("plain", "cells, a box that glows"),
+];
+
+/// The program on the device with a fault: its exit code, and the checks that fail.
+fn failed(layer: &Layer, fault: &str) -> (Option<i32>, Vec<String>, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_skylight"))
+        .envs(layer.variables(fault))
+        .args(["validate", "--json"])
+        .output()
+        .expect("the program starts");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    let found: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let checks = found["checks"].as_array().expect("a list").iter();
+    let failed = checks.filter(|check| check["passed"] == false);
+    let names = failed.map(|check| check["check"].as_str().expect("a name").to_owned());
+    (output.status.code(), names.collect(), told)
+}
+
+#[test]
+fn faults_of_drivers_are_seen_and_told() {
+    let Some(layer) = Layer::get() else { return };
+    thread::scope(|scope| {
+        for (fault, check) in FAULTS {
+            scope.spawn(move || {
+                let (code, names, told) = failed(layer, fault);
+                println!("{fault}: {names:?}");
+                assert_eq!(code, Some(1), "{fault}: {told}");
+                assert!(names.iter().any(|name| name == check), "{fault}: {names:?}");
+                assert!(told.contains(check), "{fault}: {told}");
+            });
+        }
+    });
 }

@@ -19,13 +19,16 @@ fn draw(device: &mut Device, scene: &Scene, day: &Daylight, camera: &Camera) -> 
 fn a_square_casts_its_shadow_where_geometry_says() {
     let mut device = Device::new();
     let mut check = Check::absolute("V of a square's shadow", "geometry", "", 1e-6);
+    let mut depths = Check::relative("depths", "geometry", "m", 1e-4);
     let (mut dark, mut skipped) = (0, 0);
     for sun in [[180.0, 80.0], [100.0, 45.0], [250.0, 30.0], [20.0, 55.0]] {
-        let counts = shadow::compare_square(&mut device, &mut check, sun).expect("drawn");
+        let counts =
+            shadow::compare_square(&mut device, [&mut check, &mut depths], sun).expect("drawn");
         dark += counts[0];
         skipped += counts[1];
     }
     finish(&check);
+    finish(&depths);
     println!("{dark} of them dark, {skipped} skipped at edges");
     assert!(dark > 2000 && skipped < dark, "{dark} {skipped}");
 }

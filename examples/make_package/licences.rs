@@ -14,7 +14,7 @@ use crate::Result;
 const NAMES: [&str; 5] = ["LICENSE", "LICENCE", "COPYING", "NOTICE", "UNLICENSE"];
 
 /// Licences that the program may be given away with; each crate must offer one of them.
-const ALLOWED: [&str; 14] = [
+const ALLOWED: [&str; 16] = [
     "MIT",
     "MIT-0",
     "Apache-2.0",
@@ -29,6 +29,9 @@ const ALLOWED: [&str; 14] = [
     "Unlicense",
     "OFL-1.1",
     "Ubuntu-font-1.0",
+    "LicenseRef-UFL-1.0",
+    // Of a crate below `dirs`: its source, unchanged, is where the text below says.
+    "MPL-2.0",
 ];
 
 /// The text of all licences, and the number of crates.
@@ -50,7 +53,8 @@ pub fn collected(target: &str) -> Result<(String, usize)> {
     let metadata: Value = serde_json::from_slice(&output.stdout)?;
     let linked = linked(&metadata)?;
     let mut text =
-        "skylight is linked from these crates. The texts of their licences follow, each once.\n\n"
+        "skylight is linked from these crates, whose sources are at https://crates.io/crates/NAME, unchanged. The texts of their licences follow, each \
+         once.\n\n"
             .to_owned();
     let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
     let packages = list(&metadata["packages"])?.iter();
@@ -94,16 +98,36 @@ fn linked(metadata: &Value) -> Result<BTreeSet<String>> {
     Ok(found)
 }
 
-/// Whether one of the alternatives has only known licences: `A OR B`, `A AND B`, `A/B`, exceptions after WITH.
+/// Whether all parts of one of the alternatives are known: an expression of SPDX, `A OR B`, `A AND (B OR C)`, exceptions after WITH; an old `A/B`
+/// counts as OR.
 fn is_allowed(licence: &str) -> bool {
-    let words = licence.replace(['(', ')'], " ").replace('/', " OR ");
-    words.split(" OR ").any(|all| {
-        let mut all = all.split(" AND ");
-        all.all(|one| {
-            let name = one.split(" WITH ").next().unwrap_or_default().trim();
-            ALLOWED.contains(&name)
-        })
-    })
+    let licence = licence.trim();
+    let parts = |word| split(licence, word);
+    if let [_, _, ..] = parts(" OR ").as_slice() {
+        return parts(" OR ").into_iter().any(is_allowed);
+    }
+    if let [_, _, ..] = parts(" AND ").as_slice() {
+        return parts(" AND ").into_iter().all(is_allowed);
+    }
+    if let Some(inner) = licence.strip_prefix('(').and_then(|l| l.strip_suffix(')')) {
+        return is_allowed(inner);
+    }
+    let mut names = licence.split('/');
+    names.any(|name| ALLOWED.contains(&name.split(" WITH ").next().unwrap_or_default().trim()))
+}
+
+/// The parts between a word outside of parentheses.
+fn split<'l>(text: &'l str, word: &str) -> Vec<&'l str> {
+    let (mut parts, mut start, mut depth) = (Vec::new(), 0, 0);
+    for (at, character) in text.char_indices() {
+        depth += i32::from(character == '(') - i32::from(character == ')');
+        if depth == 0 && at >= start && text[at..].starts_with(word) {
+            parts.push(&text[start..at]);
+            start = at + word.len();
+        }
+    }
+    parts.push(&text[start..]);
+    parts
 }
 
 /// The files of a licence beside a manifest.

@@ -11,7 +11,7 @@ use exr::math::Vec2;
 use exr::meta::attribute::{AttributeValue, Chromaticities, LineOrder, Text};
 use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, LayerAttributes};
 
-use super::{Metadata, write_error, write_whole};
+use super::{Metadata, exr_header, write_error, write_whole};
 use crate::error::Result;
 
 /// Channels of a layer.
@@ -112,7 +112,9 @@ fn encode(
     image.attributes.chromaticities = Some(BT709);
     let mut bytes = Cursor::new(Vec::new());
     image.write().to_buffered(&mut bytes)?;
-    Ok(bytes.into_inner())
+    let mut bytes = bytes.into_inner();
+    exr_header::sort(&mut bytes);
+    Ok(bytes)
 }
 
 /// Name of a channel in the file.

@@ -1,6 +1,7 @@
 //! Output files, written atomically; or standard output, written when the whole is there.
 
 mod exr;
+mod exr_header;
 mod exr_rows;
 mod hdr;
 mod ktx2;

@@ -48,8 +48,16 @@ mod tests {
             let size = (value.len() as u32).to_le_bytes();
             [name.as_bytes(), b"\0string\0", &size, value].concat()
         };
-        let [a, b, c] = [("a", &b"1"[..]), ("b", b"two\0"), ("c", b"")].map(|(n, v)| attribute(n, v));
-        let file = |list: [&Vec<u8>; 3]| [b"12345678".to_vec(), list.map(Clone::clone).concat(), b"\0rest".to_vec()].concat();
+        let [a, b, c] =
+            [("a", &b"1"[..]), ("b", b"two\0"), ("c", b"")].map(|(n, v)| attribute(n, v));
+        let file = |list: [&Vec<u8>; 3]| {
+            [
+                b"12345678".to_vec(),
+                list.map(Clone::clone).concat(),
+                b"\0rest".to_vec(),
+            ]
+            .concat()
+        };
         let mut bytes = file([&c, &a, &b]);
         sort(&mut bytes);
         assert_eq!(bytes, file([&a, &b, &c]));

@@ -77,7 +77,9 @@ pub fn write_exr_rows(
 fn sort_header(file: &mut std::fs::File) -> std::io::Result<()> {
     let mut head = Vec::new();
     file.rewind()?;
-    file.by_ref().take(exr_header::LONGEST as u64).read_to_end(&mut head)?;
+    file.by_ref()
+        .take(exr_header::LONGEST as u64)
+        .read_to_end(&mut head)?;
     exr_header::sort(&mut head);
     file.rewind()?;
     file.write_all(&head)

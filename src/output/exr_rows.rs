@@ -1,6 +1,6 @@
 //! OpenEXR files written in bands, for pictures larger than memory; the files equal those of [`super::write_exr`].
 
-use std::io::BufWriter;
+use std::io::{BufWriter, Read as _, Seek as _, Write as _};
 use std::path::Path;
 
 use exr::block::writer::{ChunkWriter, SequentialBlocksCompressor};
@@ -67,18 +67,17 @@ pub fn write_exr_rows(
         (Some(error), _) => return Err(error),
         (None, written) => written.map_err(|e| write_error(path, e))?,
     }
-    sort_header(file.as_file_mut()).map_err(|e| write_error(path, reason(&e)))?;
+    sort_header(file.as_file()).map_err(|e| write_error(path, reason(&e)))?;
     let synced = file.as_file().sync_all();
     synced.map_err(|e| write_error(path, reason(&e)))?;
     persist(path, file)
 }
 
 /// Sorts the attributes of a file that is written.
-fn sort_header(file: &mut std::fs::File) -> std::io::Result<()> {
+fn sort_header(mut file: &std::fs::File) -> std::io::Result<()> {
     let mut head = Vec::new();
     file.rewind()?;
-    file.by_ref()
-        .take(exr_header::LONGEST as u64)
+    file.take(exr_header::LONGEST as u64)
         .read_to_end(&mut head)?;
     exr_header::sort(&mut head);
     file.rewind()?;

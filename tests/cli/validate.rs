@@ -86,7 +86,7 @@ fn the_device_passes_and_the_readme_has_its_table() {
         let is_same = row.name == check["check"]
             && row.against == check["against"]
             && Some(row.compared) == check["compared"].as_u64()
-            && (row.tolerance / tolerance - 1.0).abs() < 0.06
+            && (row.tolerance - tolerance).abs() <= 0.06 * tolerance
             && (OTHER_DRIVERS.recip()..OTHER_DRIVERS).contains(&ratio);
         if !is_same {
             let _ = writeln!(faults, "{row:?}\n    {check}");

@@ -1,6 +1,6 @@
 //! Tone curves of the device, and the formats that images are drawn to and read back from.
 
-use glam::{DVec3, UVec2};
+use glam::UVec2;
 
 use super::check::Check;
 use super::device::{Device, rgb};
@@ -179,11 +179,11 @@ pub fn formats(device: &mut Device) -> Result<Vec<Check>> {
         }
         let outputs = mapped(device, &inputs, linear, format)?;
         for (input, output) in inputs.iter().zip(outputs) {
-            let stored = DVec3::from_array(rgb(*input).to_array().map(encode));
-            for channel in 0..channels {
-                let found = f64::from(output[channel]) / step;
+            let stored = rgb(*input).to_array().map(encode);
+            let found = rgb(output).to_array().into_iter();
+            for (found, stored) in found.zip(stored).take(channels) {
                 let at = || format!("{format:?}, {input:?}");
-                check.see(found, stored[channel] / step, 1.0, at);
+                check.see(found / step, stored / step, 1.0, at);
             }
         }
     }

@@ -6,7 +6,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::error::ErrorKind;
-use clap::{Arg, Parser, Subcommand};
+use clap::{Arg, CommandFactory as _, Parser, Subcommand};
 
 pub use args::{
     BakeArgs, BenchArgs, CompareArgs, DaylightArgs, HourArgs, Layout, Map, Metric, Motion, SkyArgs,
@@ -22,8 +22,8 @@ pub enum Command {
     Render {
         /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, the default; island).
         scene: Option<PathBuf>,
-        /// File to write: .png is tone-mapped, .exr is scene-linear cd/m² (lux for irradiance).
-        #[arg(short, long, value_name = "FILE", default_value = "skylight.png", value_parser = args::named(&["png", "exr"]))]
+        /// File to write: .png is tone-mapped, .exr is scene-linear cd/m² (lux for irradiance). - is standard output as PNG, exr:- as EXR.
+        #[arg(short, long, value_name = "FILE", default_value = "skylight.png", value_parser = args::named_or_stdout(&["png", "exr"]))]
         output: PathBuf,
         /// An hour of a weather file.
         #[command(flatten)]
@@ -112,6 +112,20 @@ pub enum Command {
         #[command(flatten)]
         args: CompareArgs,
     },
+    /// Prove the device that is there: what it draws against reference values, closed forms and the CPU.
+    ///
+    /// Exit code 1 when a check fails.
+    Validate {
+        /// Part of a device's name, or its number.
+        #[arg(long, value_name = "NAME|INDEX")]
+        device: Option<String>,
+        /// Machine-readable instead of a table.
+        #[arg(long)]
+        json: bool,
+        /// Do without something that the device has, as on devices that lack it.
+        #[arg(long, value_name = "FEATURE", value_parser = choice::<Optional>())]
+        without: Option<Optional>,
+    },
     /// List the Vulkan devices and what each lacks.
     Info {
         /// Instead: draw the bundled scene, and tell where the time goes before its first picture is there.
@@ -152,11 +166,16 @@ impl CliExit {
 #[command(name = "skylight", version, max_term_width = 100)]
 #[command(about = "Shows a 3D model in the daylight of a place and a moment, in cd/m² and lux")]
 #[command(
-    after_help = "An option overrides the scene file. Exit code: 0 done, 1 failed, 2 wrong usage."
+    after_help = "An option overrides the scene file. Exit code: 0 done, 1 failed, 2 wrong usage. Results are on standard output, messages on standard error."
 )]
 struct Cli {
     #[command(subcommand)]
     command: Command,
+}
+
+/// The definition of the command line, of which man pages and completions of shells are made (`examples/make_package`).
+pub fn definition() -> clap::Command {
+    Cli::command()
 }
 
 /// Reads the words of the command line; the first is the program's name.

@@ -81,6 +81,9 @@ pub enum Error {
     /// Pictures that do not belong together.
     #[error("cannot compare: {0}")]
     Compare(String),
+    /// Checks of a device that fail: which.
+    #[error("{0}")]
+    NotValid(String),
     /// Something takes longer than it may.
     #[error("slower than {factor} times {file}: {slower}")]
     Slower {

@@ -49,10 +49,11 @@
 //!   rays that are gathered; [`passes::dome`]: the sky by shadow maps.
 //! - [`sensors`]: illuminance at points with all diffuse bounces, at a moment or over a year, by path tracing on the CPU; no device.
 //! - [`lecture`]: every formula of the slides with its function, shader and test.
+//! - [`validate`]: the device that is there against the CPU, reference values and closed forms; the tests of the device compare by it.
 //! - [`compare`]: two pictures, how far apart: radiometric errors and FLIP.
 //! - [`cli`] and [`options`]: text to options. [`commands`]: drivers of the one frame. [`output`]: files, whole or not at all.
 //!
-//! Imports run one way: commands → frame, sensors → passes → gpu, scene, daylight; the last three import nothing of ours.
+//! Imports run one way: commands → validate → frame, sensors → passes → gpu, scene, daylight; the last three import nothing of ours.
 //!
 //! # Conventions
 //!
@@ -83,3 +84,4 @@ pub mod output;
 pub mod passes;
 pub mod scene;
 pub mod sensors;
+pub mod validate;

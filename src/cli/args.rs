@@ -10,6 +10,7 @@ use crate::daylight::metrics::Schedule;
 use crate::daylight::sun_hours::SunDate;
 use crate::daylight::weather::YearHour;
 use crate::options::{Direction, choice, choice_enum};
+use crate::output::is_stdout;
 
 /// What to measure, and where to put it.
 #[derive(Debug, Clone, PartialEq, Args)]
@@ -19,10 +20,10 @@ pub struct BenchArgs {
     pub at: HourArgs,
     /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, the default; island).
     pub scene: Option<PathBuf>,
-    /// Write the table as JSON too.
+    /// Write the table as JSON too; - is standard output, and the table is on standard error then.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write the table as CSV too, every row complete: device, commit, scene, size ..
+    /// Write the table as CSV too, every row complete: device, commit, scene, size ..; - is standard output.
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
     /// Frames to measure; 10 by default at each step of a sweep.
@@ -162,16 +163,30 @@ pub struct CompareArgs {
 }
 
 /// The parser of a file name with one of these extensions; it need not be UTF-8.
-pub(super) fn named(extensions: &'static [&'static str]) -> impl TypedValueParser<Value = PathBuf> {
+fn named(extensions: &'static [&'static str]) -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(move |path| ends_in(path, extensions))
+}
+
+/// As [`named`]; or one of the names of standard output.
+pub(super) fn named_or_stdout(
+    extensions: &'static [&'static str],
+) -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(move |path: PathBuf| {
-        let extension = path.extension().map(|e| e.to_ascii_lowercase());
-        let is_known = |known: &&str| extension.as_ref() == Some(&OsString::from(known));
-        if extensions.iter().any(is_known) {
+        if is_stdout(&path) {
             return Ok(path);
         }
-        let known: Vec<String> = extensions.iter().map(|e| format!(".{e}")).collect();
-        Err(format!("the name must end in {}", known.join(" or ")))
+        ends_in(path, extensions)
     })
+}
+
+fn ends_in(path: PathBuf, extensions: &[&str]) -> Result<PathBuf, String> {
+    let extension = path.extension().map(|e| e.to_ascii_lowercase());
+    let is_known = |known: &&str| extension.as_ref() == Some(&OsString::from(known));
+    if extensions.iter().any(is_known) {
+        return Ok(path);
+    }
+    let known: Vec<String> = extensions.iter().map(|e| format!(".{e}")).collect();
+    Err(format!("the name must end in {}", known.join(" or ")))
 }
 
 /// An hour of a weather file, instead of a place, a moment and a sky.

@@ -21,10 +21,11 @@ use crate::error::Result;
 use crate::frame::{FrameSettings, Sampling};
 use crate::gpu::{Context, ContextOptions, GpuError};
 use crate::options::{Fresnel, Mirrors, OptionValues, Options, Penumbra, Phong, Preset};
+use crate::output::{LATITUDE, LONGITUDE, MOMENT, WHITE_LUMINANCE};
 use crate::passes::dome::gather::DomeSettings;
 use crate::passes::light::lighting::{Precision, Show};
 use crate::passes::occlusion::ssao::SsaoSettings;
-use crate::passes::picture::tone_map::Scale;
+use crate::passes::picture::tone_map::{Scale, is_light};
 use crate::passes::route::settle_route;
 use crate::passes::sky::irradiance::IrradianceSettings;
 use crate::scene::{self, Camera, LoadOptions, Loaded, Scene, Subject};
@@ -316,6 +317,21 @@ impl Job {
         self.settings.with_camera(&self.camera, self.scene.origin)
     }
 
+    /// What other programs read too, see [`crate::output::write_exr`]: where and when, and the luminance of a 1.
+    fn standard(&self) -> Vec<(String, String)> {
+        let mut list = Vec::new();
+        if let Some((latitude, longitude, when)) = self.settings.sun.place() {
+            list.push((LATITUDE.into(), latitude.to_string()));
+            list.push((LONGITUDE.into(), longitude.to_string()));
+            list.push((MOMENT.into(), when.to_rfc3339()));
+        }
+        let show = self.settings.show;
+        if is_light(show) && show != Show::Irradiance {
+            list.push((WHITE_LUMINANCE.into(), "1".to_owned()));
+        }
+        list
+    }
+
     /// Metadata for the image file: the options that reproduce the image, and figures of its light.
     pub fn metadata(&self) -> Vec<(String, String)> {
         let rgb = |v: glam::DVec3| format!("{},{},{}", v.x, v.y, v.z);
@@ -342,6 +358,7 @@ impl Job {
                 format!("{} lux (RGB)", rgb(self.daylight.sky_irradiance_up)),
             ),
         ];
+        list.extend(self.standard());
         if let Some(moon) = self.daylight.moon {
             let text = format!("{} lux (RGB)", rgb(moon.illuminance));
             list.push(("moon illuminance".into(), text));

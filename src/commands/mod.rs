@@ -22,6 +22,7 @@ mod sky_report;
 mod sky_table;
 mod startup;
 mod tiled;
+mod validate;
 #[cfg(feature = "window")]
 pub mod view;
 mod weather;
@@ -63,6 +64,11 @@ pub fn run(command: Command) -> Result<()> {
         Command::Weather { args, options } => weather::run(&args, &options),
         Command::Bake { args, options } => bake::run(&args, weather::applied(&args.at, options)?),
         Command::Compare { args } => compare::run(&args),
+        Command::Validate {
+            device,
+            without,
+            json,
+        } => validate::run(device, without, json),
         Command::Info {
             startup: true,
             device,

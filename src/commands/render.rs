@@ -13,8 +13,8 @@ use crate::frame::Frame;
 use crate::gpu::{Recorder, Timing, read_back};
 use crate::options::{AntiAliasing, OptionValues, Options, OptionsError, name};
 use crate::output::{
-    Channels, Effort, Encoding, Layer, LayerKind, check_writable, draw_legend, print, write_exr,
-    write_png,
+    Channels, Effort, Encoding, Layer, LayerKind, check_writable, draw_legend, is_exr,
+    print_beside, write_exr, write_png,
 };
 use crate::passes::light::lighting::{Precision, Show};
 use crate::passes::picture::tone_map::{ToneSettings, is_light};
@@ -27,9 +27,7 @@ const AVERAGED: u32 = 4;
 /// # Errors
 /// Any error up to writing the file; an existing file is then left unchanged.
 pub fn run(scene: Option<&Path>, output: &Path, options: &OptionValues) -> Result<()> {
-    let exr = output
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("exr"));
+    let exr = is_exr(output);
     if options.alone()?.layers && !exr {
         let what = "--layers needs an .exr file; choose one with -o";
         return Err(OptionsError(what.to_owned()).into());
@@ -50,7 +48,7 @@ pub fn run(scene: Option<&Path>, output: &Path, options: &OptionValues) -> Resul
             tiled.save_png(output)
         }?;
         context.check_validation()?;
-        return print(&format!("{}: {summary}\n", output.display()));
+        return print_beside(output, &format!("{}: {summary}\n", output.display()));
     }
     let mut renderer = Renderer::new(&job, Recorder::new(&context, Timing::Off)?, exr)?;
     let summary = if exr {
@@ -59,7 +57,7 @@ pub fn run(scene: Option<&Path>, output: &Path, options: &OptionValues) -> Resul
         renderer.save_png(output)
     }?;
     context.check_validation()?;
-    print(&format!("{}: {summary}\n", output.display()))
+    print_beside(output, &format!("{}: {summary}\n", output.display()))
 }
 
 /// Fails where `--aa` would have no effect on a single frame. Pictures of several samples are smooth without it.

@@ -3,6 +3,7 @@
 use std::io::Cursor;
 use std::path::Path;
 
+use chrono::DateTime;
 use exr::compression::Compression;
 use exr::image::Blocks;
 use exr::image::write::WritableImage as _;
@@ -10,7 +11,7 @@ use exr::math::Vec2;
 use exr::meta::attribute::{AttributeValue, Chromaticities, LineOrder, Text};
 use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, LayerAttributes};
 
-use super::{Metadata, write_error, write_whole};
+use super::{Metadata, exr_header, write_error, write_whole};
 use crate::error::Result;
 
 /// Channels of a layer.
@@ -111,7 +112,9 @@ fn encode(
     image.attributes.chromaticities = Some(BT709);
     let mut bytes = Cursor::new(Vec::new());
     image.write().to_buffered(&mut bytes)?;
-    Ok(bytes.into_inner())
+    let mut bytes = bytes.into_inner();
+    exr_header::sort(&mut bytes);
+    Ok(bytes)
 }
 
 /// Name of a channel in the file.
@@ -123,13 +126,38 @@ pub(super) fn full_name(layer: &str, channel: &str) -> String {
     }
 }
 
-/// The parameters and the name of the program.
+/// Names of the metadata that standard attributes are made of: degrees, a moment of RFC 3339, cd/m² of a 1.
+pub const LATITUDE: &str = "latitude";
+/// See [`LATITUDE`].
+pub const LONGITUDE: &str = "longitude";
+/// See [`LATITUDE`].
+pub const MOMENT: &str = "moment of the sun";
+/// See [`LATITUDE`].
+pub const WHITE_LUMINANCE: &str = "white luminance";
+
+/// The parameters, the name of the program, and what of them has a standard attribute: `latitude`, `longitude`, `capDate`, `utcOffset`,
+/// `whiteLuminance`.
 pub(super) fn attributes(metadata: &Metadata) -> LayerAttributes {
     let mut attributes = LayerAttributes {
         white_luminance: None,
         ..LayerAttributes::default()
     };
     attributes.software_name = Some(Text::from("skylight"));
+    let value = |name: &str| {
+        let pair = metadata.iter().find(|(key, _)| key == name);
+        pair.map(|(_, value)| value.as_str())
+    };
+    let number = |name| value(name).and_then(|value| value.parse().ok());
+    attributes.latitude = number(LATITUDE);
+    attributes.longitude = number(LONGITUDE);
+    attributes.white_luminance = number(WHITE_LUMINANCE);
+    let moment = value(MOMENT).and_then(|when| DateTime::parse_from_rfc3339(when).ok());
+    if let Some(moment) = moment {
+        let date = moment.format("%Y:%m:%d %H:%M:%S").to_string();
+        attributes.capture_date = Some(Text::from(date.as_str()));
+        // What is added to the local time for universal time, seconds.
+        attributes.utc_offset = Some(-(moment.offset().local_minus_utc() as f32));
+    }
     for (key, value) in metadata {
         let value = AttributeValue::Text(Text::new_or_none(value).unwrap_or_default());
         // Prefixed: some option names (exposure) are standard attributes of other types.
@@ -155,8 +183,15 @@ mod tests {
             texels: texels.clone(),
         };
         let layers = [layer("", Channels::Rgb), layer("depth", Channels::Depth)];
-        let metadata = vec![("turbidity".to_owned(), "3".to_owned())];
-        let bytes = encode([3, 2], &layers, &metadata).expect("encoded");
+        let metadata = [
+            ("turbidity", "3"),
+            (LATITUDE, "55.75"),
+            (LONGITUDE, "-12.5"),
+            (MOMENT, "2026-06-21T15:00:30+02:00"),
+            (WHITE_LUMINANCE, "1"),
+        ];
+        let metadata = metadata.map(|(key, value)| (key.to_owned(), value.to_owned()));
+        let bytes = encode([3, 2], &layers, &metadata.to_vec()).expect("encoded");
         let image = exr::prelude::read()
             .no_deep_data()
             .largest_resolution_level()
@@ -186,5 +221,11 @@ mod tests {
             .get(&Text::from("skylight:turbidity"))
             .expect("attribute");
         assert_eq!(value, &AttributeValue::Text(Text::from("3")));
+        let own = &layer.attributes;
+        assert_eq!((own.latitude, own.longitude), (Some(55.75), Some(-12.5)));
+        assert_eq!(own.white_luminance, Some(1.0));
+        assert_eq!(own.capture_date, Some(Text::from("2026:06:21 15:00:30")));
+        assert_eq!(own.utc_offset, Some(-7200.0));
+        assert_eq!(image.attributes.chromaticities, Some(BT709));
     }
 }

@@ -1,23 +1,28 @@
-//! Output files, written atomically.
+//! Output files, written atomically; or standard output, written when the whole is there.
 
 mod exr;
+mod exr_header;
 mod exr_rows;
 mod hdr;
 mod ktx2;
 mod legend;
 mod png;
 mod rows;
+mod stream;
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-pub use self::exr::{Channels, Layer, encode_exr, write_exr};
+pub use self::exr::{
+    Channels, LATITUDE, LONGITUDE, Layer, MOMENT, WHITE_LUMINANCE, encode_exr, write_exr,
+};
 pub use self::exr_rows::{LayerKind, write_exr_rows};
 pub use self::hdr::encode_hdr;
 pub use self::ktx2::{CubeLevel, TexelFormat, encode_ktx2, scale};
 pub use self::legend::draw_legend;
 pub use self::png::{Effort, Encoding, write_png};
 pub use self::rows::PngRows;
+pub use self::stream::{STDOUT, is_exr, is_stdout, print_beside};
 
 use crate::error::{Error, Result};
 
@@ -43,6 +48,9 @@ fn folder(path: &Path) -> &Path {
 /// # Errors
 /// The folder is missing or not writable, or `path` is a folder.
 pub fn check_writable(path: &Path) -> Result<()> {
+    if is_stdout(path) {
+        return Ok(());
+    }
     let folder = folder(path);
     if !folder.is_dir() {
         let reason = format!(
@@ -66,9 +74,12 @@ fn temporary(path: &Path) -> Result<tempfile::NamedTempFile> {
         use std::os::unix::fs::PermissionsExt as _;
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    builder
-        .tempfile_in(folder(path))
-        .map_err(|e| write_error(path, reason(&e)))
+    let file = if is_stdout(path) {
+        builder.tempfile()
+    } else {
+        builder.tempfile_in(folder(path))
+    };
+    file.map_err(|e| write_error(path, reason(&e)))
 }
 
 fn reason(error: &std::io::Error) -> String {
@@ -114,6 +125,9 @@ pub fn write_set(files: &[(PathBuf, Vec<u8>)]) -> Result<()> {
 }
 
 fn persist(path: &Path, file: tempfile::NamedTempFile) -> Result<()> {
+    if is_stdout(path) {
+        return stream::copy(file.as_file());
+    }
     let renamed = file.persist(path);
     renamed.map_err(|e| write_error(path, reason(&e.error)))?;
     Ok(())

@@ -5,7 +5,7 @@ use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::png::head;
-use super::{Effort, Encoding, Metadata, reason, temporary, write_error};
+use super::{Effort, Encoding, Metadata, persist, reason, temporary, write_error};
 use crate::error::Result;
 
 /// A PNG written from the top to a temporary file beside its target, and renamed at the end.
@@ -67,10 +67,7 @@ impl PngRows {
         self.rows.finish().map_err(|e| write_error(&path, e))?;
         let synced = self.file.as_file().sync_all();
         synced.map_err(|e| write_error(&path, reason(&e)))?;
-        self.file
-            .persist(&path)
-            .map_err(|e| write_error(&path, reason(&e.error)))?;
-        Ok(())
+        persist(&path, self.file)
     }
 }
 

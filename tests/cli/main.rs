@@ -19,6 +19,8 @@ mod moment;
 mod options;
 mod peers;
 mod sky;
+mod streams;
 mod tiles;
 mod town;
+mod validate;
 mod weather;

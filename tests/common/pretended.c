@@ -2,6 +2,11 @@
 //   apple   answers also for the extension VK_KHR_portability_subset: no features, strides of 4 bytes; wide: of 16
 //   apart   a family of queues that draws but does not compute stands before the device's own
 //   less    has less than Vulkan guarantees: 4 bytes of push constants, one sampled image a stage
+// Faults of drivers:
+//   nearest samplers that should filter do not
+//   short   the last column of every dispatch's workgroups is missing
+//   deep    the depth test of what writes depth lets everything pass
+//   plain   compute shaders have the default values of their constants
 //   hang    waits for fences end with a timeout; a wait for the whole device after that is told on stderr
 #define vkNegotiateLoaderLayerInterfaceVersion negotiate_pretence
 #include PRETENCE
@@ -127,9 +132,54 @@ static VkResult VKAPI_CALL device_wait_idle(VkDevice device) {
     return ((PFN_vkDeviceWaitIdle)gdpa(device, "vkDeviceWaitIdle"))(device);
 }
 
+#define D(name) ((PFN_##name)gdpa(device, #name))
+
+static VkResult VKAPI_CALL create_sampler(VkDevice device, const VkSamplerCreateInfo *info, const VkAllocationCallbacks *allocator, VkSampler *sampler) {
+    VkSamplerCreateInfo own = *info;
+    if (on("nearest")) own.magFilter = own.minFilter = VK_FILTER_NEAREST;
+    return D(vkCreateSampler)(device, &own, allocator, sampler);
+}
+
+static VkResult VKAPI_CALL compute_pipelines(VkDevice device, VkPipelineCache cache, uint32_t count, const VkComputePipelineCreateInfo *infos, const VkAllocationCallbacks *allocator, VkPipeline *pipelines) {
+    VkResult result = VK_SUCCESS;
+    for (uint32_t i = 0; i < count && result == VK_SUCCESS; ++i) {
+        VkComputePipelineCreateInfo own = infos[i];
+        if (on("plain")) own.stage.pSpecializationInfo = 0;
+        result = D(vkCreateComputePipelines)(device, cache, 1, &own, allocator, pipelines + i);
+    }
+    return result;
+}
+
+static VkResult VKAPI_CALL graphics_pipelines(VkDevice device, VkPipelineCache cache, uint32_t count, const VkGraphicsPipelineCreateInfo *infos, const VkAllocationCallbacks *allocator, VkPipeline *pipelines) {
+    VkResult result = VK_SUCCESS;
+    for (uint32_t i = 0; i < count && result == VK_SUCCESS; ++i) {
+        VkGraphicsPipelineCreateInfo own = infos[i];
+        VkPipelineDepthStencilStateCreateInfo depth;
+        if (on("deep") && own.pDepthStencilState && own.pDepthStencilState->depthWriteEnable) {
+            depth = *own.pDepthStencilState;
+            depth.depthCompareOp = VK_COMPARE_OP_ALWAYS;
+            own.pDepthStencilState = &depth;
+        }
+        result = D(vkCreateGraphicsPipelines)(device, cache, 1, &own, allocator, pipelines + i);
+    }
+    return result;
+}
+
+static VkDevice device_of_commands;
+
+static void VKAPI_CALL dispatch(VkCommandBuffer commands, uint32_t x, uint32_t y, uint32_t z) {
+    VkDevice device = device_of_commands;
+    D(vkCmdDispatch)(commands, on("short") && x > 1 ? x - 1 : x, y, z);
+}
+
 #define INSTEAD(text, function) if (!strcmp(name, text)) return (PFN_vkVoidFunction)function;
 
 static PFN_vkVoidFunction VKAPI_CALL device_function(VkDevice device, const char *name) {
+    device_of_commands = device;
+    INSTEAD("vkCreateSampler", create_sampler)
+    INSTEAD("vkCreateComputePipelines", compute_pipelines)
+    INSTEAD("vkCreateGraphicsPipelines", graphics_pipelines)
+    INSTEAD("vkCmdDispatch", dispatch)
     INSTEAD("vkGetDeviceProcAddr", device_function)
     INSTEAD("vkGetDeviceQueue", device_queue)
     INSTEAD("vkCreateCommandPool", command_pool)

@@ -2,8 +2,6 @@
 
 #[path = "../common/mod.rs"]
 mod common;
-#[path = "../common/model.rs"]
-mod model;
 
 mod atmosphere;
 mod bounces;
@@ -21,3 +19,5 @@ mod sun_position;
 mod tone_curves_and_frames;
 mod wavelengths;
 mod weather;
+
+use skylight::validate::model;

@@ -1,11 +1,12 @@
 //! The air between eye and surfaces: the device's table against the CPU's, and pictures against light that goes through the air.
 
-use glam::{DVec3, Vec4};
+use glam::DVec3;
 
-use crate::atmosphere::full_moon;
 use crate::common::at_share;
-use crate::gpu::{Device, Model, Picture, camera, glowing, matt, pixel_ray, settings, showing};
-use skylight::daylight::atmosphere::aerial::{AZIMUTHS, AirBefore, SOURCE_ROWS, STEPS};
+use crate::gpu::{
+    Device, Model, Picture, camera, finish, glowing, matt, pixel_ray, settings, showing,
+};
+use skylight::daylight::atmosphere::aerial::AirBefore;
 use skylight::daylight::atmosphere::air::Air as Medium;
 use skylight::daylight::atmosphere::scattered_sky::ScatteredSky;
 use skylight::daylight::colour::{clip_negative, luminance};
@@ -14,6 +15,8 @@ use skylight::frame::{Frame, FrameSettings, Visibility};
 use skylight::passes::light::lighting::Show;
 use skylight::passes::sky::air::{Air, altitude_of};
 use skylight::scene::{Bounds, Camera, Scene};
+use skylight::validate::check::Check;
+use skylight::validate::sky::{compare_air, full_moon};
 
 fn day(sun_elevation_deg: f64, air: Medium) -> Daylight {
     Daylight::new(&Conditions {
@@ -54,6 +57,7 @@ fn judge(what: &str, errors: &mut [f64], bound: f64) {
 fn the_table_is_the_cpus() {
     let mut device = Device::new();
     let mut air = Air::new(&device.context, &Bounds::EMPTY, 16).expect("a table");
+    let mut check = Check::relative("table of the air", "CPU", "", 0.005);
     for (sun, medium, eye) in [
         (50.0, Medium::default(), 1500.0),
         (2.0, hazy(), 2.0),
@@ -67,26 +71,9 @@ fn the_table_is_the_cpus() {
         let altitude = altitude_of(medium.altitude_m, eye.into(), 0.0) / 1000.0;
         let twin = AirBefore::new(sky_of(&daylight), altitude);
         let texels = device.read(air.image());
-        let width = air.image().size()[0] as usize;
-        let at = |x: usize, y: usize| Vec4::from_array(texels[y * width + x]).as_dvec4();
-        let mut errors = Vec::new();
-        for (i, density) in twin.densities.iter().enumerate() {
-            let found = at(i / STEPS, 4 * SOURCE_ROWS + i % STEPS).truncate();
-            errors.push((found - density).abs().max_element() / density.max_element());
-        }
-        judge(&format!("densities, sun {sun}"), &mut errors, 1e-4);
-        errors.clear();
-        for (i, source) in twin.sources.iter().enumerate() {
-            let x = i % (STEPS * AZIMUTHS);
-            let row = i / (STEPS * AZIMUTHS);
-            for (y, expected) in [(row, source.rest), (row + 2 * SOURCE_ROWS, source.aerosol)] {
-                let error = (at(x, y) - expected).abs().max_element();
-                // No light at all is a value too.
-                errors.push(error / expected.max_element().max(1e-13));
-            }
-        }
-        judge(&format!("sources, sun {sun}"), &mut errors, 0.003);
+        compare_air(&mut check, &texels, &air, &twin, &format!("sun {sun}"));
     }
+    finish(&check);
 }
 
 /// Brightness of the surfaces, cd/m².

@@ -1,13 +1,11 @@
 //! The atmosphere of the device against the one of the CPU: the table of the view, and the cube that is read from it.
 
-use crate::common::at_share;
-use crate::gpu::Device;
+use crate::gpu::{Device, finish};
 use skylight::daylight::atmosphere::air::{Aerosol, Air};
-use skylight::daylight::colour::luminance;
-use skylight::daylight::moon::{MEAN_DISTANCE_KM, Moon};
 use skylight::daylight::sky::{Conditions, Daylight, Sky, SkyModel};
-use skylight::daylight::sun_position::direction;
 use skylight::passes::sky::cube::SkyCube;
+use skylight::validate::check::Check;
+use skylight::validate::sky::{compare_atmosphere, full_moon};
 
 fn conditions(sun_elevation_deg: f64, air: Air) -> Conditions {
     Conditions {
@@ -15,18 +13,6 @@ fn conditions(sun_elevation_deg: f64, air: Air) -> Conditions {
         sun_elevation_deg,
         air,
         ..Conditions::default()
-    }
-}
-
-/// A full moon in the west of the south.
-pub fn full_moon(elevation_deg: f64) -> Moon {
-    Moon {
-        azimuth_deg: 250.0,
-        elevation_deg,
-        apparent_elevation_deg: elevation_deg,
-        distance_km: MEAN_DISTANCE_KM,
-        phase_angle_deg: 0.0,
-        sunward: -direction(250.0, elevation_deg),
     }
 }
 
@@ -66,23 +52,12 @@ fn cases() -> Vec<Conditions> {
     cases
 }
 
-/// Prints and bounds the errors of texels, each over the luminance of the twin.
-fn judge(what: &str, mut errors: Vec<f64>) {
-    let [middle, most, worst] = [0.5, 0.95, 1.0].map(|share| at_share(&mut errors, share));
-    println!(
-        "{what}: {} texels, {:.4} % {:.4} %, worst {:.3} %",
-        errors.len(),
-        100.0 * middle,
-        100.0 * most,
-        100.0 * worst
-    );
-    assert!(most < 0.003 && worst < 0.05, "{what}");
-}
-
 #[test]
 fn view_and_cube_are_the_cpus() {
     let mut device = Device::new();
     let mut cube = SkyCube::new(&device.context, 64).expect("a cube");
+    let mut view = Check::relative("tables of the view", "CPU", "cd/m²", 0.005);
+    let mut texels = Check::relative("cubes", "CPU", "cd/m²", 0.005);
     for given in cases() {
         let daylight = Daylight::new(&given);
         device.run(|rec| {
@@ -99,29 +74,12 @@ fn view_and_cube_are_the_cpus() {
             given.air.altitude_m
         );
         assert_eq!(sky.moon.is_some(), given.moon.is_some());
-        let lights = [Some(&sky.sun), sky.moon.as_ref()];
-        for (image, light) in cube.sky_views().iter().zip(lights) {
-            let Some(light) = light else { continue };
-            let drawn = device.read(image);
-            let twin = &light.view(&sky.atmosphere).entries;
-            assert_eq!(drawn.len(), twin.len());
-            // What is far darker than the night sky is no light.
-            let errors = drawn.iter().zip(twin).map(|(found, expected)| {
-                let found = glam::Vec3::from_slice(found).as_dvec3() * 1e3;
-                (found - expected).abs().max_element() / luminance(*expected).max(1e-6)
-            });
-            judge(&format!("view, {what}"), errors.collect());
-        }
-
-        let drawn = device.read_cube(cube.image());
-        let errors = drawn.iter().map(|(direction, found, _)| {
-            assert!(found.is_finite() && found.min_element() >= 0.0);
-            let expected = daylight.radiance(direction);
-            let error = (found * 1e3 - expected).abs().max_element();
-            error / luminance(expected).max(1e-6)
-        });
-        judge(&format!("cube, {what}"), errors.collect());
+        let pair = (&daylight, sky);
+        compare_atmosphere(&mut device, &cube, pair, [&mut view, &mut texels], &what)
+            .expect("read back");
     }
+    finish(&view);
+    finish(&texels);
 }
 
 #[test]

@@ -2,9 +2,7 @@
 //! repeatability, and no light through walls.
 
 use crate::common::Worst;
-use crate::gpu::{
-    Device, Model, Picture, camera, clear_day, constant_sky, matt, settings, showing,
-};
+use crate::gpu::{Device, Model, Picture, camera, clear_day, constant_sky, matt, showing};
 use crate::lighting::{check_sum, glossy_scene, roundings};
 use glam::DVec3;
 use skylight::daylight::colour::luminance;
@@ -12,19 +10,11 @@ use skylight::daylight::quadrature::SphereQuadrature;
 use skylight::daylight::sky::Daylight;
 use skylight::frame::{Frame, FrameSettings, Visibility};
 use skylight::passes::bounces::cells::Bounces;
-use skylight::passes::light::lighting::{Ambient, Show};
+use skylight::passes::light::lighting::Show;
 use skylight::scene::{Camera, Material, Scene};
+pub use skylight::validate::device::from_cells as single;
+pub use skylight::validate::surfaces::mean;
 use std::f64::consts::PI;
-
-/// Settings of a single frame that has all its light but the sun's from the cells.
-pub fn single(width: u32, height: u32) -> FrameSettings {
-    let mut set = settings(width, height);
-    set.bounces = Bounces::All;
-    // All cells in every frame.
-    set.refine = 1 << 16;
-    set.lighting.ambient = Ambient::Cells;
-    set
-}
 
 /// Settings of a converged picture with all bounces.
 pub fn converged(width: u32, height: u32, samples: u32) -> FrameSettings {
@@ -40,10 +30,6 @@ pub fn with_bounces(bounces: Bounces, settings: FrameSettings) -> FrameSettings 
         bounces,
         ..settings
     }
-}
-
-pub fn mean(picture: &Picture) -> f64 {
-    picture.pixels().map(|(_, l)| luminance(l)).sum::<f64>() / picture.texels.len() as f64
 }
 
 fn brightest(picture: &Picture) -> f64 {

@@ -3,10 +3,11 @@
 
 use glam::DVec3;
 use skylight::daylight::colour::luminance;
-use skylight::frame::{Frame, FrameSettings};
+use skylight::frame::FrameSettings;
 use skylight::passes::bounces::cells::Bounces;
 use skylight::passes::light::lighting::Show;
 use skylight::scene::{Camera, Encoding, Material, Scene, Texture, Wrap};
+use skylight::validate::surfaces::{self, within_the_box};
 
 use crate::bounces::{converged, mean, single, with_bounces};
 use crate::common::Worst;
@@ -23,19 +24,7 @@ fn previewed(
     view: &Camera,
     previews: u32,
 ) -> Picture {
-    let day = constant_sky(0.0);
-    let mut frame = device.run(|rec| Frame::new(rec, scene, set).expect("a frame"));
-    for _ in 0..previews {
-        device.run(|rec| frame.preview(rec, &day, view));
-    }
-    device.picture_of(&frame)
-}
-
-fn within_the_box() -> Camera {
-    Camera {
-        fov_deg: 80.0,
-        ..camera([1.2, 0.3, 1.5], [-1.0, -0.4, -1.0])
-    }
+    surfaces::previewed(device, scene, set, view, previews).expect("drawn")
 }
 
 /// Settings of a converged picture under a black sky, whose maps need not be fine.

@@ -1,37 +1,18 @@
 //! Panes of glass in pictures: the light of sun and sky through them, the view through them, what they mirror; against the formulas.
 
-use glam::{DVec3, Vec3};
 use skylight::daylight::colour::luminance;
-use skylight::daylight::glass::{internal_transmittance, pane};
 use skylight::frame::FrameSettings;
 use skylight::passes::bounces::cells::Bounces;
 use skylight::passes::dome::route::DomeBy;
 use skylight::passes::light::lighting::Show;
-use skylight::scene::{Camera, Material, Scene};
+use skylight::scene::{Material, Scene};
+use skylight::validate::surfaces::{TINT, below, roofed, seen_through, sun_through};
 
 use crate::bounces::{converged, mean, single, with_bounces};
 use crate::gpu::{
     Device, Model, camera, clear_day, constant_sky, glass, hemispherical_transmittance, matt,
     showing,
 };
-
-/// Transmittance at normal incidence of the panes: the luminance is 0.5.
-const TINT: [f32; 3] = [0.4, 0.52, 0.596];
-
-/// A wide pane 2 m above a floor, if there is one.
-fn roofed(material: Option<&Material>) -> Scene {
-    let model = Model::default().ground(3.0, &matt(0.5));
-    let model = match material {
-        Some(material) => model.square([0.0, 2.0, 0.0], 400.0, material),
-        None => model,
-    };
-    model.build()
-}
-
-/// Looks down at the floor from below the pane.
-fn below() -> Camera {
-    camera([0.0, 1.5, 0.01], [0.0, 0.0, 0.0])
-}
 
 /// Single and converged pictures; the sky's visibility and the sun's by maps and by rays.
 fn ways() -> [(&'static str, FrameSettings); 3] {
@@ -51,20 +32,8 @@ fn ways() -> [(&'static str, FrameSettings); 3] {
 fn the_sun_passes_a_pane_by_its_angle_and_colour() {
     let mut device = Device::new();
     for elevation in [70.0, 35.0, 15.0] {
-        let day = clear_day(160.0, elevation);
         for (name, set) in ways() {
-            let set = showing(Show::Sun, set);
-            let mut lit = |scene: &Scene| {
-                let picture = device.picture(scene, set, &day, &below());
-                let texels: Vec<DVec3> = picture.pixels().map(|(_, v)| v).collect();
-                texels.iter().sum::<DVec3>() / texels.len() as f64
-            };
-            let ratio = lit(&roofed(Some(&glass(TINT)))) / lit(&roofed(None));
-            let through = |t: f32| {
-                let internal = internal_transmittance(t.into());
-                pane(internal, f64::to_radians(elevation).sin())[0]
-            };
-            let expected = DVec3::from(TINT.map(through));
+            let [ratio, expected] = sun_through(&mut device, set, elevation).expect("drawn");
             let error = (ratio / expected - 1.0).abs().max_element();
             println!("{name}, {elevation} degrees: {ratio:.4} of {expected:.4}");
             // Texels of the map of panes are half floats.
@@ -120,33 +89,10 @@ fn a_pane_between_two_bodies_is_no_wall() {
 #[test]
 fn the_view_through_a_pane_is_dimmed_and_mirrors_what_is_there() {
     let mut device = Device::new();
-    let day = constant_sky(1000.0);
-    let scene = Model::default()
-        .ground(4000.0, &matt(0.0))
-        .square([0.0, 2.0, 0.0], 400.0, &glass(TINT))
-        .build();
     for degrees in [0.0f64, 50.0] {
-        let (sin, cos) = degrees.to_radians().sin_cos();
-        let eye = Vec3::new(0.0, 1.0, 0.0);
-        let target = eye + Vec3::new(sin as f32, cos as f32, 1e-3);
-        let view = Camera {
-            fov_deg: 1.0,
-            ..camera(eye.to_array(), target.to_array())
-        };
-        let internal = TINT.map(|t| internal_transmittance(t.into()));
-        let [through, mirrored] =
-            [0, 1].map(|i| DVec3::from(internal.map(|internal| pane(internal, cos)[i])));
-        // From above, the pane mirrors the sky before what is seen through it: the black floor.
-        let above = Camera {
-            fov_deg: 1.0,
-            ..camera([0.0, 3.0, 0.0], [sin as f32, 3.0 - cos as f32, 1e-3])
-        };
         for (name, set) in ways() {
-            let mut seen = |view: &Camera| {
-                let picture = device.picture(&scene, set, &day, view);
-                picture.at(12, 8)
-            };
-            let (up, down) = (seen(&view), seen(&above));
+            let both = seen_through(&mut device, set, degrees).expect("drawn");
+            let [[up, through], [down, mirrored]] = both;
             println!("{name}, {degrees}: {up:.4} of {through:.4}, {down:.4} of {mirrored:.4}");
             for (found, expected) in [(up, through), (down, mirrored)] {
                 let error = (found / expected - 1.0).abs().max_element();

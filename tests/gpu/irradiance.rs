@@ -3,27 +3,22 @@
 use std::f64::consts::PI;
 
 use crate::common::{Table, Worst, at_share};
-use crate::gpu::{Cube, Device, HALF_ROUNDOFF, clear_day, constant_sky};
-use glam::{DVec2, DVec3};
-use skylight::daylight::cube::texels;
+use crate::gpu::{Cube, Device, HALF_ROUNDOFF, clear_day, finish, named};
+use glam::DVec3;
 use skylight::daylight::irradiance::IrradianceMethod;
 use skylight::daylight::preetham::Preetham;
-use skylight::daylight::sampling::{cosine_hemisphere, rnd, tea};
 use skylight::daylight::sky::{Conditions, Daylight, Sky, SkyModel};
-use skylight::daylight::tangent_frame::to_world;
 use skylight::gpu::{ContextOptions, Optional};
-use skylight::passes::sky::cube::SkyCube;
-use skylight::passes::sky::irradiance::{Irradiance, IrradianceSettings};
+use skylight::passes::sky::irradiance::IrradianceSettings;
 use skylight::passes::sky::route::CubeRoute;
+use skylight::validate::check::Check;
+use skylight::validate::light::{METHODS, SkyLight, compare_random, compare_uniform};
 
 /// Edge of a face of the tested maps, texels; the program uses 32.
 const EDGE: u32 = 64;
 
-/// The sky and irradiance passes, without the rest of a frame.
-struct Light {
-    sky: SkyCube,
-    irradiance: Irradiance,
-}
+/// The passes of the device, without errors.
+struct Light(SkyLight);
 
 impl Light {
     fn new(
@@ -45,57 +40,38 @@ impl Light {
     }
 
     fn by(device: &mut Device, settings: IrradianceSettings) -> Self {
-        Self {
-            sky: SkyCube::new(&device.context, 256).expect("a sky cube"),
-            irradiance: device
-                .run(|rec| Irradiance::new(rec, settings).expect("an irradiance cube")),
-        }
+        Self(SkyLight::new(device, settings).expect("cubes"))
     }
 
     fn pass(&mut self, device: &mut Device, daylight: &Daylight) {
-        device.run(|rec| {
-            let sky = self.sky.record(rec, daylight);
-            self.irradiance.record(rec, &sky, daylight);
-        });
+        self.0.pass(device, daylight).expect("drawn");
     }
 
     fn refine(&mut self, device: &mut Device, daylight: &Daylight) {
-        self.pass(device, daylight);
-        while !self.irradiance.is_complete() {
-            self.pass(device, daylight);
-        }
+        self.0.refine(device, daylight).expect("drawn");
     }
 
     /// E in klx from the 32-bit sums.
     fn exact(&self, device: &mut Device) -> Cube {
-        let sums = device.read(self.irradiance.sums()).into_iter();
-        let mean = |t: [f32; 4]| DVec3::from_array(crate::gpu::rgb(t)) / f64::from(t[3]);
-        Cube {
-            edge: EDGE as usize,
-            texels: sums.map(mean).collect(),
-        }
+        self.0.exact(device).expect("read back")
     }
 }
 
 #[test]
 fn a_constant_sky_gives_pi_on_all_faces() {
     let mut device = Device::new();
-    let mut worst = Worst::new("E of a constant sky L = 1 against pi", 1e-3);
-    for method in [
-        IrradianceMethod::Quasi,
-        IrradianceMethod::MonteCarlo,
-        IrradianceMethod::Exact,
-        IrradianceMethod::Sh,
-    ] {
-        let mut light = Light::new(&mut device, method, 256, 128);
-        light.refine(&mut device, &constant_sky(1000.0));
-        let map = device.read_cube(light.irradiance.image());
-        for (_, found, texel) in map.iter() {
-            let error = (found / PI - 1.0).abs().max_element();
-            worst.see(error, format!("{method:?} {texel}"));
-        }
+    let mut check = Check::relative("E of a constant sky L = 1", "π", "", 1e-3);
+    for method in METHODS {
+        let settings = IrradianceSettings {
+            edge: EDGE,
+            method,
+            samples: 256,
+            samples_per_pass: 128,
+            route: None,
+        };
+        compare_uniform(&mut device, &mut check, settings).expect("drawn");
     }
-    worst.finish();
+    finish(&check);
 }
 
 #[test]
@@ -104,10 +80,10 @@ fn the_map_holds_the_mean_of_the_sums_and_not_a_pi_th_of_it() {
     let mut light = Light::new(&mut device, IrradianceMethod::Quasi, 128, 128);
     light.refine(&mut device, &clear_day(120.0, 35.0));
     let exact = light.exact(&mut device);
-    let map = device.read_cube(light.irradiance.image());
+    let map = device.read_cube(light.0.irradiance.image());
     // The map is the 32-bit mean rounded to 16 bits.
     let mut worst = Worst::new("map against sum / count", 1.01 * HALF_ROUNDOFF);
-    for ((_, found, texel), mean) in map.iter().zip(&exact.texels) {
+    for ((_, found, texel), mean) in named(&map).zip(&exact.texels) {
         worst.see((found / *mean - 1.0).abs().max_element(), texel);
     }
     worst.finish();
@@ -270,36 +246,12 @@ fn monte_carlo_noise_falls_with_the_root_of_the_samples() {
     assert!(fine_mean.abs() < 4.0 * fine / 78.0);
 }
 
-/// The first direction that the shader draws in a texel.
-fn first_direction(texel: u32, face: u32, normal: DVec3) -> DVec3 {
-    let mut t = tea::<4>(texel, face);
-    let (xi1, xi2) = (rnd(&mut t), rnd(&mut t));
-    to_world(cosine_hemisphere(DVec2::new(xi1, xi2)), normal)
-}
-
 #[test]
 fn random_numbers_and_directions_are_the_cpus() {
     let mut device = Device::new();
-    let day = clear_day(230.0, 35.0);
-    let mut light = Light::new(&mut device, IrradianceMethod::MonteCarlo, 1, 1);
-    light.refine(&mut device, &day);
-    let found = light.exact(&mut device);
-    let sky = device.read_cube(light.sky.image());
-    // One bilinear tap: its weights have 8 bits on the device, so the error is 1/256 of the step between neighbouring texels,
-    // which is largest at the horizon and in the glow.
-    let mut worst = Worst::new("E of one sample against pi L(direction)", 5e-3);
-    for ((face, i, j), value) in texels(EDGE as usize).zip(&found.texels) {
-        let normal = skylight::daylight::cube::texel_direction(face, i, j, EDGE as usize);
-        let direction = first_direction((j * EDGE as usize + i) as u32, face as u32, normal);
-        // At the horizon, neighbours differ by the whole luminance of the sky.
-        if direction.y.abs() < 2.0 / 256.0 {
-            continue;
-        }
-        let expected = sky.sample(direction) * PI;
-        let error = (*value / expected - 1.0).abs().max_element();
-        worst.see(error, format!("face {face} texel {i} {j}, {direction}"));
-    }
-    worst.finish();
+    let mut check = Check::relative("E of one sample against pi L(direction)", "CPU", "", 5e-3);
+    compare_random(&mut device, &mut check, EDGE).expect("drawn");
+    finish(&check);
 }
 
 #[test]
@@ -309,12 +261,12 @@ fn four_passes_make_the_same_map_as_one() {
     let maps = [128, 512].map(|per_pass| {
         let mut light = Light::new(&mut device, IrradianceMethod::Quasi, 512, per_pass);
         light.refine(&mut device, &day);
-        assert_eq!(light.irradiance.samples_done(), 512);
+        assert_eq!(light.0.irradiance.samples_done(), 512);
         light.exact(&mut device)
     });
     // The same 512 float32 additions in another order: at most a few times 512 roundings of 2^-24.
     let mut worst = Worst::new("4 x 128 against 1 x 512 samples", 512.0 / 16_777_216.0);
-    for ((_, one, texel), other) in maps[0].iter().zip(&maps[1].texels) {
+    for ((_, one, texel), other) in named(&maps[0]).zip(&maps[1].texels) {
         worst.see((one / *other - 1.0).abs().max_element(), texel);
     }
     worst.finish();
@@ -327,16 +279,20 @@ fn a_changed_sky_starts_anew() {
     let mut changed = Light::new(&mut device, IrradianceMethod::Quasi, 1024, 64);
     changed.refine(&mut device, &first);
     changed.pass(&mut device, &second);
-    assert_eq!(changed.irradiance.samples_done(), 0, "a draft is not kept");
-    let draft = device.read_cube(changed.irradiance.image());
+    assert_eq!(
+        changed.0.irradiance.samples_done(),
+        0,
+        "a draft is not kept"
+    );
+    let draft = device.read_cube(changed.0.irradiance.image());
     changed.refine(&mut device, &second);
-    let refined = device.read_cube(changed.irradiance.image());
+    let refined = device.read_cube(changed.0.irradiance.image());
     let brightest = refined
         .texels
         .iter()
         .fold(0.0, |most: f64, e| most.max(e.max_element()));
     let mut worst = Worst::new("a draft against the map, of the largest irradiance", 0.03);
-    for ((_, e, texel), refined) in draft.iter().zip(&refined.texels) {
+    for ((_, e, texel), refined) in named(&draft).zip(&refined.texels) {
         worst.see((e - *refined).abs().max_element() / brightest, texel);
     }
     worst.finish();
@@ -362,7 +318,7 @@ fn three_routes_make_the_same_map() {
         };
         let mut light = Light::by(&mut device, settings);
         light.refine(&mut device, &day);
-        let sums = device.read(light.irradiance.sums()).into_iter();
+        let sums = device.read(light.0.irradiance.sums()).into_iter();
         sums.map(|t| DVec3::from_array(crate::gpu::rgb(t)) / f64::from(t[3]))
             .collect::<Vec<_>>()
     };
@@ -415,7 +371,7 @@ fn a_device_without_geometry_shaders_draws_the_same_maps() {
         let [a, b] = [&mut with, &mut without].map(|device| {
             let mut light = Light::new(device, IrradianceMethod::Quasi, 256, 128);
             light.refine(device, &day);
-            let sky = device.read_cube(light.sky.image());
+            let sky = device.read_cube(light.0.sky.image());
             let map = light.exact(device);
             (sky.texels, map.texels)
         });

@@ -46,3 +46,4 @@ mod timings;
 mod tone;
 mod transaction;
 mod uploads;
+mod validate;

@@ -1,115 +1,34 @@
 //! The shadow map against closed forms: a floating square, an open plane, the foot of a wall, a sphere.
 
 use crate::common::Worst;
-use crate::gpu::{Device, Model, Picture, camera, clear_day, matt, on_ground, pixel_ray, settings};
-use glam::{DVec3, UVec2, Vec2};
+use crate::gpu::{Device, Model, Picture, camera, clear_day, finish, matt, pixel_ray};
 use skylight::daylight::sky::Daylight;
-use skylight::frame::FrameSettings;
-use skylight::passes::light::lighting::Show;
-use skylight::passes::sun_shadow::fit;
-use skylight::passes::view::View;
 use skylight::scene::{Camera, Scene};
-
-/// Width of the untested band around a shadow's edge, texels: 2 for the map, 1.5 for the half width of the 3x3 tent filter
-/// (four bilinear taps).
-const EDGE_TEXELS: f64 = 3.5;
+use skylight::validate::check::Check;
+use skylight::validate::shadow::{self, ground_point, texel};
 
 /// Width of wrongly lit ground (light leak) allowed at a wall's foot, texels across the light: none, rays decide.
 const FOOT_TEXELS: f64 = 0.01;
 
-const SIZE: (u32, u32) = (240, 180);
-
-fn visibility_settings() -> FrameSettings {
-    crate::gpu::showing(Show::Visibility, settings(SIZE.0, SIZE.1))
-}
-
 /// Pictures of V and of the distance along the view axis.
 fn draw(device: &mut Device, scene: &Scene, day: &Daylight, camera: &Camera) -> (Picture, Picture) {
-    let mut frame = device.frame(scene, visibility_settings(), day, camera);
-    let visibility = device.picture_of(&frame);
-    frame.show(Show::Depth).expect("shown");
-    device.draw(&mut frame, day, camera);
-    (visibility, device.picture_of(&frame))
-}
-
-/// Edge of a texel of the frame's shadow map, metres.
-fn texel(scene: &Scene, day: &Daylight, camera: &Camera) -> f64 {
-    let set = visibility_settings();
-    let view = View {
-        camera: *camera,
-        size: UVec2::new(SIZE.0, SIZE.1),
-        jitter: Vec2::ZERO,
-        sharpen: 0.0,
-        window: None,
-    };
-    let sun = day.sun_direction.as_vec3();
-    f64::from(
-        fit::fit(
-            sun,
-            &scene.bounds,
-            &scene.casters(),
-            &view,
-            set.shadow_resolution,
-        )
-        .texel,
-    )
-}
-
-/// Points around p, moved across the light by `radius`; p first.
-fn around(p: DVec3, sun: DVec3, radius: f64) -> impl Iterator<Item = DVec3> {
-    let (right, up) = sun.any_orthonormal_pair();
-    let ring = (0..16).map(move |i| {
-        let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 16.0).sin_cos();
-        p + radius * (right * cos + up * sin)
-    });
-    std::iter::once(p).chain(ring)
-}
-
-/// Whether the square of half width 2 at height 3 is between p and the sun.
-fn under_square(p: DVec3, sun: DVec3) -> bool {
-    let at = p + sun * ((3.0 - p.y) / sun.y);
-    at.x.abs() <= 2.0 && at.z.abs() <= 2.0
-}
-
-/// The ground point of a pixel; `None` if the pixel does not show the ground.
-fn ground_point(camera: &Camera, depth: &Picture, pixel: [usize; 2]) -> Option<DVec3> {
-    let p = on_ground(camera, depth.size, pixel)?;
-    let along = (p - camera.eye.as_dvec3()).dot(camera.forward().as_dvec3());
-    let seen = depth.at(pixel[0], pixel[1]).x;
-    (seen > 0.0 && (seen / along - 1.0).abs() < 1e-3).then_some(p)
+    shadow::draw(device, scene, day, camera).expect("drawn")
 }
 
 #[test]
 fn a_square_casts_its_shadow_where_geometry_says() {
     let mut device = Device::new();
-    let grey = matt(0.5);
-    let scene = Model::default()
-        .ground(12.0, &grey)
-        .square([0.0, 3.0, 0.0], 2.0, &grey)
-        .build();
-    let camera = camera([7.0, 8.0, 14.0], [0.0, 0.0, 0.0]);
-    let mut worst = Worst::new("V against the analytic shadow of a square", 1e-6);
+    let mut check = Check::absolute("V of a square's shadow", "geometry", "", 1e-6);
+    let mut depths = Check::relative("depths", "geometry", "m", 1e-4);
     let (mut dark, mut skipped) = (0, 0);
-    for (azimuth, elevation) in [(180.0, 80.0), (100.0, 45.0), (250.0, 30.0), (20.0, 55.0)] {
-        let day = clear_day(azimuth, elevation);
-        let sun = day.sun_direction;
-        let margin = EDGE_TEXELS * texel(&scene, &day, &camera);
-        let (visibility, depth) = draw(&mut device, &scene, &day, &camera);
-        for (pixel, v) in visibility.pixels() {
-            let Some(p) = ground_point(&camera, &depth, pixel) else {
-                continue;
-            };
-            let shadow = under_square(p, sun);
-            if around(p, sun, margin).any(|q| under_square(q, sun) != shadow) {
-                skipped += 1;
-                continue;
-            }
-            dark += usize::from(shadow);
-            let expected = if shadow { 0.0 } else { 1.0 };
-            worst.see(v.x - expected, format!("{p}, sun {azimuth} {elevation}"));
-        }
+    for sun in [[180.0, 80.0], [100.0, 45.0], [250.0, 30.0], [20.0, 55.0]] {
+        let counts =
+            shadow::compare_square(&mut device, [&mut check, &mut depths], sun).expect("drawn");
+        dark += counts[0];
+        skipped += counts[1];
     }
-    worst.finish();
+    finish(&check);
+    finish(&depths);
     println!("{dark} of them dark, {skipped} skipped at edges");
     assert!(dark > 2000 && skipped < dark, "{dark} {skipped}");
 }

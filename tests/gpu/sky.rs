@@ -1,11 +1,11 @@
 //! The sky cube of the device against `Daylight::radiance` on the CPU, texel by texel.
 
-use crate::common::Worst;
-use crate::gpu::{Cube, Device};
-use glam::DVec3;
+use crate::gpu::{Cube, Device, finish};
 use skylight::daylight::perez::Measured;
 use skylight::daylight::sky::{Conditions, Daylight, SkyModel};
 use skylight::passes::sky::cube::SkyCube;
+use skylight::validate::check::Check;
+use skylight::validate::sky::{EVALUATION, compare_cube};
 
 const MODELS: [SkyModel; 4] = [
     SkyModel::Preetham,
@@ -34,35 +34,11 @@ const MEASURED: [(f64, f64); 6] = [
     (900.0, 50.0),
 ];
 
-/// Relative error, of the texel's brightest channel: the shader evaluates in float32 (2^-24), and the chain of exp, pow and XYZ to RGB (differences of terms with factors up to 3.2) amplifies that.
-const EVALUATION: f64 = 1e-4;
-
 fn draw(device: &mut Device, cube: &mut SkyCube, daylight: &Daylight) -> Cube {
     device.run(|rec| {
         cube.record(rec, daylight);
     });
     device.read_cube(cube.image())
-}
-
-/// Error of a texel relative to the allowed error.
-fn error(found: DVec3, daylight: &Daylight, direction: DVec3) -> f64 {
-    let expected = daylight.radiance(direction) * 1e-3;
-    // Black is black.
-    let allowed = expected.max_element() * EVALUATION + f64::MIN_POSITIVE;
-    (found - expected).abs().max_element() / allowed
-}
-
-fn compare(cube: &Cube, daylight: &Daylight, what: &str, worst: &mut Worst) {
-    for (direction, found, texel) in cube.iter() {
-        assert!(
-            found.is_finite() && found.min_element() >= 0.0,
-            "{found} in {what}, {texel}"
-        );
-        worst.see(
-            error(found, daylight, direction),
-            format!("{what}, {texel}"),
-        );
-    }
 }
 
 fn conditions() -> Vec<Conditions> {
@@ -116,20 +92,20 @@ fn measured_day((direct_normal_w, diffuse_horizontal_w): (f64, f64), at: Conditi
 fn every_texel_of_every_sky_is_the_cpus() {
     let mut device = Device::new();
     let mut cube = SkyCube::new(&device.context, 32).expect("a cube");
-    let mut worst = Worst::new("sky cubes, errors in units of what is allowed", 1.0);
+    let mut check = Check::relative("sky cubes", "CPU", "cd/m²", EVALUATION);
     for given in conditions() {
         let daylight = Daylight::new(&given);
         let drawn = draw(&mut device, &mut cube, &daylight);
-        compare(&drawn, &daylight, &format!("{given:?}"), &mut worst);
+        compare_cube(&mut check, &drawn, &daylight, &format!("{given:?}"));
     }
-    worst.finish();
+    finish(&check);
 }
 
 #[test]
 fn a_cube_of_the_renderers_size_has_texels_near_horizon_and_sun() {
     let mut device = Device::new();
     let mut cube = SkyCube::new(&device.context, 256).expect("a cube");
-    let mut worst = Worst::new("sky cubes of 256 x 256 x 6", 1.0);
+    let mut check = Check::relative("sky cubes of 256 x 256 x 6", "CPU", "cd/m²", EVALUATION);
     for model in MODELS {
         let given = Conditions {
             model,
@@ -138,9 +114,9 @@ fn a_cube_of_the_renderers_size_has_texels_near_horizon_and_sun() {
         };
         let daylight = Daylight::new(&given);
         let drawn = draw(&mut device, &mut cube, &daylight);
-        compare(&drawn, &daylight, &format!("{model:?}"), &mut worst);
+        compare_cube(&mut check, &drawn, &daylight, &format!("{model:?}"));
     }
-    worst.finish();
+    finish(&check);
 }
 
 #[test]

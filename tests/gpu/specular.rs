@@ -1,7 +1,7 @@
 //! The sky that the device prefilters for rough metals against the CPU's.
 
 use crate::common::Worst;
-use crate::gpu::{Device, clear_day, constant_sky};
+use crate::gpu::{Device, clear_day, constant_sky, named};
 use skylight::daylight::cube::CubeMap;
 use skylight::daylight::cube_pyramid::CubePyramid;
 use skylight::daylight::ggx;
@@ -41,7 +41,7 @@ fn every_level_is_the_cpus() {
             let samples = ggx::filtered_samples(ggx::roughness(level, levels), SAMPLES);
             // Every seventh texel; seven is coprime to the edges.
             let mut errors: Vec<f64> = cube
-                .iter()
+                .texels()
                 .step_by(7)
                 .map(|(direction, found, _)| {
                     let expected = ggx::prefiltered(&cpu, direction, &samples).as_dvec3();
@@ -67,7 +67,7 @@ fn a_constant_sky_stays_what_it_is() {
     let mut see = |device: &mut Device, specular: &SpecularCube, what: &str| {
         for level in 0..ggx::levels(EDGE) as usize {
             let cube = device.read_cube(specular.level(level).expect("a level"));
-            for (_, found, texel) in cube.iter() {
+            for (_, found, texel) in named(&cube) {
                 let error = (found - 1.0).abs().max_element();
                 worst.see(error, format!("{what} {level} {texel}"));
             }

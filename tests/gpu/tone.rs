@@ -11,13 +11,11 @@ use skylight::daylight::false_colour::{ColourMap, Colours, Range};
 use skylight::daylight::sky::{Conditions, Daylight, SkyModel};
 use skylight::daylight::sun_position::direction;
 use skylight::daylight::tone_curve::{ToneCurve, encode};
-use skylight::gpu::{
-    Blend, Depth, Format, Image, ImageDesc, Load, Pipeline, PipelineDesc, Sampler, read_back,
-    shaders, upload_texture,
-};
+use skylight::gpu::{Format, Image, ImageDesc, read_back, upload_texture};
 use skylight::passes::light::lighting::Show;
 use skylight::passes::picture::exposure::Exposure;
-use skylight::passes::picture::tone_map::{Push, Scale, ToneMap, ToneSettings};
+use skylight::passes::picture::tone_map::{Scale, ToneMap, ToneSettings};
+use skylight::validate::picture::{self, Curve};
 
 /// A column of the reference, and the shader settings that reproduce it.
 struct Case {
@@ -59,44 +57,14 @@ fn cases() -> [Case; 7] {
 }
 
 fn mapped(device: &mut Device, inputs: &[[f32; 4]], case: &Case) -> Vec<[f32; 4]> {
-    let format = Format::R32G32B32A32_SFLOAT;
-    let desc = ImageDesc::flat("colours", format, [inputs.len() as u32, 1]);
-    let source = device
-        .run(|rec| upload_texture(rec, &desc, &[bytemuck::cast_slice(inputs)]).expect("uploaded"));
-    let mut constants = vec![("GAMMA", u32::from(case.gamma.is_some()))];
-    constants.extend(case.constant.map(|name| (name, 1)));
-    let pipeline = Pipeline::new(
-        &device.context,
-        &PipelineDesc {
-            name: "tone map",
-            stages: &[&shaders::FULLSCREEN_VERT, &shaders::TONE_MAP_FRAG],
-            vertex: &[],
-            colors: &[format],
-            depth: Depth::Off,
-            blend: Blend::Off,
-            constants: &constants,
-        },
-    )
-    .expect("a pipeline");
-    let target = Image::new(&device.context, &desc).expect("an image");
-    let push = Push {
+    let curve = Curve {
+        constant: case.constant,
         exposure: case.exposure,
-        offset: 0.0,
         white: case.white,
-        inverse_gamma: case.gamma.map_or(1.0, f32::recip),
-        least: 0.0,
-        peak: 1.0,
-        origin: UVec2::ZERO,
+        gamma: case.gamma,
     };
-    device.run(|rec| {
-        rec.pass("tone map", &pipeline)
-            .sample("radiance", &source, Sampler::Nearest)
-            .sample("average_luminance", &source, Sampler::Nearest)
-            .push(&push)
-            .color(&target, Load::Discard)
-            .draw();
-    });
-    device.read(&target)
+    let format = Format::R32G32B32A32_SFLOAT;
+    picture::mapped(device, inputs, curve, format).expect("drawn")
 }
 
 #[test]

@@ -20,12 +20,18 @@ use super::job::Job;
 use crate::cli::BenchArgs;
 use crate::error::Result;
 use crate::options::OptionValues;
-use crate::output::{check_writable, print, write_text};
+use crate::output::{check_writable, is_stdout, print_beside, write_text};
 use baseline::Baseline;
 use measure::{Bench, Subject};
 use report::{Head, Report};
 
 impl BenchArgs {
+    /// Prints a table; on standard error where a file of it is standard output.
+    fn print(&self, table: &str) -> Result<()> {
+        let stdout = self.files().find(|file| is_stdout(file));
+        print_beside(stdout.unwrap_or(Path::new("")), table)
+    }
+
     fn files(&self) -> impl Iterator<Item = &Path> {
         let files = [&self.json, &self.csv];
         files.into_iter().filter_map(|file| file.as_deref())
@@ -47,7 +53,7 @@ pub fn run(args: &BenchArgs, mut options: OptionValues) -> Result<()> {
         context.check_validation()?;
         write(&args.json, || report.json())?;
         write(&args.csv, || report.csv())?;
-        return print(&report.to_string());
+        return args.print(&report.to_string());
     }
     let subject = Subject::new(&job);
     let mut bench = Bench::new(&subject, &job.scene, &context, args.motion)?;
@@ -56,11 +62,11 @@ pub fn run(args: &BenchArgs, mut options: OptionValues) -> Result<()> {
     context.check_validation()?;
     write(&args.json, || report.json())?;
     write(&args.csv, || sheet::csv(&report))?;
-    print(&report.to_string())?;
+    args.print(&report.to_string())?;
     let Some(baseline) = baseline else {
         return Ok(());
     };
-    print(&baseline.table(&report))?;
+    args.print(&baseline.table(&report))?;
     args.fail_above
         .map_or(Ok(()), |factor| baseline.check(&report, factor))
 }

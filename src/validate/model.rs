@@ -1,10 +1,9 @@
-//! Small scenes and skies of the tests; no device.
-#![allow(dead_code)]
+//! Small scenes and skies whose light is known; no device.
 
+use crate::daylight::glass::{internal_transmittance, pane};
+use crate::daylight::sky::{Conditions, Daylight, SkyModel};
+use crate::scene::{Bounds, Material, Part, Scene};
 use glam::{DVec3, Quat, Vec3};
-use skylight::daylight::glass::{internal_transmittance, pane};
-use skylight::daylight::sky::{Conditions, Daylight, SkyModel};
-use skylight::scene::{Bounds, Material, Part, Scene};
 
 /// Preetham's clear sky with the sun at an azimuth and an elevation, degrees.
 pub fn clear_day(azimuth: f64, elevation: f64) -> Daylight {

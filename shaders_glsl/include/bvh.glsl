@@ -6,8 +6,8 @@
 // steps and numbers of triangles of the children; lower and upper corners of the children, four bytes a word; first child, first
 // triangle. A child without triangles is a node; those and the triangles follow each other in the order of the children. The box of
 // a child that does not exist is inside out.
-// A triangle is three texels: corner, reflectance; first edge, emission (kcd/m^2, see shared_exponent.glsl); second edge, opacity or,
-// of a pane of glass, its mark and internal transmittance.
+// A triangle is three texels: corner, reflectance; first edge, emission (kcd/m^2, see shared_exponent.glsl); second edge, opacity, with the
+// mean normal of the corners for a cut-out, or the mark and the internal transmittance of a pane of glass.
 #include "glass.glsl"
 #include "random.glsl"
 #include "texel.glsl"
@@ -21,8 +21,9 @@ layout(constant_id = 32) const uint TRIANGLE_COLUMNS = 1u;
 // Most steps of a ray: nodes and leaves, so that no loop is endless.
 layout(constant_id = 33) const uint MOST_STEPS = 1u;
 
-// Opacity times 255.
+// Opacity times 255; of a cut-out, the octahedral coordinates of its normal are above it, NORMAL_BITS each.
 const uint OPACITY = 0xffu;
+const uint OPACITY_BITS = 8u, NORMAL_BITS = 11u;
 // Mark of a pane of glass; its internal transmittance times 65535 is in the lower half of the word.
 const uint PANE = 1u << 31;
 // Mark of a pane that is a slab: only the face where light enters counts.
@@ -40,6 +41,10 @@ layout(constant_id = 37) const float CORNER_STEP = 0.0;
 
 // Offset of ray origins from their surface, relative to the largest coordinate: covers the rounding of float32.
 const float LIFT = 3e-5;
+
+// Leaves have the normals of their crown, so that they are lit through their own card: rays do not meet the cut-out from which they start, which
+// is this many lifts away at most but for grazing rays.
+const float OWN = 16.0;
 
 float lift_at(vec3 position) {
     vec3 size = abs(position);
@@ -150,6 +155,11 @@ float chance(uint triangle, vec2 barycentrics) {
     return float(hash & 0xffffffu) / 16777216.0;
 }
 
+/// Whether a triangle is neither opaque nor a pane.
+bool is_cut_out(uint word) {
+    return word != OPACITY && (word & PANE) == 0u;
+}
+
 /// The part of the light along a ray that a pane stops.
 float stopped(uint word, vec3 edge1, vec3 edge2, vec3 toward) {
     float cosine = dot(normalize(cross(edge1, edge2)), normalize(toward));
@@ -182,6 +192,7 @@ Hit triangle_hit(uint triangle, vec3 origin, vec3 toward, float far, uint panes)
     float distance = dot(edge2, q) * inverse;
     // False for NaN, which a ray in the triangle's plane gives.
     bool is_met = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0 && distance < far;
+    if (is_met && is_cut_out(third.w) && distance < OWN * lift_at(origin)) is_met = false;
     if (is_met && third.w != OPACITY) is_met = is_solid(third.w, triangle, vec2(u, v), edge1, edge2, toward, panes);
     return Hit(is_met ? distance : FAR, triangle, vec2(u, v));
 }

@@ -1,3 +1,5 @@
+#ifndef OCTAHEDRAL_GLSL
+#define OCTAHEDRAL_GLSL
 // Octahedral encoding (Cigolle et al. 2014, "A Survey of Efficient Representations for Independent Unit Vectors").
 
 vec2 sign_not_zero(vec2 v) {
@@ -26,3 +28,4 @@ vec3 octahedral_decode(vec2 p) {
 vec3 normal_unpack(uint word) {
     return octahedral_decode(unpackSnorm2x16(word));
 }
+#endif

@@ -41,9 +41,6 @@ layout(constant_id = 5) const bool FACES = false;
 layout(set = 0, binding = 1) uniform sampler2D diffuse_map;
 layout(set = 0, binding = 2) uniform sampler2D specular_map;
 
-// Foliage cards have normals tilted out of the crown or upward: a normal roughly perpendicular to the face's is not flipped.
-const float CUT_OUT_SLACK = 0.5;
-
 #ifdef DETAILED
 layout(constant_id = 2) const bool NORMAL_MAP = true;
 

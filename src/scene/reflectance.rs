@@ -1,6 +1,6 @@
 //! Mean reflectance, emission and opacity of triangles, for rays that do not look up textures.
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use crate::scene::{Material, Scene, Texture};
 
@@ -21,6 +21,8 @@ pub struct Mean {
     /// Transmittance of a pane of glass at normal incidence, linear RGB, 0..1, and whether the pane is a slab, of whose two faces only the
     /// one where light enters counts.
     pub glass: Option<([f32; 3], bool)>,
+    /// Mean of the normals at the corners of a cut-out, unit: leaves have those of their crown.
+    pub normal: Option<Vec3>,
 }
 
 /// Means of the triangles of a scene.
@@ -67,6 +69,7 @@ impl<'a> Reflectances<'a> {
                 emission: [0.0; 3],
                 opacity: 1.0,
                 glass: material.glass.map(|t| (t, self.slabs[triangle as usize])),
+                normal: None,
             };
         }
         let maps = [material.diffuse_texture, material.emissive_texture];
@@ -76,6 +79,7 @@ impl<'a> Reflectances<'a> {
                 emission: material.emission,
                 opacity: 1.0,
                 glass: None,
+                normal: None,
             };
         }
         let maps = maps.map(|map| map.map(|number| self.level(number, material, corners)));
@@ -104,6 +108,7 @@ impl<'a> Reflectances<'a> {
             emission: emitted.map(mean),
             opacity: solid / count,
             glass: None,
+            normal: is_cut_out.then(|| self.normal(corners)),
         }
     }
 
@@ -133,6 +138,15 @@ impl<'a> Reflectances<'a> {
         let of_lookup = texels / (DIVISIONS * DIVISIONS) as f32;
         let level = (0.5 * of_lookup.max(1.0).log2()).round() as usize;
         &levels[level.min(levels.len() - 1)]
+    }
+
+    /// Mean of the normals at the corners, unit.
+    fn normal(&self, corners: [usize; 3]) -> Vec3 {
+        let sum: Vec3 = corners
+            .map(|v| Vec3::from(self.scene.normals[v]))
+            .into_iter()
+            .sum();
+        sum.normalize_or(Vec3::Y)
     }
 
     fn uv(&self, [a, b, c]: [usize; 3], [wa, wb, wc]: [f32; 3]) -> Vec2 {

@@ -11,7 +11,7 @@ use skylight::daylight::sky::Daylight;
 use skylight::frame::{Frame, FrameSettings, Visibility};
 use skylight::passes::bounces::cells::Bounces;
 use skylight::passes::light::lighting::Show;
-use skylight::scene::{Camera, Material, Scene};
+use skylight::scene::{Camera, Encoding, Material, Scene, Texture, Wrap};
 pub use skylight::validate::device::from_cells as single;
 pub use skylight::validate::surfaces::mean;
 use std::f64::consts::PI;
@@ -277,6 +277,43 @@ fn on_a_curved_surface_the_sky_of_a_cell_follows_the_normal() {
     let rms = (squares / count).sqrt();
     println!("{count} pixels, RMS of the relative error {rms:.4}");
     assert!(count > 1000.0 && rms < 0.045, "{count} {rms}");
+}
+
+/// An upright leaf with the normal of the crown that it stands for, upward: half of its light comes through the card.
+#[test]
+fn a_leaf_has_the_sky_of_its_crown_in_a_single_frame_as_when_converged() {
+    let mut device = Device::new();
+    let leaf = Material {
+        alpha_cutoff: Some(0.5),
+        diffuse_texture: Some(0),
+        ..matt(0.5)
+    };
+    let mut scene = Model::default()
+        .quad([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], &leaf)
+        .build();
+    scene.normals.fill([0.0, 1.0, 0.0]);
+    scene.textures = vec![Texture {
+        name: String::from("leaf"),
+        width: 1,
+        height: 1,
+        rgba8: vec![255; 4],
+        encoding: Encoding::Srgb,
+        wrap: [Wrap::Clamp; 2],
+    }];
+    let day = clear_day(150.0, 50.0);
+    let expected = luminance(day.sky_irradiance_up) / 1000.0 * 0.5 / PI;
+    for eye in [[0.0, 0.5, 3.0], [0.5, 0.5, -3.0]] {
+        let view = camera(eye, [0.0; 3]);
+        for (name, set) in [
+            ("single", single(64, 64)),
+            ("converged", converged(64, 64, 64)),
+        ] {
+            let picture = device.picture(&scene, showing(Show::Sky, set), &day, &view);
+            let light = luminance(picture.at(32, 32)) / expected;
+            println!("{name} from {eye:?}: {light:.4} of the light of the sky above");
+            assert!((light - 1.0).abs() < 0.05, "{light}");
+        }
+    }
 }
 
 /// The picture in the dark room after eight previews in the lit one and `count` in the dark one, with the cells of both. Cells at the

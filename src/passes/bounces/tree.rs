@@ -3,7 +3,7 @@
 
 use std::thread;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use crate::daylight::colour::luminance;
 use crate::daylight::glass;
@@ -191,6 +191,21 @@ const PANE: u32 = 1 << 31;
 /// Mark of a pane that is a slab: only the face where light enters counts.
 const SLAB: u32 = 1 << 30;
 
+/// Bits of the opacity in the word of a cut-out, and of each of the two octahedral coordinates of its normal that follow.
+const OPACITY_BITS: u32 = 8;
+const NORMAL_BITS: u32 = 11;
+
+/// The normal in the word of a cut-out (Cigolle et al. 2014), for `octahedral_decode`.
+fn normal_word(n: Vec3) -> u32 {
+    let p = n.truncate() / n.abs().element_sum();
+    let sign = |v: f32| if v >= 0.0 { 1.0 } else { -1.0 };
+    let folded = Vec2::new((1.0 - p.y.abs()) * sign(p.x), (1.0 - p.x.abs()) * sign(p.y));
+    let most = (1 << NORMAL_BITS) - 1;
+    let bits = |v: f32| ((0.5 * v + 0.5).clamp(0.0, 1.0) * most as f32).round() as u32;
+    let at = if n.z >= 0.0 { p } else { folded };
+    (bits(at.x) | bits(at.y) << NORMAL_BITS) << OPACITY_BITS
+}
+
 /// The word of a pane of glass: rays have no colour, so it is that of the luminance.
 fn pane_word((normal_transmittance, is_slab): ([f32; 3], bool)) -> u32 {
     let grey = luminance(Vec3::from(normal_transmittance).as_dvec3());
@@ -201,7 +216,10 @@ fn pane_word((normal_transmittance, is_slab): ([f32; 3], bool)) -> u32 {
 fn triangle_words(triangle: &Triangle, mean: &Mean) -> [[u32; 4]; 3] {
     let opacity = match mean.glass {
         Some(pane) => pane_word(pane),
-        None => (mean.opacity.clamp(0.0, 1.0) * 255.0).round() as u32,
+        None => {
+            let opacity = (mean.opacity.clamp(0.0, 1.0) * 255.0).round() as u32;
+            opacity | mean.normal.map_or(0, normal_word)
+        }
     };
     let emission = kilo(Vec3::from(mean.emission).as_dvec3());
     let [r, g, b] = mean.diffuse.map(|v| v.clamp(0.0, 1.0));
@@ -212,4 +230,32 @@ fn triangle_words(triangle: &Triangle, mean: &Mean) -> [[u32; 4]; 3] {
         texel(triangle.edge1, shared_exponent::pack(emission)),
         texel(triangle.edge2, opacity),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::passes::surfaces::gbuffer::unpack_normal;
+
+    #[test]
+    fn normals_of_cut_outs_are_precise_to_a_tenth_of_a_degree_and_leave_the_marks_alone() {
+        let normals = (0..500).map(|i| {
+            let [u, v] = [0.754_877_7, 0.569_840_3].map(|step: f32| (step * i as f32).fract());
+            let (z, turn) = (2.0 * u - 1.0, 6.283 * v);
+            let radius = (1.0 - z * z).sqrt();
+            Vec3::new(radius * turn.cos(), radius * turn.sin(), z)
+        });
+        for n in normals.chain([Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::Z, Vec3::NEG_Z]) {
+            let word = normal_word(n);
+            assert_eq!(word & (PANE | SLAB | 0xff), 0);
+            let half = |shift: u32| {
+                let bits = word >> (OPACITY_BITS + shift) & ((1 << NORMAL_BITS) - 1);
+                let v = bits as f32 / ((1 << NORMAL_BITS) - 1) as f32 * 2.0 - 1.0;
+                ((v * 32767.0).round() as i16).cast_unsigned()
+            };
+            let decoded = Vec3::from(unpack_normal([half(0), half(NORMAL_BITS)]));
+            let off = decoded.angle_between(n).to_degrees();
+            assert!(off < 0.1, "{n}: {off}");
+        }
+    }
 }

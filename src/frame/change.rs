@@ -69,6 +69,23 @@ impl Change {
         self.passes(irradiance)
     }
 
+    /// Makes the passes with a recorder that is not recording, and waits for what it uploads.
+    ///
+    /// # Errors
+    /// Fails when the device cannot create the resources, or is lost.
+    pub fn prepare(&self, recorder: &mut Recorder) -> Result<Replacement> {
+        if self.new.irradiance == self.old.irradiance {
+            return self.passes(None);
+        }
+        recorder.begin()?;
+        let made = self.make(recorder);
+        match made {
+            Ok(_) => recorder.finish()?,
+            Err(_) => recorder.abandon()?,
+        }
+        made
+    }
+
     fn passes(&self, irradiance: Option<Irradiance>) -> Result<Replacement> {
         let (old, new, device, facts) = (&self.old, &self.new, &self.context, &*self.facts);
         let is_resized = new.size != old.size;

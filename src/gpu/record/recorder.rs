@@ -191,6 +191,12 @@ impl Recorder {
         }
     }
 
+    /// Whether submitted work has not been waited for.
+    #[cfg(feature = "window")]
+    pub(in crate::gpu) fn is_pending(&self) -> bool {
+        self.is_pending
+    }
+
     /// Waits for the fence; returns whether work was pending.
     fn wait_for_fence(&mut self) -> Result<bool> {
         if !std::mem::take(&mut self.is_pending) {

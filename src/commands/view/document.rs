@@ -329,12 +329,10 @@ fn at_rest(user: &OptionValues, size: Size) -> OptionValues {
     options
 }
 
-/// Frame settings for the screen. The number of irradiance samples does not depend on the light, so the sun can be dragged
-/// without recreating the cube.
+/// Frame settings for the screen.
 fn frame_settings(job: &Job, is_hdr: bool) -> FrameSettings {
-    let mut settings = job.frame_settings(job.settings.show, Precision::Half);
+    let mut settings = job.moving_settings(job.settings.show, Precision::Half);
     settings.tone.peak = is_hdr.then_some(job.settings.hdr_peak / PAPER_WHITE);
-    settings.irradiance.samples = job.settings.irradiance_samples;
     settings.sampling.dome.illuminance = true;
     // Single frames while something moves; at rest the image fades over to the converging one.
     if settings.sampling.visibility == Visibility::Dome {

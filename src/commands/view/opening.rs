@@ -30,7 +30,7 @@ impl App {
             Ok(loaded) => loaded,
             Err(error) => return self.show(path, Err(error.into())),
         };
-        self.interface.loading(Some((1.0, "to the device")));
+        self.interface.loading(Some((1.0, "preparing")));
         let (user, context, wake) = (self.user.clone(), stage.context.clone(), self.loader.wake());
         let window = (window_size(stage), stage.screen());
         let of = path.clone();

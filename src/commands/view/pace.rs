@@ -38,10 +38,10 @@ const TOUR: [(&str, &str); 21] = [
 ];
 
 /// Frames of which the median is the usual one; more at the start, until the cells are filled.
-const USUAL: usize = 16;
-const FIRST: usize = 60;
+const USUAL: usize = 10;
+const FIRST: usize = 40;
 /// Frames with the new passes that still belong to a change.
-const SETTLING: usize = 8;
+const SETTLING: usize = 5;
 /// Turn of the view in a frame, of a drag across the height of the window.
 const TURN: f64 = 0.002;
 
@@ -131,8 +131,9 @@ impl Pace {
                     return Ok(false);
                 }
                 let usual = median(&self.frames[wanted - USUAL..]);
+                // The table so far, if the window is closed before the end.
+                write_whole(&self.file, self.table(usual).as_bytes())?;
                 if self.at == 2 * TOUR.len() {
-                    write_whole(&self.file, self.table(usual).as_bytes())?;
                     return Ok(true);
                 }
                 let change = self.change(document);

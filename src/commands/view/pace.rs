@@ -1,5 +1,6 @@
 //! Measures how evenly frames follow each other: with `SKYLIGHT_PACE=FILE` in the environment the window turns its view in every frame,
-//! changes one option after the other and back, writes what that cost to the file, and ends.
+//! changes one option after the other and back, writes what that cost to the file, and ends. `SKYLIGHT_PACE_OF=NAME,..` measures these
+//! options alone.
 
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -66,6 +67,7 @@ enum Phase {
 /// The measurement.
 pub(super) struct Pace {
     file: PathBuf,
+    tour: Vec<(&'static str, &'static str)>,
     phase: Phase,
     /// Number of the change, two for each entry of the tour: there and back.
     at: usize,
@@ -84,8 +86,17 @@ pub(super) struct Pace {
 impl Pace {
     /// The measurement that the environment asks for, if any.
     pub(super) fn asked() -> Option<Self> {
+        let asked = std::env::var("SKYLIGHT_PACE_OF").ok();
+        let is_asked = |name: &str| {
+            let names = asked.as_deref();
+            names.is_none_or(|names| names.split(',').any(|asked| asked == name))
+        };
         Some(Self {
             file: std::env::var_os("SKYLIGHT_PACE")?.into(),
+            tour: TOUR
+                .into_iter()
+                .filter(|(name, _)| is_asked(name))
+                .collect(),
             phase: Phase::Usual,
             at: 0,
             original: None,
@@ -133,7 +144,7 @@ impl Pace {
                 let usual = median(&self.frames[wanted - USUAL..]);
                 // The table so far, if the window is closed before the end.
                 write_whole(&self.file, self.table(usual).as_bytes())?;
-                if self.at == 2 * TOUR.len() {
+                if self.at == 2 * self.tour.len() {
                     return Ok(true);
                 }
                 let change = self.change(document);
@@ -173,7 +184,7 @@ impl Pace {
 
     /// Changes the next option, or back, and returns what it did. A size comes as if from the window.
     fn change(&mut self, document: &mut Document) -> String {
-        let (name, value) = TOUR[self.at / 2];
+        let (name, value) = self.tour[self.at / 2];
         let settings = &mut document.job.settings;
         if let Some(original) = self.original.take() {
             *settings = original;
@@ -199,7 +210,8 @@ impl Pace {
 
     /// Whether the measurement has set the picture's size.
     pub(super) fn sets_size(&self) -> bool {
-        self.original.is_some() && TOUR[(self.at / 2).min(TOUR.len() - 1)].0 == "size"
+        let change = self.tour.get(self.at / 2);
+        self.original.is_some() && change.is_some_and(|(name, _)| *name == "size")
     }
 
     /// The table: tabs between columns. `last` is the usual frame after the last change.

@@ -171,16 +171,10 @@ impl Geometry {
         let clusters = layout.into_owned().clusters;
         let casting = joined_ranges(parts.iter().filter(|p| p.casts && !p.kind.cut_out));
         let cast = casting.iter().flat_map(|r| &clusters[r.clone()]);
-        let is_rough = surfaces.iter().any(|s| s.metallic.is_some());
         let facts = Facts {
-            bounds: scene.bounds,
-            casters: scene.casters(),
-            kinds: kinds(&parts),
-            emission_source: emission_source(&parts, &surfaces),
             has_panes: !panes.is_empty(),
-            is_specular: is_rough || surfaces.iter().any(|s| s.is_specular),
-            is_rough,
             casting_triangles: cast.map(|cluster| cluster.count as usize / 3).sum(),
+            ..facts(scene, &parts, &surfaces)
         };
         let details = if parts.iter().any(|p| p.kind.is_detailed()) {
             Some(upload_details(recorder, scene)?)
@@ -403,6 +397,21 @@ impl Geometry {
                 sampler: Sampler::Surface(Outside::Repeat, Outside::Repeat),
             },
         }
+    }
+}
+
+/// What passes depend on of surfaces that are no panes of glass.
+fn facts(scene: &Scene, parts: &[Part], surfaces: &[Surface]) -> Facts {
+    let is_rough = surfaces.iter().any(|s| s.metallic.is_some());
+    Facts {
+        bounds: scene.bounds,
+        casters: scene.casters(),
+        kinds: kinds(parts),
+        emission_source: emission_source(parts, surfaces),
+        has_panes: false,
+        is_specular: is_rough || surfaces.iter().any(|s| s.is_specular),
+        is_rough,
+        casting_triangles: 0,
     }
 }
 

@@ -13,8 +13,16 @@ use crate::error::Result;
 use crate::options::{Options, Size};
 use crate::output::write_whole;
 
+/// A change of nothing.
+const NOTHING: &str = "nothing";
+
+/// Options that others of the tour exclude or replace.
+const EXCLUDED: [&str; 4] = ["aerial", "turbidity", "visual-range", "exposure"];
+
 /// The options of the panel that need other passes or another daylight, with the values that they take.
-const TOUR: [(&str, &str); 21] = [
+const TOUR: [(&str, &str); 22] = [
+    // What the machine does to frames by itself.
+    (NOTHING, ""),
     ("show", "normal"),
     ("show", "bounces"),
     ("show", "irradiance"),
@@ -199,7 +207,11 @@ impl Pace {
             };
             return format!("{name}={value}");
         }
+        if name == NOTHING {
+            return name.to_owned();
+        }
         let mut values = settings.values();
+        values.remove(&EXCLUDED);
         values.set(name, value);
         match Options::resolve(&values, &document.job.loaded) {
             Ok(options) => *settings = options,
@@ -265,8 +277,12 @@ mod tests {
     fn each_change_of_the_tour_is_one() {
         let scene = exposed_scene();
         let plain = Options::resolve(&Default::default(), &scene).expect("options");
-        for (name, value) in TOUR.iter().filter(|(name, _)| *name != "size") {
+        for (name, value) in TOUR
+            .iter()
+            .filter(|(name, _)| !["size", NOTHING].contains(name))
+        {
             let mut values = plain.values();
+            values.remove(&EXCLUDED);
             values.set(name, value);
             let changed = Options::resolve(&values, &scene).expect(name);
             // The window's default is another one than a file's.

@@ -50,22 +50,6 @@ vec3 bounded(vec3 old, vec3 now, ivec2 pixel) {
     return clamp(old, least, most);
 }
 
-/// The picture before, by the cubic of Catmull and Rom: the mean of many frames that move by parts of a pixel stays sharp, where linear
-/// lookups of lookups would blur it. Nine weights in five lookups, without the corners.
-vec3 sharp(vec2 at) {
-    vec2 texel = 2.0 * push.half_texel, place = at / texel;
-    vec2 middle = floor(place - 0.5) + 0.5, f = place - middle;
-    vec2 w0 = f * (f * (1.0 - 0.5 * f) - 0.5), w1 = 1.0 + f * f * (1.5 * f - 2.5);
-    vec2 w3 = f * f * (0.5 * f - 0.5), w12 = 1.0 - w0 - w3, w2 = w12 - w1;
-    vec2 low = (middle - 1.0) * texel, mid = (middle + w2 / w12) * texel, high = (middle + 2.0) * texel;
-    vec4 sum = vec4(textureLod(before, mid, 0.0).rgb, 1.0) * (w12.x * w12.y);
-    sum += vec4(textureLod(before, vec2(mid.x, low.y), 0.0).rgb, 1.0) * (w12.x * w0.y);
-    sum += vec4(textureLod(before, vec2(low.x, mid.y), 0.0).rgb, 1.0) * (w0.x * w12.y);
-    sum += vec4(textureLod(before, vec2(high.x, mid.y), 0.0).rgb, 1.0) * (w3.x * w12.y);
-    sum += vec4(textureLod(before, vec2(mid.x, high.y), 0.0).rgb, 1.0) * (w12.x * w3.y);
-    return max(sum.rgb / sum.a, 0.0);
-}
-
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 shown = texelFetch(display, pixel, 0);
@@ -91,7 +75,6 @@ void main() {
     bool is_edge = push.same >= 0.0 && nearest - farthest > push.same, was_edge = mark > MOST_FRAMES + 0.5;
     float most = BOUNDED || shown.a < 0.5 ? FEW : MOST_FRAMES - 1.0;
     float count = is_same && (is_edge || !was_edge) ? min(mark < EDGE ? mark : mark - EDGE, most) : 0.0;
-    old.rgb = sharp(at);
     if (BOUNDED) old.rgb = bounded(old.rgb, now, pixel);
     // A picture before that does not count may be undefined.
     vec3 mean = light_of_display(now);

@@ -3,8 +3,7 @@
 //! The scene stands still, so depth and the two cameras tell where a surface was in the picture before ([`Reprojection`]). Whether the same surface
 //! was seen there follows from depth too: two surfaces whose motion differs by less than an eighth of a pixel need not be told apart, so
 //! no normals are compared. Where another was seen the picture before does not count. When the light has changed it is bounded by what is around the pixel
-//! now, and counts for two frames. It is looked up by the cubic of Catmull and Rom: linear lookups of what was looked up before would blur a moving
-//! view.
+//! now, and counts for two frames.
 
 use std::sync::Arc;
 

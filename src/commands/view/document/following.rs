@@ -19,7 +19,7 @@ impl Document {
     }
 
     /// Updates daylight and frame to the options, as far as other threads have prepared that, and lets them prepare the rest: a new air,
-    /// and passes. Until then those before stay, and `wake` of [`Device`] calls for the next update.
+    /// and passes. Until then those before stay, and the event loop is woken for the next update.
     ///
     /// # Errors
     /// Options that cannot be applied; the previous ones are restored.

@@ -2,6 +2,7 @@
 
 mod ambient;
 mod average;
+mod change;
 mod sample;
 mod settings;
 mod smooth;
@@ -10,6 +11,7 @@ use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::thread::{self, ScopedJoinHandle};
 
+pub use self::change::{Change, Replacement};
 pub use self::sample::{Filter, Sampling, Visibility};
 pub use self::settings::FrameSettings;
 pub use self::smooth::AntiAliasing;
@@ -21,7 +23,7 @@ use crate::gpu::{Context, Image, Recorder, Result};
 use crate::passes::bounces::cells::{Cells, Surroundings, Work};
 use crate::passes::bounces::tree::Tree;
 use crate::passes::light::background::Background;
-use crate::passes::light::lighting::{Light, Show};
+use crate::passes::light::lighting::Light;
 use crate::passes::light::lobes::Lobes;
 use crate::passes::light::panes::{BeforePicture, Panes};
 use crate::passes::light::probe::{Probe, Reading};
@@ -37,7 +39,7 @@ use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::view::{View, Window};
 use crate::scene::{Camera, Scene};
 
-use self::ambient::{AmbientInputs, AmbientNeed, AmbientPasses};
+use self::ambient::{AmbientInputs, AmbientPasses};
 use self::average::{Average, Lit};
 use self::smooth::Smooth;
 
@@ -132,26 +134,26 @@ impl Frame {
             let exposure = scope.spawn(move || Exposure::new(device));
             let geometry = Geometry::new(recorder, scene)?;
             let tree = Tree::new(recorder, scene)?;
-            let settings = asked.for_scene(device, &geometry);
-            let rays = tree.constants();
-            let lighting = scope.spawn(move || settings.lighting(device, rays));
+            let (facts, rays) = (geometry.facts(), tree.facts());
+            let settings = asked.for_scene(device, facts);
+            let constants = rays.constants();
+            let lighting = scope.spawn(move || settings.lighting(device, constants));
             let background = scope.spawn(move || settings.background(device));
             Ok(Self {
                 ambient: AmbientPasses::new(device, &settings)?,
-                gbuffer: settings.gbuffer(device, &geometry)?,
-                panes: settings.panes(device, &tree)?,
-                sky_prefiltered: geometry
-                    .is_rough()
+                gbuffer: settings.gbuffer(device, facts)?,
+                panes: settings.panes(device, rays)?,
+                sky_prefiltered: facts
+                    .is_rough
                     .then(|| SpecularCube::new(recorder, SAMPLES, None))
                     .transpose()?,
-                lobes: settings.lobes(device, &tree)?,
-                average: Average::new(device, &geometry, &tree, &settings)?,
-                cells: settings.cells(device, &tree, &geometry)?,
-                tree,
+                lobes: settings.lobes(device, rays)?,
+                average: Average::new(device, facts, rays, &settings)?,
+                cells: settings.cells(device, rays, facts)?,
                 irradiance: Irradiance::new(recorder, settings.irradiance)?,
-                air: settings.air(device, &geometry)?,
+                air: settings.air(device, facts)?,
                 preview: Lit {
-                    shadow: settings.shadow(device, &geometry)?,
+                    shadow: settings.shadow(device, facts)?,
                     lighting: joined(lighting)?,
                 },
                 sky_cube: joined(sky_cube)?,
@@ -162,90 +164,12 @@ impl Frame {
                 probe: Probe::new(device)?,
                 drawn: None,
                 tiling: Tiling::default(),
+                tree,
                 geometry,
                 settings,
                 context: context.clone(),
             })
         })
-    }
-
-    /// Applies new settings: recreates the passes that depend on a changed setting and keeps the others with their contents.
-    /// `recorder` must be recording, with no frame in flight.
-    ///
-    /// # Errors
-    /// Fails when the device cannot create the resources. The frame is then unchanged, and the recorded commands must not be
-    /// submitted.
-    pub fn apply(&mut self, recorder: &mut Recorder, settings: FrameSettings) -> Result<()> {
-        let settings = settings.for_scene(&self.context, &self.geometry);
-        let differs = settings.irradiance != self.settings.irradiance;
-        let irradiance = remade(differs, || Irradiance::new(recorder, settings.irradiance))?;
-        self.remake(settings, irradiance)
-    }
-
-    /// Sets the quantity shown from the next frame on.
-    ///
-    /// # Errors
-    /// Fails when the device cannot create the resources. The frame is then unchanged.
-    pub fn show(&mut self, show: Show) -> Result<()> {
-        let mut settings = self.settings;
-        (settings.lighting.show, settings.tone.show) = (show, show);
-        self.remake(settings, None)
-    }
-
-    /// Creates the passes that the new settings need, then swaps them all in. If one fails, nothing changes.
-    fn remake(&mut self, new: FrameSettings, irradiance: Option<Irradiance>) -> Result<()> {
-        let (old, device, geometry) = (&self.settings, &self.context, &self.geometry);
-        let is_resized = new.size != old.size;
-        let is_lit = is_resized || new.lighting != old.lighting;
-        let is_new_gbuffer = is_resized
-            || (new.has_faces(), new.keeps_depth()) != (old.has_faces(), old.keeps_depth());
-        let is_new_shadow = new.shadow_map() != old.shadow_map();
-        let is_new_average = Average::is_changed(old, &new);
-        let sky_edge = new.sky_edge;
-        let sky_cube = remade(sky_edge != old.sky_edge, || SkyCube::new(device, sky_edge))?;
-        let gbuffer = remade(is_new_gbuffer, || new.gbuffer(device, geometry))?;
-        let is_other_mirror = new.lighting.panes != old.lighting.panes;
-        let panes = remade(is_resized || is_other_mirror, || {
-            new.panes(device, &self.tree)
-        })?;
-        let is_other_lobes = is_resized || new.lobes_need() != old.lobes_need();
-        let lobes = remade(is_other_lobes, || new.lobes(device, &self.tree))?;
-        let is_new_ambient = is_resized || AmbientNeed::of(&new) != AmbientNeed::of(old);
-        let ambient = remade(is_new_ambient, || AmbientPasses::new(device, &new))?;
-        let shadow = remade(is_new_shadow, || new.shadow(device, geometry))?;
-        let lighting = remade(is_lit, || new.lighting(device, self.tree.constants()))?;
-        let background = remade(new.lighting != old.lighting, || new.background(device))?;
-        let average = remade(is_new_average, || {
-            Average::new(device, geometry, &self.tree, &new)
-        })?;
-        let cells = remade(new.cells_need() != old.cells_need(), || {
-            new.cells(device, &self.tree, geometry)
-        })?;
-        let is_other_air = new.air_need() != old.air_need();
-        let air = remade(is_other_air, || new.air(device, geometry))?;
-        let tone_map = remade(is_resized || new.tone != old.tone, || new.tone_map(device))?;
-        let is_other_smooth = new.smooth_need() != old.smooth_need();
-        let smooth = remade(is_other_smooth, || Smooth::new(device, &new))?;
-
-        // From here on nothing fails.
-        replace(&mut self.sky_cube, sky_cube);
-        replace(&mut self.irradiance, irradiance);
-        replace(&mut self.air, air);
-        replace(&mut self.gbuffer, gbuffer);
-        replace(&mut self.panes, panes);
-        replace(&mut self.lobes, lobes);
-        replace(&mut self.ambient, ambient);
-        replace(&mut self.preview.shadow, shadow);
-        replace(&mut self.preview.lighting, lighting);
-        replace(&mut self.background, background);
-        replace(&mut self.average, average);
-        replace(&mut self.cells, cells);
-        replace(&mut self.tone_map, tone_map);
-        replace(&mut self.smooth, smooth);
-        self.smooth.forget();
-        self.settings = new;
-        self.drawn = None;
-        Ok(())
     }
 
     /// Records frame number `index` of an average; 0 starts a new one.
@@ -513,18 +437,6 @@ fn newest<'a>(average: &'a Average, preview: &'a Lit, drawn: Option<Drawn>) -> &
         .image()
         .filter(|_| drawn.is_some_and(|drawn| drawn.index.is_some()));
     average.unwrap_or(preview.lighting.image())
-}
-
-/// Recreates a pass if its settings differ.
-fn remade<T>(differs: bool, make: impl FnOnce() -> Result<T>) -> Result<Option<T>> {
-    differs.then(make).transpose()
-}
-
-/// Replaces a pass with the recreated one, if any.
-fn replace<T>(pass: &mut T, remade: Option<T>) {
-    if let Some(remade) = remade {
-        *pass = remade;
-    }
 }
 
 /// Joins a thread and returns its result.

@@ -199,8 +199,15 @@ impl Job {
         Ok((job, context))
     }
 
-    /// The frame settings for displaying `show`.
+    /// The frame settings for displaying `show` in this daylight.
     pub fn frame_settings(&self, show: Show, precision: Precision) -> FrameSettings {
+        let mut set = self.moving_settings(show, precision);
+        set.irradiance.samples = self.irradiance_samples();
+        set
+    }
+
+    /// The same for a daylight that may change in every frame: the number of irradiance samples does not depend on it.
+    pub fn moving_settings(&self, show: Show, precision: Precision) -> FrameSettings {
         let s = &self.settings;
         let mut set = FrameSettings {
             size: UVec2::new(s.size.width, s.size.height),
@@ -268,21 +275,25 @@ impl Job {
         // The course framework takes five samples per frame.
         let lecture = s.preset == Some(Preset::Lecture);
         let samples_per_pass = if lecture { 5 } else { default.samples_per_pass };
-        let method = s.irradiance;
-        let (error, most) = (s.irradiance_error / 100.0, s.irradiance_samples);
-        // The estimate takes milliseconds, so it is made only where it can save samples.
-        let samples = if method.is_sampled() && error > 0.0 {
-            let estimate = ErrorEstimate::new(|direction| self.daylight.radiance(direction));
-            estimate.samples(method, error, most)
-        } else {
-            most
-        };
         IrradianceSettings {
-            method,
-            samples,
+            method: s.irradiance,
+            samples: s.irradiance_samples,
             samples_per_pass,
             ..default
         }
+    }
+
+    /// Irradiance samples that bring the error below the one that is allowed.
+    fn irradiance_samples(&self) -> u32 {
+        let s = &self.settings;
+        let (method, most) = (s.irradiance, s.irradiance_samples);
+        let error = s.irradiance_error / 100.0;
+        // The estimate takes milliseconds, so it is made only where it can save samples.
+        if !method.is_sampled() || error <= 0.0 {
+            return most;
+        }
+        let estimate = ErrorEstimate::new(|direction| self.daylight.radiance(direction));
+        estimate.samples(method, error, most)
     }
 
     fn scale(&self) -> Scale {

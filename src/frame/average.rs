@@ -6,12 +6,13 @@ use super::{AntiAliasing, FrameSettings, Visibility};
 use crate::gpu::{Context, Image, Recorder, Result};
 use crate::passes::bounces::cells::Cells;
 use crate::passes::bounces::gather::Gather;
-use crate::passes::bounces::tree::Tree;
+use crate::passes::bounces::tree::{Tree, TreeFacts};
 use crate::passes::dome::gather::{Dome, Gathered};
 use crate::passes::light::lighting::{Light, Lighting};
 use crate::passes::picture::accumulate::Accumulate;
 use crate::passes::picture::fade::Fade;
 use crate::passes::sun_shadow::map::Shadow;
+use crate::passes::surfaces::facts::Facts;
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::view::View;
@@ -51,8 +52,8 @@ impl Average {
     /// Fails when the device cannot create the resources.
     pub fn new(
         context: &Arc<Context>,
-        geometry: &Geometry,
-        tree: &Tree,
+        facts: &Facts,
+        tree: &TreeFacts,
         settings: &FrameSettings,
     ) -> Result<Self> {
         let size = settings.size.to_array();
@@ -71,7 +72,7 @@ impl Average {
             lit: Lit {
                 shadow: Shadow::perspective(
                     context,
-                    geometry,
+                    facts,
                     settings.shadow_resolution,
                     lighting.sun_by_rays,
                 )?,
@@ -83,7 +84,7 @@ impl Average {
                 .transpose()?,
             dome: Dome::new(
                 context,
-                (geometry, tree),
+                (facts, tree),
                 size,
                 sampling.dome,
                 lighting,

@@ -8,7 +8,7 @@ use super::ambient::AmbientNeed;
 use super::{AntiAliasing, Sampling, Visibility};
 use crate::gpu::{Context, Result};
 use crate::passes::bounces::cells::{Bounces, Cells};
-use crate::passes::bounces::tree::{RayConstants, Tree};
+use crate::passes::bounces::tree::{RayConstants, TreeFacts};
 use crate::passes::dome::route::{DomeBy, Work};
 use crate::passes::dome::specular::{Mirrors, Reflections};
 use crate::passes::light::background::Background;
@@ -23,8 +23,8 @@ use crate::passes::sky::air::{Air, LEAST_SCENE};
 use crate::passes::sky::irradiance::IrradianceSettings;
 use crate::passes::sun_shadow::cascades;
 use crate::passes::sun_shadow::map::Shadow;
+use crate::passes::surfaces::facts::Facts;
 use crate::passes::surfaces::gbuffer::Gbuffer;
-use crate::passes::surfaces::geometry::Geometry;
 
 /// Settings that stay the same from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -158,11 +158,11 @@ impl FrameSettings {
     pub(super) fn cells(
         &self,
         context: &Arc<Context>,
-        tree: &Tree,
-        geometry: &Geometry,
+        tree: &TreeFacts,
+        facts: &Facts,
     ) -> Result<Option<Cells>> {
         let seed = self.cells_need();
-        seed.map(|seed| Cells::new(context, tree, geometry.bounds(), seed))
+        seed.map(|seed| Cells::new(context, tree, &facts.bounds, seed))
             .transpose()
     }
 
@@ -172,9 +172,9 @@ impl FrameSettings {
     }
 
     /// The shadow map of single frames.
-    pub(super) fn shadow(&self, context: &Arc<Context>, geometry: &Geometry) -> Result<Shadow> {
+    pub(super) fn shadow(&self, context: &Arc<Context>, facts: &Facts) -> Result<Shadow> {
         let (resolution, shadows) = self.shadow_map();
-        Shadow::cascades(context, geometry, resolution, shadows)
+        Shadow::cascades(context, facts, resolution, shadows)
     }
 
     /// Whether the G-buffer has the slopes of faces.
@@ -203,9 +203,9 @@ impl FrameSettings {
     }
 
     /// The G-buffer.
-    pub(super) fn gbuffer(&self, context: &Arc<Context>, geometry: &Geometry) -> Result<Gbuffer> {
+    pub(super) fn gbuffer(&self, context: &Arc<Context>, facts: &Facts) -> Result<Gbuffer> {
         let kinds = (self.has_faces(), self.keeps_depth());
-        Gbuffer::new(context, geometry, self.size.to_array(), kinds)
+        Gbuffer::new(context, facts, self.size.to_array(), kinds)
     }
 
     /// What the light in the lobes of GGX depends on; `None` if it is not shown.
@@ -220,7 +220,7 @@ impl FrameSettings {
     }
 
     /// The light in the lobes of GGX, if it is shown.
-    pub(super) fn lobes(&self, context: &Arc<Context>, tree: &Tree) -> Result<Option<Lobes>> {
+    pub(super) fn lobes(&self, context: &Arc<Context>, tree: &TreeFacts) -> Result<Option<Lobes>> {
         let size = self.size.to_array();
         let need = self.lobes_need();
         need.map(|need| Lobes::new(context, tree, size, &need))
@@ -238,7 +238,7 @@ impl FrameSettings {
     }
 
     /// Panes of glass, if the scene has any.
-    pub(super) fn panes(&self, context: &Arc<Context>, tree: &Tree) -> Result<Option<Panes>> {
+    pub(super) fn panes(&self, context: &Arc<Context>, tree: &TreeFacts) -> Result<Option<Panes>> {
         let size = self.size.to_array();
         let panes = self.lighting.panes;
         panes
@@ -252,9 +252,9 @@ impl FrameSettings {
     }
 
     /// The air before the eye, if it is drawn.
-    pub(super) fn air(&self, context: &Arc<Context>, geometry: &Geometry) -> Result<Option<Air>> {
+    pub(super) fn air(&self, context: &Arc<Context>, facts: &Facts) -> Result<Option<Air>> {
         let edge = self.air_need();
-        edge.map(|edge| Air::new(context, geometry.bounds(), edge))
+        edge.map(|edge| Air::new(context, &facts.bounds, edge))
             .transpose()
     }
 
@@ -265,37 +265,37 @@ impl FrameSettings {
 
     /// Adjusts the settings to a scene: no specular lookups without ρ_s, no albedo image without textures, no emission without L_e, no air in
     /// small scenes, cascades for large ones, maps or rays of the dome.
-    pub(super) fn for_scene(mut self, context: &Context, geometry: &Geometry) -> Self {
+    pub(super) fn for_scene(mut self, context: &Context, facts: &Facts) -> Self {
         let shadows = &mut self.lighting.shadows;
         if shadows.cascades == 0 {
             let most = context.summary().max_image_edge;
-            shadows.cascades = cascades::count(geometry.casters(), self.shadow_resolution, most);
+            shadows.cascades = cascades::count(&facts.casters, self.shadow_resolution, most);
         }
-        let panes = geometry.has_panes();
+        let panes = facts.has_panes;
         self.lighting.panes = panes.then_some(self.lighting.specular_scale);
-        self.lighting.rough = geometry.is_rough();
-        if !geometry.is_specular() {
+        self.lighting.rough = facts.is_rough;
+        if !facts.is_specular {
             self.lighting.specular_scale = 0.0;
         }
-        self.lighting.air &= geometry.bounds().diagonal() >= LEAST_SCENE;
-        self.lighting.has_albedo = geometry.has_albedo();
-        self.lighting.emission = geometry.emission_source();
-        self.sampling.dome.by = self.dome_by(geometry);
+        self.lighting.air &= facts.bounds.diagonal() >= LEAST_SCENE;
+        self.lighting.has_albedo = facts.has_albedo();
+        self.lighting.emission = facts.emission_source;
+        self.sampling.dome.by = self.dome_by(facts);
         self.lighting.sun_by_rays = self.converges() && self.sampling.dome.by == DomeBy::Rays;
-        self.lighting.cut_outs = geometry.has_cut_outs();
+        self.lighting.cut_outs = facts.has_cut_outs();
         self
     }
 
     /// Maps or rays of the dome: what serves better, but maps where lobes look light up in them.
-    fn dome_by(&self, geometry: &Geometry) -> DomeBy {
+    fn dome_by(&self, facts: &Facts) -> DomeBy {
         if self.lighting.mirrors.reflections == Reflections::Hidden {
             return DomeBy::Maps;
         }
         let (size, dome) = (self.of_picture.unwrap_or(self.size), self.sampling.dome);
         dome.by.chosen(Work {
-            triangles: geometry.casting_triangles(),
+            triangles: facts.casting_triangles,
             pixels: u64::from(size.x) * u64::from(size.y),
-            texel: geometry.casters().extent().max_element() / dome.map_edge as f32,
+            texel: facts.casters.extent().max_element() / dome.map_edge as f32,
         })
     }
 }

@@ -42,7 +42,7 @@ pub use pipeline::{Blend, Depth, Pipeline, PipelineDesc};
 #[cfg(feature = "window")]
 pub use present::{
     output::{Encoding, Output},
-    presenter::Presenter,
+    presenter::{FRAMES, Presenter},
     ui::{Overlay, UiFrame},
 };
 pub use record::access;

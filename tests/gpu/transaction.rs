@@ -1,7 +1,9 @@
 //! A frame change that fails halfway leaves the frame unchanged.
 
+use std::thread;
+
 use skylight::frame::{Frame, FrameSettings, Visibility};
-use skylight::gpu::{Recorder, Result};
+use skylight::gpu::{Recorder, Result, Timing};
 use skylight::passes::light::lighting::Show;
 use skylight::scene::Scene;
 
@@ -84,6 +86,22 @@ fn ways() -> [FrameSettings; 3] {
     ]
 }
 
+/// Settings of which most differ from those of a frame.
+fn others(frame: &Frame) -> FrameSettings {
+    let mut other = *frame.settings();
+    other.sky_edge *= 2;
+    other.irradiance.samples *= 2;
+    other.shadow_resolution *= 2;
+    other.ssao.downscale = 2;
+    other.lighting.fresnel = true;
+    other.sampling.visibility = match other.sampling.visibility {
+        Visibility::Ssao => Visibility::Dome,
+        _ => Visibility::Ssao,
+    };
+    other.samples = 3;
+    other
+}
+
 #[test]
 fn a_resize_that_fails_leaves_the_old_size() {
     for set in ways() {
@@ -108,17 +126,7 @@ fn what_is_shown_stays_when_the_change_fails() {
 fn settings_that_fail_are_not_taken_over() {
     for set in ways() {
         let failed = fail_everywhere(set, |frame, rec| {
-            let mut other = *frame.settings();
-            other.sky_edge *= 2;
-            other.irradiance.samples *= 2;
-            other.shadow_resolution *= 2;
-            other.ssao.downscale = 2;
-            other.lighting.fresnel = true;
-            other.sampling.visibility = match other.sampling.visibility {
-                Visibility::Ssao => Visibility::Dome,
-                _ => Visibility::Ssao,
-            };
-            other.samples = 3;
+            let other = others(frame);
             frame.apply(rec, other)
         });
         assert!(failed >= 30, "{failed}");
@@ -134,5 +142,45 @@ fn a_tone_map_that_fails_is_not_taken_over() {
             frame.retone(rec, tone)
         });
         assert!(failed >= 2, "{failed}");
+    }
+}
+
+#[test]
+fn frames_go_on_while_another_thread_makes_passes_that_then_show_what_new_ones_do() {
+    let (scene, view) = (scene(), camera([4.0, 2.5, 5.0], [0.0, 0.7, 0.0]));
+    let day = clear_day(150.0, 40.0);
+    for set in ways() {
+        let mut device = Device::new();
+        let mut frame = device.frame(&scene, set, &day, &view);
+        let mut other = others(&frame);
+        other.size *= 2;
+        let fresh = device.frame(&scene, other, &day, &view);
+        let expected = [frame.display(), fresh.display()].map(|image| device.read(image));
+        let (change, context) = (frame.change(other), device.context.clone());
+        assert!(!change.is_none() && frame.change(set).is_none());
+        let making = thread::spawn(move || {
+            let mut recorder = Recorder::new(&context, Timing::Off)?;
+            change.prepare(&mut recorder)
+        });
+        let mut drawn = 0;
+        while drawn == 0 || !making.is_finished() {
+            device.draw(&mut frame, &day, &view);
+            assert!(
+                device.read(frame.display()) == expected[0],
+                "another picture"
+            );
+            drawn += 1;
+        }
+        let mut made = making.join().expect("no panic").expect("passes");
+        println!("{drawn} pictures while the passes were made");
+        frame.swap(&mut made);
+        // Those that were replaced, which frames in flight would still use.
+        device.run(|rec| rec.keep(made));
+        device.draw(&mut frame, &day, &view);
+        assert_eq!(frame.settings(), fresh.settings());
+        assert!(
+            device.read(frame.display()) == expected[1],
+            "not the new picture"
+        );
     }
 }

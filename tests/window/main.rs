@@ -14,6 +14,7 @@ mod faults;
 #[cfg(feature = "hot-reload")]
 mod hot_reload;
 mod life;
+mod pace;
 mod rest;
 mod screens;
 mod surfaces;

@@ -8,8 +8,8 @@ use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::{Fullscreen, Window};
 
 use crate::error::{Error, Result};
+use crate::gpu::FRAMES;
 use crate::options::{Hdr, OptionValues, Options, Size};
-use crate::scene::{Loaded, SceneError};
 
 use super::capture;
 use super::document::Document;
@@ -17,15 +17,14 @@ use super::input::Input;
 use super::interface::{Interface, UiRequest};
 use super::keys::Action;
 use super::loader::{Loader, Message};
+use super::opening::{Opened, Opening};
+use super::pace::Pace;
 use super::stage::Stage;
 use super::touch::Touches;
 use super::trouble::Trouble;
 
 /// Retry interval when the window cannot be drawn to.
 pub(super) const RETRY: Duration = Duration::from_millis(100);
-
-/// Result of loading a scene.
-type Opened = Box<std::result::Result<Loaded, SceneError>>;
 
 /// Application state.
 pub(super) struct App {
@@ -35,7 +34,9 @@ pub(super) struct App {
     pub(super) options: Options,
     pub(super) loader: Loader,
     /// A scene that was loaded before the window existed.
-    pub(super) waiting: Option<(Option<PathBuf>, Opened)>,
+    pub(super) waiting: Option<(u64, Option<PathBuf>, Opened)>,
+    /// Scenes that other threads prepare for the device.
+    pub(super) openings: Vec<Opening>,
     // Declared before the stage so that it is dropped first: it uses the stage's device.
     pub(super) document: Option<Document>,
     pub(super) stage: Option<Stage>,
@@ -54,6 +55,8 @@ pub(super) struct App {
     /// Whether the next frame of the options is to be saved.
     is_capture_due: bool,
     pub(super) trouble: Trouble,
+    /// The measurement of the frames' pace, if it was asked for.
+    pace: Option<Pace>,
 }
 
 impl App {
@@ -72,6 +75,7 @@ impl App {
             options,
             loader,
             waiting: None,
+            openings: Vec::new(),
             document: None,
             stage: None,
             window: None,
@@ -83,6 +87,7 @@ impl App {
             is_blocked: false,
             is_capture_due: false,
             trouble: Trouble::default(),
+            pace: Pace::asked(),
         }
     }
 
@@ -100,41 +105,6 @@ impl App {
         if let Some(stage) = &self.stage {
             stage.window.request_redraw();
         }
-    }
-
-    /// Shows a loaded scene, or the error that prevented loading.
-    pub(super) fn opened(&mut self, path: Option<PathBuf>, result: Opened) {
-        let Some(stage) = &mut self.stage else {
-            self.waiting = Some((path, result));
-            return;
-        };
-        self.interface.loading(None);
-        let (user, options) = (&self.user, &self.options);
-        let window = (window_size(stage), stage.screen());
-        let opened = match *result {
-            Ok(loaded) => stage.work(|rec| Document::open(rec, path.clone(), loaded, user, window)),
-            Err(error) => Err(error.into()),
-        };
-        let opened = opened.and_then(|document| document.job.check_strict().map(|()| document));
-        match opened {
-            Ok(document) => {
-                for warning in document.job.warnings().filter(|_| !options.no_warnings) {
-                    self.interface.warn(warning);
-                }
-                stage
-                    .window
-                    .set_title(&format!("{} \u{2013} skylight", document.title()));
-                if self.document.is_none() {
-                    self.interface.hint();
-                }
-                self.document = Some(document);
-            }
-            Err(error) => {
-                self.trouble.keep_unopened(&error, path);
-                tell(&mut self.interface, &error);
-            }
-        }
-        stage.window.request_redraw();
     }
 
     /// Keeps the settings of the document for `--resume`.
@@ -162,11 +132,19 @@ impl App {
             .ticked
             .map_or(0.0, |before| (now - before).as_secs_f64());
         if let Some(document) = &mut self.document {
+            if let Some(pace) = &mut self.pace {
+                pace.begin(document, FRAMES);
+            }
             document.advance(seconds, self.input.fly_keys());
             self.interface.play(document, seconds);
         }
         self.probe()?;
         let requests = self.lay_out_and_draw(event_loop)?;
+        if let (Some(pace), Some(document)) = (&mut self.pace, &mut self.document)
+            && pace.end(document)?
+        {
+            event_loop.exit();
+        }
         self.capture();
         for request in requests {
             self.handle(request)?;
@@ -205,7 +183,7 @@ impl App {
         let probed = self
             .interface
             .is_probed(self.probed_pixel(), self.document.as_ref());
-        moving || self.input.is_flying() || !probed
+        moving || self.input.is_flying() || !probed || self.pace.is_some()
     }
 
     fn lay_out_and_draw(&mut self, event_loop: &ActiveEventLoop) -> Result<Vec<UiRequest>> {
@@ -220,7 +198,8 @@ impl App {
             requests.extend(interface.show(ui, document.as_deref_mut()));
         })?;
         if let Some(document) = document.as_deref_mut() {
-            if size.width > 0 && size.height > 0 {
+            let is_set = self.pace.as_ref().is_some_and(Pace::sets_size);
+            if size.width > 0 && size.height > 0 && !is_set {
                 document.job.settings.size = size;
             }
             if let Err(error) = stage.set_hdr(document.job.settings.hdr) {
@@ -229,7 +208,7 @@ impl App {
             }
             document.set_screen(stage.screen());
             if document.is_behind()
-                && let Err(error) = stage.work(|rec| document.follow(rec))
+                && let Err(error) = document.follow()
             {
                 tell(interface, &error);
             }
@@ -342,13 +321,13 @@ fn reload(_: &mut Stage, _: &mut Document) -> Result<String> {
 }
 
 /// Shows an error, except for a lost device: the next frame finds it lost too ([`App::trouble_of`]).
-fn tell(interface: &mut Interface, error: &Error) {
+pub(super) fn tell(interface: &mut Interface, error: &Error) {
     if !error.is_device_lost() {
         interface.complain(&error.to_string());
     }
 }
 
-fn window_size(stage: &Stage) -> Size {
+pub(super) fn window_size(stage: &Stage) -> Size {
     let size = stage.size();
     Size {
         width: size.width,

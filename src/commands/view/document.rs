@@ -1,13 +1,16 @@
 //! The open scene: its options, daylight and camera, and the progress of its image.
 
+mod following;
+
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use crate::commands::job::Job;
 use crate::daylight::hdr::PAPER_WHITE;
 use crate::daylight::sun_position::azimuth_elevation;
 use crate::error::Result;
-use crate::frame::{Frame, FrameSettings};
-use crate::gpu::{Image, Recorder};
+use crate::frame::{Frame, FrameSettings, Replacement};
+use crate::gpu::{Context, Image, Recorder, Timing};
 use crate::options::{AntiAliasing, OptionValues, Options, Size, SunInput, Visibility, name};
 use crate::passes::light::lighting::Precision;
 use crate::passes::light::probe::Reading;
@@ -15,10 +18,12 @@ use crate::passes::picture::tone_map::{Scale, ToneSettings};
 use crate::scene::{Camera, Loaded};
 
 use super::adaptation::Adaptation;
+use super::background::Wake;
 use super::controls::{Controls, FlyKeys};
 use super::interface::{Notes, shift};
 use super::keys::Action;
 use super::light_ahead::LightAhead;
+use super::passes_ahead::PassesAhead;
 use super::stage::Screen;
 use super::viewpoints::{Viewpoint, Viewpoints};
 
@@ -37,9 +42,12 @@ pub(super) struct Document {
     /// Viewpoints: named and saved cameras.
     pub(super) viewpoints: Viewpoints,
     frame: Frame,
-    /// Options that the frame was last updated to; the daylight too, unless its air is being solved.
+    /// Options that the frame was last updated to.
     followed: Options,
     light: LightAhead,
+    passes: PassesAhead,
+    /// Passes whose place others took; frames in flight may still use them.
+    replaced: Vec<Replacement>,
     /// Camera of the newest frame; `None` restarts the average.
     drawn: Option<Camera>,
     /// Number of frames in the average.
@@ -57,28 +65,36 @@ pub(super) struct Aside {
     job: Job,
     controls: Controls,
     viewpoints: Viewpoints,
-    followed: Options,
     light: LightAhead,
     frames: u64,
 }
 
+/// The device of a window, and how its event loop is woken.
+pub(super) type Device<'a> = (&'a Arc<Context>, &'a Wake);
+
 impl Aside {
-    /// Uploads the scene. `recorder` must be recording, with no frame in flight.
+    /// Uploads the scene and makes the passes, by this thread; frames of a window may go on meanwhile.
     ///
     /// # Errors
-    /// Not enough device memory for the scene.
-    pub(super) fn on(self, recorder: &mut Recorder, screen: Screen) -> Result<Document> {
-        let frame = Frame::new(
-            recorder,
-            &self.job.scene,
-            frame_settings(&self.job, screen.is_hdr),
-        )?;
+    /// Not enough device memory for the scene, or a lost device.
+    pub(super) fn on(self, (context, wake): Device<'_>, screen: Screen) -> Result<Document> {
+        let mut recorder = Recorder::new(context, Timing::Off)?;
+        recorder.begin()?;
+        let settings = frame_settings(&self.job, screen.is_hdr);
+        let frame = Frame::new(&mut recorder, &self.job.scene, settings);
+        match frame {
+            Ok(_) => recorder.finish()?,
+            Err(_) => recorder.abandon()?,
+        }
         Ok(Document {
-            frame,
+            frame: frame?,
+            passes: PassesAhead::new(wake, recorder),
+            replaced: Vec::new(),
+            // Passes of options that were not followed yet are among those just made.
+            followed: self.job.settings.clone(),
             job: self.job,
             controls: self.controls,
             viewpoints: self.viewpoints,
-            followed: self.followed,
             light: self.light,
             frames: self.frames,
             drawn: None,
@@ -91,12 +107,12 @@ impl Aside {
 }
 
 impl Document {
-    /// Opens a loaded scene. `recorder` must be recording, with no frame in flight.
+    /// Opens a loaded scene, by this thread; frames of the window may go on meanwhile.
     ///
     /// # Errors
-    /// Invalid options, or not enough device memory for the scene.
+    /// Invalid options, not enough device memory for the scene, or a lost device.
     pub(super) fn open(
-        recorder: &mut Recorder,
+        device: Device<'_>,
         path: Option<PathBuf>,
         loaded: Loaded,
         user: &OptionValues,
@@ -108,12 +124,11 @@ impl Document {
         let aside = Aside {
             controls: Controls::new(&job.camera, &job.scene.bounds),
             viewpoints,
-            followed: job.settings.clone(),
-            light: LightAhead::new(&job.settings),
+            light: LightAhead::new(&job.settings, device.1),
             frames: 0,
             job,
         };
-        aside.on(recorder, screen)
+        aside.on(device, screen)
     }
 
     /// Gives up the device, and keeps scene, options and view.
@@ -122,7 +137,6 @@ impl Document {
             job: self.job,
             controls: self.controls,
             viewpoints: self.viewpoints,
-            followed: self.followed,
             light: self.light,
             frames: self.frames,
         }
@@ -189,71 +203,19 @@ impl Document {
         self.job.camera = self.controls.camera();
     }
 
-    /// Whether the options have changed since the last update of daylight and frame, or the daylight follows later.
-    pub(super) fn is_behind(&self) -> bool {
-        self.job.settings != self.followed
-            || self.screen.is_hdr != self.is_hdr
-            || self.light.is_solving()
-    }
-
-    /// Updates daylight and frame to the options. `recorder` must be recording, with no frame in flight. While another thread solves
-    /// a new air, the daylight stays as it is.
-    ///
-    /// # Errors
-    /// Options that cannot be applied; the previous ones are restored.
-    pub(super) fn follow(&mut self, recorder: &mut Recorder) -> Result<()> {
-        let followed = self.try_follow(recorder);
-        if followed.is_err() {
-            self.job.settings = self.followed.clone();
-            // Succeeds: it did before, with the same options.
-            self.light.go_back(&mut self.job)?;
-        }
-        self.followed = self.job.settings.clone();
-        self.is_hdr = self.screen.is_hdr;
-        self.start_over();
-        followed
-    }
-
-    fn try_follow(&mut self, recorder: &mut Recorder) -> Result<()> {
-        if self.job.settings.show != self.followed.show {
-            self.adaptation.cut();
-        }
-        self.light.follow(&mut self.job)?;
-        let wanted = frame_settings(&self.job, self.screen.is_hdr);
-        if wanted != *self.frame.settings() {
-            self.frame.apply(recorder, wanted)?;
-        }
-        Ok(())
-    }
-
-    /// Rebuilds the frame after its shaders changed. `recorder` must be recording.
-    ///
-    /// # Errors
-    /// Fails when the device cannot create the resources; the previous frame is kept.
-    #[cfg(feature = "hot-reload")]
-    pub(super) fn rebuild(&mut self, recorder: &mut Recorder) -> Result<()> {
-        self.frame = Frame::new(
-            recorder,
-            &self.job.scene,
-            frame_settings(&self.job, self.is_hdr),
-        )?;
-        self.start_over();
-        Ok(())
-    }
-
     /// Restarts the average.
     pub(super) fn start_over(&mut self) {
         self.drawn = None;
     }
 
-    /// Whether all samples are drawn and the exposure has adapted.
+    /// Whether all samples of the frame's options are drawn and the exposure has adapted.
     pub(super) fn is_at_rest(&self) -> bool {
         self.is_averaged() && self.adaptation.is_done()
     }
 
     /// Whether the average is complete.
     fn is_averaged(&self) -> bool {
-        !self.is_behind() && !self.has_moved() && self.averaged >= self.job.settings.samples
+        !self.has_moved() && self.averaged >= self.followed.samples
     }
 
     fn has_moved(&self) -> bool {
@@ -262,12 +224,15 @@ impl Document {
 
     /// Number of frames in the average, and its target.
     pub(super) fn progress(&self) -> (u32, u32) {
-        (self.averaged, self.job.settings.samples)
+        (self.averaged, self.followed.samples)
     }
 
     /// Records the next frame: a preview while the camera moves or the irradiance is being refined, then the samples of the
     /// average, then only the exposure until it has adapted, then nothing.
     pub(super) fn record(&mut self, recorder: &mut Recorder) {
+        for passes in self.replaced.drain(..) {
+            recorder.keep(passes);
+        }
         if self.is_at_rest() {
             return;
         }
@@ -279,7 +244,7 @@ impl Document {
         if !matches!(self.frame.settings().tone.scale, Scale::Average { .. }) {
             self.adaptation.cut();
         }
-        let is_last = !is_preview && self.averaged + 1 >= self.job.settings.samples;
+        let is_last = !is_preview && self.averaged + 1 >= self.followed.samples;
         self.frame.set_adaptation(self.adaptation.share(is_last));
         if self.is_averaged() {
             self.frame.expose(recorder);
@@ -364,12 +329,10 @@ fn at_rest(user: &OptionValues, size: Size) -> OptionValues {
     options
 }
 
-/// Frame settings for the screen. The number of irradiance samples does not depend on the light, so the sun can be dragged
-/// without recreating the cube.
+/// Frame settings for the screen.
 fn frame_settings(job: &Job, is_hdr: bool) -> FrameSettings {
-    let mut settings = job.frame_settings(job.settings.show, Precision::Half);
+    let mut settings = job.moving_settings(job.settings.show, Precision::Half);
     settings.tone.peak = is_hdr.then_some(job.settings.hdr_peak / PAPER_WHITE);
-    settings.irradiance.samples = job.settings.irradiance_samples;
     settings.sampling.dome.illuminance = true;
     // Single frames while something moves; at rest the image fades over to the converging one.
     if settings.sampling.visibility == Visibility::Dome {

@@ -48,7 +48,14 @@ impl App {
         }
         match event {
             WindowEvent::CloseRequested => event_loop.exit(),
-            WindowEvent::RedrawRequested => self.redraw(event_loop)?,
+            WindowEvent::RedrawRequested => {
+                // The input that came during a wait is handled before the frame is drawn that it belongs to.
+                if stage.wait_for_turn()? {
+                    stage.window.request_redraw();
+                } else {
+                    self.redraw(event_loop)?;
+                }
+            }
             WindowEvent::Resized(size) => {
                 stage.resize(size);
                 stage.window.request_redraw();
@@ -152,8 +159,8 @@ impl ApplicationHandler<Message> for App {
             Ok(stage) => {
                 self.stage = Some(stage);
                 self.interface.loading(Some((0.0, "opening")));
-                if let Some((path, result)) = self.waiting.take() {
-                    self.opened(path, result);
+                if let Some((ticket, path, result)) = self.waiting.take() {
+                    self.opened(ticket, path, result);
                 }
                 self.request_redraw();
             }
@@ -175,7 +182,11 @@ impl ApplicationHandler<Message> for App {
                 ticket,
                 path,
                 result,
-            } if self.loader.is_newest(ticket) => self.opened(path, result),
+            } if self.loader.is_newest(ticket) => self.opened(ticket, path, result),
+            Message::Done => {
+                self.look_for_opened();
+                self.request_redraw();
+            }
             // A load that has been superseded.
             _ => {}
         }
@@ -205,6 +216,7 @@ impl ApplicationHandler<Message> for App {
         if let Some(stage) = &mut self.stage {
             let _ = stage.idle();
         }
+        self.drop_openings();
         self.keep_settings();
         self.document = None;
     }

@@ -1,7 +1,5 @@
 //! The daylight follows the options; another thread solves the tables of a new air meanwhile, and the window goes on.
 
-use std::thread::{self, JoinHandle};
-
 use crate::commands::job::Job;
 use crate::commands::light::{air, sun_position};
 use crate::daylight::atmosphere::Atmosphere;
@@ -10,19 +8,23 @@ use crate::daylight::sky::SkyModel;
 use crate::error::Result;
 use crate::options::Options;
 
+use super::background::{Background, Wake};
+
 /// The options of the present daylight and of the one being prepared.
 pub(super) struct LightAhead {
     lit: Options,
     /// Options whose air a thread is solving. A slider that moves on meanwhile is followed from there.
-    solving: Option<(Options, JoinHandle<()>)>,
+    solving: Option<(Options, Background<()>)>,
+    wake: Wake,
 }
 
 impl LightAhead {
     /// `lit` are the options of the present daylight.
-    pub(super) fn new(lit: &Options) -> Self {
+    pub(super) fn new(lit: &Options, wake: &Wake) -> Self {
         Self {
             lit: lit.clone(),
             solving: None,
+            wake: wake.clone(),
         }
     }
 
@@ -31,29 +33,32 @@ impl LightAhead {
         self.solving.is_some()
     }
 
-    /// Updates the daylight to the job's options, or prepares that.
+    /// Updates the daylight to the job's options, or prepares that. Returns whether it is another one now.
     ///
     /// # Errors
     /// See [`Job::relight`].
-    pub(super) fn follow(&mut self, job: &mut Job) -> Result<()> {
-        if let Some((options, thread)) = self.solving.take() {
-            if !thread.is_finished() {
-                self.solving = Some((options, thread));
-                return Ok(());
+    pub(super) fn follow(&mut self, job: &mut Job) -> Result<bool> {
+        let mut is_other = false;
+        if let Some((options, mut work)) = self.solving.take() {
+            if work.result().is_none() {
+                self.solving = Some((options, work));
+                return Ok(false);
             }
             self.relight(job, options)?;
+            is_other = true;
         }
         if job.settings.light() == self.lit.light() {
-            return Ok(());
+            return Ok(is_other);
         }
         match unsolved_air(&job.settings) {
-            None => self.relight(job, job.settings.clone()),
+            None => self.relight(job, job.settings.clone()).map(|()| true),
             Some(air) => {
                 // A moment that the ephemeris does not cover is refused now, not after the wait.
                 sun_position(&job.settings)?;
-                let thread = thread::spawn(move || drop(Atmosphere::of(&air)));
-                self.solving = Some((job.settings.clone(), thread));
-                Ok(())
+                let solve = move || drop(Atmosphere::of(&air));
+                let work = Background::start(&self.wake, solve);
+                self.solving = Some((job.settings.clone(), work));
+                Ok(is_other)
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Background loading: a thread reads the scene and reports its progress to the event loop.
 
 use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use winit::event_loop::EventLoopProxy;
@@ -8,6 +9,8 @@ use winit::event_loop::EventLoopProxy;
 use crate::commands::job::load_options;
 use crate::options::Options;
 use crate::scene::{self, Loaded, SceneError};
+
+use super::background::Wake;
 
 /// Message from a loading thread to the event loop.
 #[derive(Debug)]
@@ -30,6 +33,8 @@ pub(super) enum Message {
         /// The loaded scene, or an error.
         result: Box<Result<Loaded, SceneError>>,
     },
+    /// Work in the background has ended ([`Background`](super::background::Background)).
+    Done,
 }
 
 /// Starts loading threads. A new load supersedes earlier ones.
@@ -41,6 +46,16 @@ pub(super) struct Loader {
 impl Loader {
     pub(super) fn new(proxy: EventLoopProxy<Message>) -> Self {
         Self { proxy, newest: 0 }
+    }
+
+    /// Wakes the event loop.
+    pub(super) fn wake(&self) -> Wake {
+        let proxy = Mutex::new(self.proxy.clone());
+        Arc::new(move || {
+            let proxy = proxy.lock().unwrap_or_else(PoisonError::into_inner);
+            // Fails only when the event loop has ended.
+            let _ = proxy.send_event(Message::Done);
+        })
     }
 
     /// Loads a scene in the background; the bundled one without `path`.

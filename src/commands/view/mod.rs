@@ -5,10 +5,12 @@
 //!   exposure over time.
 //! - `keys`, `input` and `touch`: keyboard, mouse and touch screen. `interface`: the user interface, panel by panel.
 //! - `trouble`: what is done about errors, a lost device among them.
-//! - `loader`: background loading. `capture`: screenshots. `resume`: settings of the last session.
+//! - `background`: work of other threads. `loader` and `opening`: scenes are read, and prepared for the device. `light_ahead` and `passes_ahead`: daylight and passes of changed options,
+//!   made while the window goes on. `capture`: screenshots. `pace`: measures frames. `resume`: settings of the last session.
 
 mod adaptation;
 mod app;
+mod background;
 mod capture;
 pub mod controls;
 mod document;
@@ -18,6 +20,9 @@ mod interface;
 mod keys;
 mod light_ahead;
 mod loader;
+mod opening;
+mod pace;
+mod passes_ahead;
 mod resume;
 mod stage;
 mod style;

@@ -283,6 +283,14 @@ impl Stage {
         result
     }
 
+    /// Waits until the next frame may be recorded. Returns whether there was anything to wait for.
+    ///
+    /// # Errors
+    /// Fails when the device is lost.
+    pub(super) fn wait_for_turn(&mut self) -> Result<bool> {
+        Ok(self.presenter.wait_for_turn()?)
+    }
+
     /// The recorder, not recording and with nothing in flight.
     ///
     /// # Errors

@@ -101,6 +101,9 @@ impl App {
     fn recover(&mut self) -> Result<()> {
         // Whatever comes of it, the settings are kept.
         self.keep_settings();
+        if let Some(scene) = self.drop_openings() {
+            self.trouble.unopened = Some(scene);
+        }
         let aside = self.document.take().map(Document::lay_aside);
         let Some(left) = self.stage.take().map(Stage::leave) else {
             return Ok(());
@@ -108,8 +111,8 @@ impl App {
         let mut stage = Stage::again(left, &self.options)?;
         stage.set_timed(self.interface.is_timed());
         if let Some(aside) = aside {
-            let screen = stage.screen();
-            self.document = Some(stage.work(|rec| aside.on(rec, screen))?);
+            let (screen, wake) = (stage.screen(), self.loader.wake());
+            self.document = Some(aside.on((&stage.context, &wake), screen)?);
         }
         if let Some(scene) = self.trouble.unopened.take() {
             self.interface.loading(Some((0.0, "opening")));

@@ -96,7 +96,8 @@ pub struct Context {
     pub(in crate::gpu) startup: Startup,
     device: DeviceGuard,
     pub(in crate::gpu) extensions: Extensions,
-    pub(in crate::gpu) queue: vk::Queue,
+    /// Used by one thread at a time: see [`Context::queue`].
+    queue: Mutex<vk::Queue>,
     pub(in crate::gpu) queue_family: u32,
     pub(in crate::gpu) physical: vk::PhysicalDevice,
     pub(in crate::gpu) limits: vk::PhysicalDeviceLimits,
@@ -186,7 +187,7 @@ impl Context {
             startup,
             device,
             extensions,
-            queue,
+            queue: Mutex::new(queue),
             queue_family: chosen.queue_family,
             physical: chosen.handle,
             limits: properties.limits,
@@ -310,6 +311,11 @@ impl Context {
 
     pub(in crate::gpu) fn raw(&self) -> &ash::Device {
         &self.device.raw
+    }
+
+    /// The queue, for this thread alone as long as the guard lives. Whoever waits for the whole device needs it too.
+    pub(in crate::gpu) fn queue(&self) -> MutexGuard<'_, vk::Queue> {
+        self.queue.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     pub(in crate::gpu) fn allocator(&self) -> MutexGuard<'_, Allocator> {

@@ -53,7 +53,8 @@ impl Context {
     /// Waits until the device is idle, before resources are freed. A device that is lost or hangs does nothing any more.
     pub(in crate::gpu) fn settle(&self) {
         if let Some(raw) = self.freeing() {
-            // SAFETY: the queue is used by one thread at a time (recorders are not shared).
+            let _queue = self.queue();
+            // SAFETY: no other thread uses the queue meanwhile.
             let _ = unsafe { raw.device_wait_idle() };
         }
     }
@@ -67,7 +68,8 @@ impl Context {
             return Err(self.hung(self.longest_wait()));
         }
         let planned = self.faults.at(Call::Wait);
-        // SAFETY: the queue is used by one thread at a time (recorders are not shared).
+        let _queue = self.queue();
+        // SAFETY: no other thread uses the queue meanwhile.
         let waited = unsafe { self.raw().device_wait_idle() };
         planned.and(waited).during("wait for the device")
     }

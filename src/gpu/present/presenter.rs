@@ -12,7 +12,7 @@ use crate::gpu::record::recorder::Recorder;
 use crate::gpu::record::timings::{Timing, Timings};
 
 /// Frames in flight.
-pub(in crate::gpu) const FRAMES: usize = 2;
+pub const FRAMES: usize = 2;
 
 /// Resources of one frame in flight.
 struct Slot {
@@ -77,6 +77,17 @@ impl Presenter {
     /// Sets the window size, pixels; 0 when minimised.
     pub fn resize(&mut self, size: [u32; 2]) {
         self.swapchain.resize(size);
+    }
+
+    /// Waits until the next frame may be recorded: until the one before the newest is drawn. Returns whether there was anything to wait
+    /// for.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn wait_for_turn(&mut self) -> Result<bool> {
+        let recorder = &mut self.slots[self.current].recorder;
+        let is_pending = recorder.is_pending();
+        recorder.wait().map(|()| is_pending)
     }
 
     /// Records a frame that renders to a swapchain image, and presents it. Returns false without recording if the window has

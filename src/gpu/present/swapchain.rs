@@ -164,9 +164,11 @@ impl Swapchain {
             .swapchains(&chains)
             .image_indices(&indices)
             .wait_semaphores(&waits);
-        let queue = self.context().queue;
-        // SAFETY: the image was acquired, and the submission that signals transitions it for presentation.
-        let shown = unsafe { self.loader.queue_present(queue, &info) };
+        let queue = self.context().queue();
+        // SAFETY: the image was acquired, and the submission that signals transitions it for presentation; no other thread uses the queue
+        // meanwhile.
+        let shown = unsafe { self.loader.queue_present(*queue, &info) };
+        drop(queue);
         // A failed present still waits on its semaphore, so an injected fault takes effect after the call.
         match self.context().faults.at(Call::Present).and(shown) {
             Ok(is_suboptimal) => self.is_stale |= is_suboptimal,

@@ -93,8 +93,9 @@ impl Overlay {
         }
         for (id, deltas) in textures.set.drain() {
             for delta in &deltas {
+                let queue = self.context.queue();
                 self.renderer
-                    .set_texture(self.context.queue, self.command_pool, id, delta)
+                    .set_texture(*queue, self.command_pool, id, delta)
                     .map_err(fault)?;
             }
         }

@@ -1,5 +1,6 @@
 //! The recorder: records commands, submits them and waits for completion.
 
+use std::any::Any;
 use std::sync::Arc;
 
 use ash::vk;
@@ -29,7 +30,8 @@ pub struct Recorder {
     acquired: Option<vk::Semaphore>,
     uniforms: Buffer,
     uniform_end: u64,
-    kept: Vec<Buffer>,
+    /// What the work uses, of any kind.
+    kept: Vec<Box<dyn Any + Send>>,
     timing: Timing,
     queries: Queries,
     timings: Timings,
@@ -149,12 +151,14 @@ impl Recorder {
             .command_buffer_infos(&commands)
             .wait_semaphore_infos(wait.as_slice())
             .signal_semaphore_infos(signal.as_slice())];
-        // SAFETY: the command buffer is recording; the fence is unsignalled and used by this submission alone.
+        // SAFETY: the command buffer is recording; the fence is unsignalled and used by this submission alone; no other thread uses the
+        // queue meanwhile.
         unsafe {
             raw.end_command_buffer(self.command)
                 .during("end a command buffer")?;
             self.context.faults.at(Call::Submit).during("submit work")?;
-            raw.queue_submit2(self.context.queue, &submit, self.fence)
+            let queue = self.context.queue();
+            raw.queue_submit2(*queue, &submit, self.fence)
                 .during("submit work")?;
         }
         self.is_pending = true;
@@ -185,6 +189,12 @@ impl Recorder {
             Timing::Timestamps => self.queries.collect(&mut self.timings),
             _ => Ok(()),
         }
+    }
+
+    /// Whether submitted work has not been waited for.
+    #[cfg(feature = "window")]
+    pub(in crate::gpu) fn is_pending(&self) -> bool {
+        self.is_pending
     }
 
     /// Waits for the fence; returns whether work was pending.
@@ -236,9 +246,9 @@ impl Recorder {
         Pass::new(self, name, pipeline)
     }
 
-    /// Keeps a buffer alive until the work is done.
-    pub(in crate::gpu) fn keep(&mut self, buffer: Buffer) {
-        self.kept.push(buffer);
+    /// Keeps what this work or earlier work uses alive until it is done: buffers of copies, passes that others take the place of.
+    pub fn keep(&mut self, used: impl Any + Send) {
+        self.kept.push(Box::new(used));
     }
 
     /// Copies a block into the uniform buffer and returns its range.
@@ -347,11 +357,14 @@ impl Recorder {
 
 impl Drop for Recorder {
     fn drop(&mut self) {
-        self.context.settle();
+        // Other work may go on, of frames of a window for instance.
+        if self.is_pending {
+            self.context.settle();
+        }
         let Some(raw) = self.context.freeing() else {
             return;
         };
-        // SAFETY: the device is idle or lost; null handles are ignored.
+        // SAFETY: the work of this recorder is done or the device lost; null handles are ignored.
         unsafe {
             raw.destroy_fence(self.fence, None);
             raw.destroy_command_pool(self.command_pool, None);

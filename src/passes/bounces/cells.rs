@@ -21,7 +21,7 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 use crate::passes::bounces::change::{change, ratio};
-use crate::passes::bounces::tree::Tree;
+use crate::passes::bounces::tree::{Tree, TreeFacts};
 use crate::passes::view::{View, ViewBlock};
 use crate::passes::{compute, kilo};
 use crate::scene::Bounds;
@@ -213,7 +213,12 @@ impl Cells {
     ///
     /// # Errors
     /// Fails when the device cannot create the resources.
-    pub fn new(context: &Arc<Context>, tree: &Tree, bounds: &Bounds, seed: u32) -> Result<Self> {
+    pub fn new(
+        context: &Arc<Context>,
+        tree: &TreeFacts,
+        bounds: &Bounds,
+        seed: u32,
+    ) -> Result<Self> {
         let traces = tree.constants();
         let pipeline = |name, shader, constants: &[_]| compute(context, name, shader, constants);
         let buffer = |name, words: u32| {

@@ -8,7 +8,7 @@ use crate::daylight::sky::Daylight;
 use crate::gpu::{Context, Format, Image, ImageDesc, Pipeline, Recorder, Result, Sampler, shaders};
 use crate::gpu_struct;
 use crate::passes::bounces::cells::{Bounces, Cells};
-use crate::passes::bounces::tree::Tree;
+use crate::passes::bounces::tree::{Tree, TreeFacts};
 use crate::passes::compute;
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::view::View;
@@ -68,7 +68,7 @@ impl Gather {
     /// Fails when the device cannot create the resources.
     pub fn new(
         context: &Arc<Context>,
-        tree: &Tree,
+        tree: &TreeFacts,
         size: [u32; 2],
         bounces: Bounces,
     ) -> Result<Self> {

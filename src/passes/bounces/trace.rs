@@ -43,7 +43,7 @@ impl Trace {
     /// Fails when the device cannot create the resources.
     pub fn new(recorder: &mut Recorder, tree: &Tree, rays: &[Ray], query: Query) -> Result<Self> {
         let context = recorder.context().clone();
-        let mut constants = tree.constants().to_vec();
+        let mut constants = tree.facts().constants().to_vec();
         constants.push(("ANY", (query == Query::Any).into()));
         let pipeline = compute(&context, "trace", &shaders::TRACE_COMP, &constants)?;
         let words: Vec<[f32; 3]> = rays

@@ -19,21 +19,55 @@ const COLUMNS: usize = 1024;
 /// Constants of pipelines that trace rays.
 pub type RayConstants = [(&'static str, u32); 5];
 
-/// The hierarchy in images.
-pub struct Tree {
-    nodes: Image,
-    triangles: Image,
+/// What pipelines that trace rays are created from. Unlike the hierarchy it may go to another thread.
+#[derive(Debug, Clone, Copy)]
+pub struct TreeFacts {
     node_columns: u32,
     triangle_columns: u32,
     most_steps: u32,
     /// Of the device, pixels: see `corner_error` in `include/bvh.glsl`.
     corner_step: f32,
-    numbers: Vec<u32>,
-    emitters: Image,
     emitter_columns: u32,
     emitter_count: u32,
     /// Sum of area times luminance of the emitters, kcd.
     emitted: f32,
+}
+
+impl TreeFacts {
+    /// Constants of pipelines that trace rays.
+    pub fn constants(&self) -> RayConstants {
+        [
+            glass_index(),
+            ("NODE_COLUMNS", self.node_columns),
+            ("TRIANGLE_COLUMNS", self.triangle_columns),
+            ("MOST_STEPS", self.most_steps),
+            ("CORNER_STEP", self.corner_step.to_bits()),
+        ]
+    }
+
+    /// Constants of pipelines that trace rays and sample the emitters.
+    pub fn constants_with_emitters(&self) -> [(&'static str, u32); 8] {
+        let [index, nodes, triangles, steps, corners] = self.constants();
+        [
+            index,
+            nodes,
+            triangles,
+            steps,
+            corners,
+            ("EMITTERS", self.emitter_count),
+            ("EMITTER_COLUMNS", self.emitter_columns),
+            ("EMITTED", self.emitted.to_bits()),
+        ]
+    }
+}
+
+/// The hierarchy in images.
+pub struct Tree {
+    nodes: Image,
+    triangles: Image,
+    numbers: Vec<u32>,
+    emitters: Image,
+    facts: TreeFacts,
 }
 
 impl Tree {
@@ -76,47 +110,28 @@ impl Tree {
         Ok(Self {
             nodes,
             triangles,
-            node_columns,
-            triangle_columns,
-            most_steps: (wide.nodes.len() + bvh.triangles().len()) as u32,
-            corner_step: recorder.context().summary().corner_step(),
             numbers,
             emitters: table,
-            emitter_columns,
-            emitter_count: emitters.list().len() as u32,
-            emitted: kilo(DVec3::splat(emitters.total())).x,
+            facts: TreeFacts {
+                node_columns,
+                triangle_columns,
+                most_steps: (wide.nodes.len() + bvh.triangles().len()) as u32,
+                corner_step: recorder.context().summary().corner_step(),
+                emitter_columns,
+                emitter_count: emitters.list().len() as u32,
+                emitted: kilo(DVec3::splat(emitters.total())).x,
+            },
         })
     }
 
-    /// Constants of pipelines that trace rays.
-    pub fn constants(&self) -> RayConstants {
-        [
-            glass_index(),
-            ("NODE_COLUMNS", self.node_columns),
-            ("TRIANGLE_COLUMNS", self.triangle_columns),
-            ("MOST_STEPS", self.most_steps),
-            ("CORNER_STEP", self.corner_step.to_bits()),
-        ]
-    }
-
-    /// Constants of pipelines that trace rays and sample the emitters.
-    pub fn constants_with_emitters(&self) -> [(&'static str, u32); 8] {
-        let [index, nodes, triangles, steps, corners] = self.constants();
-        [
-            index,
-            nodes,
-            triangles,
-            steps,
-            corners,
-            ("EMITTERS", self.emitter_count),
-            ("EMITTER_COLUMNS", self.emitter_columns),
-            ("EMITTED", self.emitted.to_bits()),
-        ]
+    /// What pipelines that trace rays are created from.
+    pub fn facts(&self) -> &TreeFacts {
+        &self.facts
     }
 
     /// Whether any triangle emits light.
     pub fn is_emissive(&self) -> bool {
-        self.emitter_count > 0
+        self.facts.emitter_count > 0
     }
 
     /// For each triangle of the image, its number in the scene.

@@ -22,7 +22,7 @@ use crate::gpu_struct;
 
 use crate::passes::bounces::cells::Bounces;
 use crate::passes::bounces::gather::HalfSize;
-use crate::passes::bounces::tree::Tree;
+use crate::passes::bounces::tree::{Tree, TreeFacts};
 use crate::passes::dome::maps::DomeMaps;
 use crate::passes::dome::rays::SkyRays;
 use crate::passes::dome::route::DomeBy;
@@ -32,6 +32,7 @@ use crate::passes::light::panes::BeforePicture;
 use crate::passes::sky::air::AirBefore;
 use crate::passes::sun_shadow::fit::ShadowView;
 use crate::passes::sun_shadow::perspective::{Receivers, fit};
+use crate::passes::surfaces::facts::Facts;
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
@@ -183,7 +184,7 @@ impl Dome {
     /// Fails when the device cannot create the resources.
     pub fn new(
         context: &Arc<Context>,
-        (geometry, tree): (&Geometry, &Tree),
+        (facts, tree): (&Facts, &TreeFacts),
         size: [u32; 2],
         settings: DomeSettings,
         lighting: LightingSettings,
@@ -195,14 +196,14 @@ impl Dome {
             let desc = ImageDesc::flat(name, FORMAT, size);
             Image::new(context, &desc.target_by(context.route()))
         };
-        let maps = DomeMaps::new(context, geometry, settings)?;
+        let maps = DomeMaps::new(context, facts, settings)?;
         let (directions, has_maps) = (settings.directions, maps.is_some());
         let rays = (settings.by == DomeBy::Rays)
             .then(|| SkyRays::new(context, tree, size, directions, has_maps))
             .transpose()?;
         Ok(Self {
             settings,
-            gather: gather_pipeline(context, geometry, settings, lighting, bounces)?,
+            gather: gather_pipeline(context, facts, settings, lighting, bounces)?,
             resolve: screen(
                 context,
                 "dome: resolve",
@@ -419,7 +420,7 @@ fn maps_or_any<'a>(maps: &'a Option<DomeMaps>, gathered: &Gathered<'a>) -> &'a I
 
 fn gather_pipeline(
     context: &Arc<Context>,
-    geometry: &Geometry,
+    facts: &Facts,
     settings: DomeSettings,
     lighting: LightingSettings,
     bounces: Bounces,
@@ -448,8 +449,8 @@ fn gather_pipeline(
         ("DIRECTIONS", settings.directions),
         ("RAYS", (settings.by == DomeBy::Rays).into()),
         ("AIR", air.into()),
-        ("ALBEDO_IMAGE", geometry.has_albedo().into()),
-        ("PANES", geometry.has_panes().into()),
+        ("ALBEDO_IMAGE", facts.has_albedo().into()),
+        ("PANES", facts.has_panes.into()),
         ("BOUNCES", bounces.is_any().into()),
         (
             "SHOW_BOUNCES",

@@ -8,6 +8,7 @@ use crate::passes::dome::gather::DomeSettings;
 use crate::passes::dome::route::DomeBy;
 use crate::passes::sun_shadow::fit::ShadowView;
 use crate::passes::sun_shadow::map::{Casters, Tile};
+use crate::passes::surfaces::facts::Facts;
 use crate::passes::surfaces::geometry::Geometry;
 
 /// The maps and what draws into them.
@@ -26,10 +27,10 @@ impl DomeMaps {
     /// Fails when the device cannot create the resources.
     pub fn new(
         context: &Arc<Context>,
-        geometry: &Geometry,
+        facts: &Facts,
         settings: DomeSettings,
     ) -> Result<Option<Self>> {
-        let mut casters = Casters::new(context, geometry)?.with_panes(context, geometry)?;
+        let mut casters = Casters::new(context, facts)?.with_panes(context, facts)?;
         if settings.by == DomeBy::Rays {
             casters = casters.without_solids();
         }

@@ -7,7 +7,7 @@ use glam::Vec3;
 use crate::gpu::{Context, Format, Image, ImageDesc, Pipeline, Recorder, Result, Sampler, shaders};
 use crate::gpu_struct;
 
-use crate::passes::bounces::tree::Tree;
+use crate::passes::bounces::tree::{Tree, TreeFacts};
 use crate::passes::compute;
 use crate::passes::dome::gather::DomeBlock;
 use crate::passes::surfaces::gbuffer::Surfaces;
@@ -35,7 +35,7 @@ impl SkyRays {
     /// Fails when the device cannot create the resources.
     pub fn new(
         context: &Arc<Context>,
-        tree: &Tree,
+        tree: &TreeFacts,
         size: [u32; 2],
         directions: u32,
         has_maps: bool,

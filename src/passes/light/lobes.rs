@@ -13,7 +13,7 @@ use crate::gpu::{
 use crate::gpu_struct;
 
 use crate::passes::bounces::cells::{Bounces, Cells};
-use crate::passes::bounces::tree::Tree;
+use crate::passes::bounces::tree::{Tree, TreeFacts};
 use crate::passes::light::lighting::{Ambient, Light, LightingSettings};
 use crate::passes::surfaces::gbuffer::Surfaces;
 use crate::passes::surfaces::geometry::Geometry;
@@ -69,7 +69,7 @@ impl Lobes {
     /// Fails when the device cannot create the resources.
     pub fn new(
         context: &Arc<Context>,
-        tree: &Tree,
+        tree: &TreeFacts,
         size: [u32; 2],
         need: &LobesNeed,
     ) -> Result<Self> {

@@ -11,7 +11,7 @@ use crate::gpu::{
 };
 use crate::gpu_struct;
 
-use crate::passes::bounces::tree::Tree;
+use crate::passes::bounces::tree::{Tree, TreeFacts};
 use crate::passes::surfaces::culling::Cull;
 use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::view::View;
@@ -76,7 +76,12 @@ impl Panes {
     ///
     /// # Errors
     /// Fails when the device cannot create the resources.
-    pub fn new(context: &Arc<Context>, tree: &Tree, size: [u32; 2], scale: f32) -> Result<Self> {
+    pub fn new(
+        context: &Arc<Context>,
+        tree: &TreeFacts,
+        size: [u32; 2],
+        scale: f32,
+    ) -> Result<Self> {
         let image = |name| Image::new(context, &ImageDesc::flat(name, FORMAT, size));
         let pipeline = |name, fragment: &'static Shader, blend, constants: &[(&str, u32)]| {
             Pipeline::new(

@@ -12,6 +12,7 @@ use crate::gpu_struct;
 
 use crate::passes::glass_index;
 use crate::passes::sun_shadow::map::{Tile, around};
+use crate::passes::surfaces::facts::Facts;
 use crate::passes::surfaces::geometry::Geometry;
 
 gpu_struct! {
@@ -76,12 +77,8 @@ impl SunGlass {
     ///
     /// # Errors
     /// Fails when the device cannot create the resources.
-    pub fn new(
-        context: &Arc<Context>,
-        geometry: &Geometry,
-        size: [u32; 2],
-    ) -> Result<Option<Self>> {
-        if !geometry.has_panes() {
+    pub fn new(context: &Arc<Context>, facts: &Facts, size: [u32; 2]) -> Result<Option<Self>> {
+        if !facts.has_panes {
             return Ok(None);
         }
         let pipeline = Pipeline::new(

@@ -16,6 +16,7 @@ use crate::passes::sun_shadow::glass::{self, SunGlass};
 use crate::passes::sun_shadow::perspective::{self, Receivers};
 use crate::passes::sun_shadow::receiver_mask::{ReceiverMask, reuse_distance};
 use crate::passes::surfaces::culling::Cull;
+use crate::passes::surfaces::facts::Facts;
 use crate::passes::surfaces::geometry::Geometry;
 use crate::passes::view::View;
 
@@ -77,8 +78,8 @@ impl Tile {
 
 impl Casters {
     /// Creates the pipelines. Panes of glass are not drawn.
-    pub fn new(context: &Arc<Context>, geometry: &Geometry) -> Result<Self> {
-        let has_holes = geometry.has_cut_outs();
+    pub fn new(context: &Arc<Context>, facts: &Facts) -> Result<Self> {
+        let has_holes = facts.has_cut_outs();
         Ok(Self {
             solid: pipeline(context, "shadow map", false)?,
             cut_outs: has_holes
@@ -103,8 +104,8 @@ impl Casters {
     }
 
     /// Also draws panes of glass by chance, for the mean of many maps.
-    pub fn with_panes(mut self, context: &Arc<Context>, geometry: &Geometry) -> Result<Self> {
-        if geometry.has_panes() {
+    pub fn with_panes(mut self, context: &Arc<Context>, facts: &Facts) -> Result<Self> {
+        if facts.has_panes {
             self.panes = Some(glass::by_chance(context)?);
         }
         Ok(self)
@@ -227,13 +228,13 @@ impl Shadow {
     /// Fails when the device is out of memory.
     pub fn cascades(
         context: &Arc<Context>,
-        geometry: &Geometry,
+        facts: &Facts,
         resolution: u32,
         shadows: Shadows,
     ) -> Result<Self> {
         let size = [resolution * shadows.cascades.max(1), resolution];
         let fit = Fit::Cascades(shadows);
-        Self::new(context, geometry, size, fit)
+        Self::new(context, facts, size, fit)
     }
 
     /// One map for averaged frames, `resolution` texels on a side; `by_rays`: of cut-outs and panes of glass alone, since rays find
@@ -243,27 +244,27 @@ impl Shadow {
     /// Fails when the device is out of memory.
     pub fn perspective(
         context: &Arc<Context>,
-        geometry: &Geometry,
+        facts: &Facts,
         resolution: u32,
         by_rays: bool,
     ) -> Result<Self> {
-        let is_used = !by_rays || geometry.has_cut_outs() || geometry.has_panes();
+        let is_used = !by_rays || facts.has_cut_outs() || facts.has_panes;
         let size = [if is_used { resolution } else { UNUSED }; 2];
-        let mut shadow = Self::new(context, geometry, size, Fit::Perspective)?;
+        let mut shadow = Self::new(context, facts, size, Fit::Perspective)?;
         if by_rays {
             shadow.casters = shadow.casters.without_solids();
         }
         Ok(shadow)
     }
 
-    fn new(context: &Arc<Context>, geometry: &Geometry, size: [u32; 2], fit: Fit) -> Result<Self> {
+    fn new(context: &Arc<Context>, facts: &Facts, size: [u32; 2], fit: Fit) -> Result<Self> {
         let desc = ImageDesc::flat("shadow map", Format::D32_SFLOAT, size);
-        let all = fit_all(Vec3::Y, geometry.casters(), size[1]);
+        let all = fit_all(Vec3::Y, &facts.casters, size[1]);
         Ok(Self {
             fit,
-            casters: Casters::new(context, geometry)?,
+            casters: Casters::new(context, facts)?,
             depth: Image::new(context, &desc)?,
-            glass: SunGlass::new(context, geometry, size)?,
+            glass: SunGlass::new(context, facts, size)?,
             views: SunViews::one(all),
             masks: std::array::from_fn(|_| Arc::default()),
             is_drawn: false,

@@ -12,6 +12,7 @@ use crate::gpu::{
 use crate::gpu_struct;
 
 use crate::passes::surfaces::culling::Cull;
+use crate::passes::surfaces::facts::Facts;
 use crate::passes::surfaces::geometry::{Bound, EmissionSource, Geometry, Kind};
 use crate::passes::view::View;
 
@@ -234,14 +235,14 @@ impl Targets {
 }
 
 impl Gbuffer {
-    /// Creates images of `size` pixels and the pipelines that `geometry` needs. `faces`: store the slopes of the face at each pixel. `keeps`: keep
+    /// Creates images of `size` pixels and the pipelines that the scene needs. `faces`: store the slopes of the face at each pixel. `keeps`: keep
     /// the depth of the frame before.
     ///
     /// # Errors
     /// Fails when the device cannot create the resources.
     pub fn new(
         context: &Arc<Context>,
-        geometry: &Geometry,
+        facts: &Facts,
         size: [u32; 2],
         (faces, keeps): (bool, bool),
     ) -> Result<Self> {
@@ -251,18 +252,17 @@ impl Gbuffer {
         } else {
             Format::R32G32_UINT
         }];
-        if geometry.has_albedo() {
+        if facts.has_albedo() {
             formats.push(Format::R16G16B16A16_SFLOAT);
         }
-        if geometry.emission_source() == EmissionSource::Image {
+        if facts.emission_source == EmissionSource::Image {
             formats.push(Format::R16G16B16A16_SFLOAT);
         }
         let targets = Targets { formats, faces };
         let pipelines = |is_detailed: bool| {
-            let kinds = geometry
-                .kinds()
-                .filter(move |k| k.is_detailed() == is_detailed);
-            kinds.map(|kind| Ok((kind, targets.pipeline(context, kind, false)?)))
+            let kinds = facts.kinds.iter();
+            let kinds = kinds.filter(move |k| k.is_detailed() == is_detailed);
+            kinds.map(|kind| Ok((*kind, targets.pipeline(context, *kind, false)?)))
         };
         Ok(Self {
             untextured: targets.pipeline(context, Kind::default(), true)?,

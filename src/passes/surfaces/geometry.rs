@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::Vec3;
 
@@ -12,6 +13,7 @@ use crate::gpu::{
 use crate::scene::{self, Bounds, Cluster, Layout, Scene, Texture, Wrap};
 
 use crate::passes::surfaces::culling::{Cull, Runs};
+use crate::passes::surfaces::facts::Facts;
 use crate::passes::surfaces::upload::{surface, upload, upload_details, upload_materials, white};
 use crate::passes::view::View;
 
@@ -143,11 +145,8 @@ pub struct Geometry {
     surfaces: Vec<Surface>,
     textures: Vec<(Image, Sampler)>,
     white: Image,
-    is_specular: bool,
-    is_rough: bool,
     materials: Image,
-    bounds: Bounds,
-    casters: Bounds,
+    facts: Arc<Facts>,
 }
 
 impl Geometry {
@@ -170,6 +169,13 @@ impl Geometry {
         let (panes, parts): (Vec<Part>, Vec<Part>) =
             parts.into_iter().partition(|part| part.glass.is_some());
         let clusters = layout.into_owned().clusters;
+        let casting = joined_ranges(parts.iter().filter(|p| p.casts && !p.kind.cut_out));
+        let cast = casting.iter().flat_map(|r| &clusters[r.clone()]);
+        let facts = Facts {
+            has_panes: !panes.is_empty(),
+            casting_triangles: cast.map(|cluster| cluster.count as usize / 3).sum(),
+            ..facts(scene, &parts, &surfaces)
+        };
         let details = if parts.iter().any(|p| p.kind.is_detailed()) {
             Some(upload_details(recorder, scene)?)
         } else {
@@ -195,29 +201,31 @@ impl Geometry {
             )?,
             clusters,
             details,
-            casting: joined_ranges(parts.iter().filter(|p| p.casts && !p.kind.cut_out)),
+            casting,
             opaque: joined_ranges(parts.iter().filter(|p| !p.kind.cut_out)),
             parts,
             panes,
-            is_specular: surfaces.iter().any(|s| s.is_specular),
-            is_rough: surfaces.iter().any(|s| s.metallic.is_some()),
             surfaces,
             textures: textures?,
             white: upload(recorder, &white())?,
             materials: upload_materials(recorder, &scene.materials)?,
-            bounds: scene.bounds,
-            casters: scene.casters(),
+            facts: Arc::new(facts),
         })
+    }
+
+    /// What passes are created from.
+    pub fn facts(&self) -> &Arc<Facts> {
+        &self.facts
     }
 
     /// Bounding box of the scene.
     pub fn bounds(&self) -> &Bounds {
-        &self.bounds
+        &self.facts.bounds
     }
 
     /// Bounding box of all shadow casters.
     pub fn casters(&self) -> &Bounds {
-        &self.casters
+        &self.facts.casters
     }
 
     /// Clusters that may be visible in the whole picture that this view is part of.
@@ -251,24 +259,6 @@ impl Geometry {
             .map_or(Vec3::ZERO, |s| s.emission)
     }
 
-    /// Whether ρ_d, the factor on ρ_s or metalness and roughness vary within any material, or L_e does, which is stored beside them.
-    pub fn has_albedo(&self) -> bool {
-        let varies = |k: Kind| k.diffuse_map || k.specular_map || k.emissive_map || k.colours;
-        self.kinds().any(varies)
-    }
-
-    /// Where L_e of a pixel is.
-    pub fn emission_source(&self) -> EmissionSource {
-        let emits = |part: &Part| self.emission(part.material) != Vec3::ZERO;
-        if self.kinds().any(|kind| kind.emissive_map) {
-            EmissionSource::Image
-        } else if self.parts.iter().any(emits) {
-            EmissionSource::Materials
-        } else {
-            EmissionSource::None
-        }
-    }
-
     /// Draws all opaque casters that `cull` keeps, positions only; for light from below (`is_below`) also the ground, which shadows nothing
     /// from above.
     pub fn draw_positions(&self, draws: &mut Draws<'_, '_>, cull: &Cull, is_below: bool) {
@@ -287,34 +277,6 @@ impl Geometry {
                 run.draw(draws);
             }
         }
-    }
-
-    /// The kinds of the parts, in draw order.
-    pub fn kinds(&self) -> impl Iterator<Item = Kind> {
-        let mut kinds: Vec<Kind> = self.parts.iter().map(|p| p.kind).collect();
-        kinds.dedup();
-        kinds.into_iter()
-    }
-
-    /// Whether any surface has holes by its alpha.
-    pub fn has_cut_outs(&self) -> bool {
-        self.kinds().any(|kind| kind.cut_out)
-    }
-
-    /// Triangles of all opaque casters without holes.
-    pub fn casting_triangles(&self) -> usize {
-        let clusters = self.casting.iter().flat_map(|r| &self.clusters[r.clone()]);
-        clusters.map(|cluster| cluster.count as usize / 3).sum()
-    }
-
-    /// Whether any material has a ρ_s.
-    pub fn is_specular(&self) -> bool {
-        self.is_specular || self.is_rough
-    }
-
-    /// Whether any material reflects by GGX.
-    pub fn is_rough(&self) -> bool {
-        self.is_rough
     }
 
     /// Draws surfaces without maps whose normals match their winding. `bind` is called for each new material.
@@ -371,11 +333,6 @@ impl Geometry {
         draws.geometry(&[&self.positions, &self.texcoords], &self.indices);
         let cut_out = |p: &Part, _: &Cluster| p.casts && p.kind.cut_out;
         self.draw_parts(draws, cut_out, cull, bind);
-    }
-
-    /// Whether there are panes of glass.
-    pub fn has_panes(&self) -> bool {
-        !self.panes.is_empty()
     }
 
     /// Draws positions and normals of panes of glass. `bind` gets what one passage straight through the glass leaves, linear RGB.
@@ -440,6 +397,39 @@ impl Geometry {
                 sampler: Sampler::Surface(Outside::Repeat, Outside::Repeat),
             },
         }
+    }
+}
+
+/// What passes depend on of surfaces that are no panes of glass.
+fn facts(scene: &Scene, parts: &[Part], surfaces: &[Surface]) -> Facts {
+    let is_rough = surfaces.iter().any(|s| s.metallic.is_some());
+    Facts {
+        bounds: scene.bounds,
+        casters: scene.casters(),
+        kinds: kinds(parts),
+        emission_source: emission_source(parts, surfaces),
+        has_panes: false,
+        is_specular: is_rough || surfaces.iter().any(|s| s.is_specular),
+        is_rough,
+        casting_triangles: 0,
+    }
+}
+
+/// The kinds of parts, in draw order.
+fn kinds(parts: &[Part]) -> Vec<Kind> {
+    let mut kinds: Vec<Kind> = parts.iter().map(|p| p.kind).collect();
+    kinds.dedup();
+    kinds
+}
+
+fn emission_source(parts: &[Part], surfaces: &[Surface]) -> EmissionSource {
+    let emits = |part: &Part| surfaces[part.material as usize].emission != Vec3::ZERO;
+    if parts.iter().any(|part| part.kind.emissive_map) {
+        EmissionSource::Image
+    } else if parts.iter().any(emits) {
+        EmissionSource::Materials
+    } else {
+        EmissionSource::None
     }
 }
 

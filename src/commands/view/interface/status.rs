@@ -21,7 +21,9 @@ pub(super) fn header(ui: &mut Ui, document: &Document, requests: &mut Vec<UiRequ
         }
     });
     let (done, wanted) = document.progress();
-    ui.weak(if document.is_at_rest() {
+    ui.weak(if document.is_behind() {
+        "preparing the change".to_owned()
+    } else if document.is_at_rest() {
         format!("{wanted} frames averaged, done")
     } else {
         format!("{done} of {wanted} frames averaged")

@@ -258,6 +258,21 @@ pub struct DaylightArgs {
         requires = "weather"
     )]
     pub ill: Option<PathBuf>,
+    /// Also draw a metric over the plane of the sensors: false colours, contours, the model's lines, legend, north arrow, scale bar.
+    #[arg(long, value_name = "FILE.svg|.png", value_parser = named(&["svg", "png"]))]
+    pub plan: Option<PathBuf>,
+    /// What --plan shows: a metric, or a column of --csv; by default the first of --metrics.
+    #[arg(long, value_name = "METRIC", requires = "plan")]
+    pub plan_of: Option<String>,
+    /// Also draw the illuminance of every hour, hour by day over the year: the mean of all sensors.
+    #[arg(long, value_name = "FILE.svg|.png", value_parser = named(&["svg", "png"]), conflicts_with = "hour", requires = "weather")]
+    pub heat: Option<PathBuf>,
+    /// The sensor that --heat shows instead of the mean: its number in the order of the grid, from 1.
+    #[arg(long, value_name = "N", requires = "heat", value_parser = value_parser!(u32).range(1..))]
+    pub heat_of: Option<u32>,
+    /// Also write a page with assumptions, pictures, results, and the verdict of each standard; en17037 is then one of the default metrics.
+    #[arg(long, value_name = "FILE.html", value_parser = named(&["html"]), conflicts_with = "hour", requires = "weather")]
+    pub report: Option<PathBuf>,
     /// Standard error at which to stop. Of a moment: of each sensor's total, relative to it. Of a year: of each metric, root mean square
     /// over the sensors; 0.01 is one point of a percentage, or 1 % of an illuminance or a daylight factor.
     #[arg(long, value_name = "R", value_parser = crate::options::ratio, default_value_t = 0.01)]
@@ -277,9 +292,22 @@ impl DaylightArgs {
     pub fn asked_metrics(&self) -> Vec<Metric> {
         if self.metrics.is_empty() {
             use Metric::{Ase, Cda, Da, Sda, Udi};
-            return vec![Da, Cda, Udi, Sda, Ase];
+            let mut metrics = vec![Da, Cda, Udi, Sda, Ase];
+            metrics.extend(self.report.as_ref().map(|_| Metric::En17037));
+            return metrics;
         }
         self.metrics.clone()
+    }
+
+    /// Whether the illuminances of every hour are kept.
+    pub fn keeps_hours(&self) -> bool {
+        self.ill.is_some() || self.heat.is_some() || self.report.is_some()
+    }
+
+    /// The files that are written besides the result.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        let files = [&self.ill, &self.plan, &self.heat, &self.report];
+        files.into_iter().flatten()
     }
 
     /// The hour of the weather file, if one is asked for.

@@ -1,5 +1,6 @@
 //! Output files, written atomically.
 
+mod drawing;
 mod exr;
 mod exr_rows;
 mod hdr;
@@ -11,6 +12,8 @@ mod rows;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+pub(crate) use self::drawing::escaped;
+pub use self::drawing::{Anchor, Drawing, Fill, Ink, Part, Shape, Size, Stroke, Text};
 pub use self::exr::{Channels, Layer, encode_exr, write_exr};
 pub use self::exr_rows::{LayerKind, write_exr_rows};
 pub use self::hdr::encode_hdr;

@@ -1,10 +1,14 @@
 //! `skylight daylight`: light at the sensors of a grid, at a moment or over a year. Needs no device.
 
+mod drawings;
 mod ill;
 mod moment;
+mod report;
+mod results;
 mod summary;
 mod table;
 mod unreflected;
+mod verdict;
 mod year;
 
 use super::weather;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::builder::{ArgPredicate, PathBufValueParser, TypedValueParser};
 use clap::{Args, value_parser};
 
-use crate::daylight::metrics::Schedule;
+use crate::daylight::metrics::{Blinds, Schedule};
 use crate::daylight::sun_hours::SunDate;
 use crate::daylight::weather::YearHour;
 use crate::options::{Direction, choice, choice_enum};
@@ -202,14 +202,21 @@ pub struct DaylightArgs {
     pub scene: PathBuf,
     /// Sensors: lines of x y z, or x y z and a normal (up without one), separated by blanks or commas. A .pts file is Radiance's, with
     /// +Z up; any other has the model's axes. Metres.
-    #[arg(long, value_name = "FILE", required_unless_present = "plane")]
+    #[arg(long, value_name = "FILE", required_unless_present_any = ["plane", "facade"])]
     pub grid: Option<PathBuf>,
     /// Makes the sensors instead: this height above the floor of every room, metres. A room has walls, a ceiling and a level floor. The
     /// grid is fitted between its walls.
     #[arg(long, value_name = "M", conflicts_with = "grid", value_parser = crate::options::plane_height)]
     pub plane: Option<f64>,
+    /// Makes sensors on façades instead: before the outer faces of upright surfaces, facing out. With names those of these materials,
+    /// separated by commas; without, the surfaces that see the sky. Bodies must face outward.
+    #[arg(long, value_name = "NAMES", num_args = 0..=1, require_equals = true, default_missing_value = "", value_delimiter = ',', conflicts_with_all = ["grid", "plane"])]
+    pub facade: Option<Vec<String>>,
+    /// Distance of the sensors of --facade from their surface, metres.
+    #[arg(long, value_name = "M", requires = "facade", default_value_t = 0.05, value_parser = crate::options::offset)]
+    pub offset: f64,
     /// Largest distance from one made sensor to the next, metres.
-    #[arg(long, value_name = "M", requires = "plane", default_value_t = 0.5, value_parser = crate::options::spacing)]
+    #[arg(long, value_name = "M", conflicts_with = "grid", default_value_t = 0.5, value_parser = crate::options::spacing)]
     pub spacing: f64,
     /// Least distance of made sensors from walls and furniture, metres.
     #[arg(long, value_name = "M", requires = "plane", default_value_t = 0.0, value_parser = crate::options::inset)]
@@ -241,6 +248,9 @@ pub struct DaylightArgs {
     /// Occupied hours of every day, by the clock of the weather file.
     #[arg(long, value_name = "FROM-TO", default_value_t, requires = "weather")]
     pub schedule: Schedule,
+    /// Whether blinds close against the sun.
+    #[arg(long, value_name = "RULE", value_parser = choice::<Blinds>(), default_value_t, requires = "weather", conflicts_with = "hour")]
+    pub blinds: Blinds,
     /// Thresholds of daylight autonomy, lux.
     #[arg(long, value_name = "LUX", value_delimiter = ',', value_parser = crate::options::threshold, allow_hyphen_values = true, default_value = "300", requires = "weather")]
     pub thresholds: Vec<f64>,
@@ -333,7 +343,7 @@ choice_enum! {
         Da = "da": "Daylight autonomy: occupied hours with at least the threshold, percent",
         Cda = "cda": "Continuous daylight autonomy: hours below the threshold count in part",
         Udi = "udi": "Useful daylight illuminance: below 100, to below 300, to 3000 and above 3000 lux, percent of the occupied hours",
-        Sda = "sda": "Spatial daylight autonomy: sensors with 300 lux in half of the occupied hours, percent (IES LM-83, without blinds)",
+        Sda = "sda": "Spatial daylight autonomy: sensors with 300 lux in half of the occupied hours, percent (IES LM-83; without --blinds lm83 higher than it has it)",
         Ase = "ase": "Annual sunlight exposure: sensors with more than 1000 lux of direct sun in more than 250 occupied hours, percent",
         En17037 = "en17037": "EN 17037, daylight provision by both methods",
         Illuminance = "illuminance": "Mean illuminance of all hours, lux",

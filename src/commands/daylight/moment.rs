@@ -101,7 +101,7 @@ fn imprecise(rows: &[(Sensor, Reading)], args: &DaylightArgs) -> Option<String> 
 }
 
 /// Columns of JSON and CSV: metres, unit vector, lux.
-fn columns(sensor: &Sensor, reading: &Reading, origin: DVec3) -> [(&'static str, f64); 11] {
+fn columns(sensor: &Sensor, reading: &Reading, origin: DVec3) -> [(&'static str, f64); 13] {
     let [x, y, z, nx, ny, nz] = place(sensor, origin);
     [
         x,
@@ -115,6 +115,8 @@ fn columns(sensor: &Sensor, reading: &Reading, origin: DVec3) -> [(&'static str,
         ("reflected_lux", reading.reflected),
         ("total_lux", reading.total()),
         ("standard_error_lux", reading.standard_error),
+        ("sky_reflected_lux", reading.sky_reflected),
+        ("sun_reflected_lux", reading.sun_reflected),
     ]
 }
 

@@ -4,13 +4,14 @@ use serde_json::{Value, json};
 
 use super::drawings::{Heat, Plan, hours, limit};
 use super::summary::Summary;
-use super::table::{Column, objects, place};
+use super::table::{Column, csv, objects, overview, place};
+use super::{blinds, ill, report};
 use crate::cli::{DaylightArgs, Metric};
 use crate::daylight::metrics::Measures;
 use crate::daylight::weather::Weather;
 use crate::daylight::weather::clock::ClockCheck;
 use crate::error::{Error, Result};
-use crate::options::{Options, OptionsError};
+use crate::options::{Options, OptionsError, name};
 use crate::output::Drawing;
 use crate::scene::Scene;
 use crate::sensors::{Sensor, Year, YearLight};
@@ -41,7 +42,8 @@ impl Results<'_> {
             "sda": self.summary.sda_json(),
             "ase": self.summary.ase,
             "en17037": self.summary.en17037_json(),
-            "blinds": "none",
+            "blinds": name(self.args.blinds),
+            "blinds_closed_hours": self.measures.closed_hours(),
             "schedule": self.args.schedule.to_string(),
             "occupied_hours": self.measures.occupied_hours(),
             "bounces": self.settings.bounces.to_string(),
@@ -56,11 +58,46 @@ impl Results<'_> {
         self.year.sensors.first().map_or(0, |sensor| sensor.paths)
     }
 
-    /// Writes the plan and the heat map that are asked for.
+    /// What is printed: a table, or JSON or CSV.
+    pub fn text(&self) -> String {
+        if self.args.json {
+            return format!("{:#}\n", self.json());
+        }
+        if self.args.csv {
+            return csv(self.sensors, self.columns, self.scene.origin);
+        }
+        self.head() + &overview(self.columns) + &self.summary.text()
+    }
+
+    fn head(&self) -> String {
+        let place = self.weather.map(|weather| {
+            let hours = self.measures.occupied_hours();
+            let name = &weather.station.name;
+            format!(
+                "{name}\n{hours} h, {} every day; {}; ",
+                self.args.schedule,
+                blinds(self.args)
+            )
+        });
+        format!(
+            "{}{} sensors; bounces: {}\n\n",
+            place.unwrap_or_default(),
+            self.sensors.len(),
+            self.settings.bounces,
+        )
+    }
+
+    /// Writes the matrix, the plan, the heat map and the report that are asked for.
     ///
     /// # Errors
     /// A file cannot be written, or the plan has no such metric.
-    pub fn write_pictures(&self) -> Result<()> {
+    pub fn write_files(&self) -> Result<()> {
+        if let (Some(path), Some(weather)) = (&self.args.ill, self.weather) {
+            ill::write(path, weather, self.light, self.year)?;
+        }
+        if let Some(path) = &self.args.report {
+            report::write(path, self)?;
+        }
         if let Some(path) = &self.args.plan {
             self.plan(self.plan_column()?).write(path)?;
         }
@@ -75,10 +112,11 @@ impl Results<'_> {
         let mut notes = Vec::new();
         if let Some(weather) = self.weather {
             notes.push(format!(
-                "{}; occupied {} every day, {} h; no blinds; bounces: {}",
+                "{}; occupied {} every day, {} h; {}; bounces: {}",
                 weather.station.name,
                 self.args.schedule,
                 self.measures.occupied_hours(),
+                blinds(self.args),
                 self.settings.bounces
             ));
         }

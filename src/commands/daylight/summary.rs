@@ -8,7 +8,7 @@ use super::table::rounded;
 use super::verdict::Verdict;
 use crate::cli::{DaylightArgs, Metric};
 use crate::daylight::metrics::{
-    EN_17037_LUX, EXPOSED_HOURS, Measures, Passing, SPATIAL_PERCENT, passing,
+    Blinds, EN_17037_LUX, EXPOSED_HOURS, Measures, Passing, SPATIAL_PERCENT, passing,
 };
 use crate::sensors::{Year, YearLight};
 
@@ -16,6 +16,8 @@ use crate::sensors::{Year, YearLight};
 pub(super) struct Summary {
     /// Share of the sensors.
     pub sda: Option<Passing>,
+    /// Whether it is with blinds, as LM-83 wants.
+    has_blinds: bool,
     /// Percent of the sensors.
     pub ase: Option<f64>,
     /// Both methods.
@@ -82,6 +84,7 @@ impl Summary {
         let sda = || share(measures, year, "da300", SPATIAL_PERCENT);
         Self {
             sda: asks(Metric::Sda).then(sda),
+            has_blinds: args.blinds == Blinds::Lm83,
             ase: asks(Metric::Ase).then(|| rounded(exposed())),
             en17037: asks(Metric::En17037).then(|| Provision::of(measures, light, year)),
         }
@@ -105,8 +108,14 @@ impl Summary {
         if let Some(sda) = self.sda {
             let _ = writeln!(
                 text,
-                "sDA300/50    {:.1} % of the sensors, standard error {:.1}; without blinds, which LM-83 wants",
-                sda.percent, sda.standard_error
+                "sDA300/50    {:.1} % of the sensors, standard error {:.1}; {}",
+                sda.percent,
+                sda.standard_error,
+                if self.has_blinds {
+                    "blinds by LM-83"
+                } else {
+                    "without blinds, which LM-83 wants"
+                }
             );
         }
         if let Some(ase) = self.ase {

@@ -5,18 +5,20 @@ use super::super::weather::{check_given, read_weather, warnings};
 use super::super::{interrupt, progress, tell, tell_no_device};
 use super::results::Results;
 use super::summary::Summary;
-use super::table::{Column, csv, overview};
-use super::unreflected::{sky_component, sun_hours};
-use super::{bounces, ill, report, sensors};
+use super::table::Column;
+use super::unreflected::unreflected;
+use super::{bounces, sensors};
 use crate::cli::{DaylightArgs, Metric};
-use crate::daylight::metrics::{Measures, SPATIAL_LUX};
+use crate::daylight::metrics::{Blinds, Measures, SPATIAL_LUX};
 use crate::daylight::weather::Weather;
 use crate::daylight::weather::clock::ClockCheck;
 use crate::error::{Error, Result};
 use crate::options::{OptionValues, Options, OptionsError};
 use crate::output::{check_writable, print};
 use crate::scene;
-use crate::sensors::{Accuracy, Sensor, TracedScene, Year, YearLight, YearRun, measure_year};
+use crate::sensors::{
+    Accuracy, Sensor, TracedScene, Year, YearLight, YearRun, closed_hours, measure_year,
+};
 
 /// Most records of a weather file: with more, the skies of the year no longer fit into memory.
 const MOST_RECORDS: usize = 60_000;
@@ -46,25 +48,19 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
         Some(weather) => YearLight::new(weather, settings.ground_albedo),
         None => YearLight::overcast(settings.ground_albedo),
     };
-    let measures = measures(args, weather, &light)?;
+    let mut measures = measures(args, weather, &light)?;
     check_pictures(args, &measures, all.len())?;
     let traced = TracedScene::new(&scene);
+    if args.blinds == Blinds::Lm83 {
+        measures.close_blinds(closed_hours(&all, &traced, &light));
+    }
     let year = measured(args, &settings, &traced, &light, &measures, &all);
     let sensors = &all[..year.sensors.len()];
     let odd = oddities(args, &year, &all);
     tell(&settings, odd.iter())?;
     told.extend(odd);
-    if let (Some(path), Some(weather)) = (&args.ill, weather) {
-        ill::write(path, weather, &light, &year)?;
-    }
     let mut columns = columns(args, &measures, &year);
-    let asks = |metric| args.asked_metrics().contains(&metric);
-    if asks(Metric::Vsc) {
-        columns.push(sky_component(sensors, &traced, settings.seed));
-    }
-    if asks(Metric::Sunhours) {
-        columns.extend(sun_hours(args, weather, &settings, sensors, &traced)?);
-    }
+    columns.extend(unreflected(args, weather, &settings, sensors, &traced)?);
     let results = Results {
         summary: Summary::of(args, &measures, &light, &year),
         args,
@@ -79,18 +75,8 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
         columns: &columns,
         told: &told,
     };
-    results.write_pictures()?;
-    if let Some(path) = &args.report {
-        report::write(path, &results)?;
-    }
-    print(&if args.json {
-        format!("{:#}\n", results.json())
-    } else if args.csv {
-        csv(sensors, &columns, scene.origin)
-    } else {
-        let head = head(args, &settings, weather, &measures, sensors);
-        head + &overview(&columns) + &results.summary.text()
-    })
+    results.write_files()?;
+    print(&results.text())
 }
 
 /// The weather file, if one is given.
@@ -271,27 +257,4 @@ fn columns(args: &DaylightArgs, measures: &Measures, year: &Year) -> Vec<Column>
         });
     }
     columns
-}
-
-fn head(
-    args: &DaylightArgs,
-    settings: &Options,
-    weather: Option<&Weather>,
-    measures: &Measures,
-    sensors: &[Sensor],
-) -> String {
-    let place = weather.map(|weather| {
-        let hours = measures.occupied_hours();
-        let name = &weather.station.name;
-        format!(
-            "{name}\n{hours} h, {} every day; no blinds; ",
-            args.schedule
-        )
-    });
-    format!(
-        "{}{} sensors; bounces: {}\n\n",
-        place.unwrap_or_default(),
-        sensors.len(),
-        settings.bounces,
-    )
 }

@@ -48,6 +48,11 @@ impl Panel {
         self.point(self.least)[1]
     }
 
+    /// Its right edge, pixels.
+    pub fn right(&self) -> f64 {
+        self.point(self.most)[0]
+    }
+
     /// The part of a line within the panel, on paper (Liang & Barsky 1984); `None` for points.
     pub fn clipped(&self, [from, to]: [DVec2; 2]) -> Option<Vec<[f64; 2]>> {
         let along = to - from;

@@ -82,6 +82,7 @@ impl Plan<'_> {
         }
         let title = heading(&self.column.name);
         let mut drawing = Drawing::new([2.0 * MARGIN + PANEL + ASIDE, 0.0], title.clone());
+        let mut right = 0.0_f64;
         let mut y = MARGIN + 14.0;
         drawing.text([MARGIN, y], Anchor::Start, Size::Large, title);
         for note in notes {
@@ -99,8 +100,9 @@ impl Plan<'_> {
             self.draw_sheet(&mut drawing, &panel, sheet, &scale);
             draw_model(&mut drawing, &panel, sheet, walls, &edges);
             y = panel.bottom() + MARGIN + 10.0;
+            right = right.max(panel.right());
         }
-        let x = MARGIN + PANEL + 30.0;
+        let x = right + 30.0;
         scale.draw(&mut drawing, [x, top + 10.0], LEGEND);
         let below = top + LEGEND + 40.0;
         if let Some((sheet, _)) = shown.first() {

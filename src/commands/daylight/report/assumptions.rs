@@ -7,6 +7,7 @@ use glam::{DVec3, Vec3};
 use super::super::results::Results;
 use super::rows;
 use crate::daylight::colour::luminance;
+use crate::daylight::metrics::{BLINDS_LUX, BLINDS_SHARE, Blinds, CLOSED_BLINDS};
 use crate::scene::{Reflectances, Scene};
 
 /// Letters of a digest that are told.
@@ -37,7 +38,7 @@ pub fn assumptions(results: &Results) -> String {
         .map(f64::to_string)
         .collect();
     lines.push(("thresholds", format!("{} lux", thresholds.join(", "))));
-    lines.push(("blinds", "none".to_owned()));
+    lines.push(("blinds", of_blinds(results)));
     lines.push(("bounces", results.settings.bounces.to_string()));
     lines.push(("seed", results.settings.seed.to_string()));
     lines.push(("paths of a sensor", results.paths().to_string()));
@@ -105,8 +106,26 @@ fn of_weather(results: &Results, lines: &mut Vec<(&str, String)>) {
     lines.push(("sun", "SPA, in the middle of each hour; direct by rays to its disc, reflected from every eighth day".to_owned()));
 }
 
+fn of_blinds(results: &Results) -> String {
+    match results.args.blinds {
+        Blinds::None => "none".to_owned(),
+        Blinds::Lm83 => format!(
+            "LM-83-12, 2.2.6: all windows are one group, closed in hours in which more than {} % of the sensors have {BLINDS_LUX} lux of direct sun, {} of the occupied hours; closed they leave {} % of all light; for da, cda, udi, sda",
+            100.0 * BLINDS_SHARE,
+            results.measures.closed_hours(),
+            100.0 * CLOSED_BLINDS
+        ),
+    }
+}
+
 fn of_sensors(results: &Results) -> String {
     let (args, count) = (results.args, results.sensors.len());
+    if args.facade.is_some() {
+        return format!(
+            "{count}, made {} m before façades, at most {} m apart",
+            args.offset, args.spacing
+        );
+    }
     match (&args.grid, args.plane) {
         (Some(grid), _) => format!("{count}, {}", file(grid)),
         (None, Some(height)) => format!(

@@ -23,7 +23,7 @@ h1 { font-size: 18pt; margin: 0 0 1mm; } h2 { font-size: 13pt; margin: 8mm 0 2mm
 table { border-collapse: collapse; width: 100%; margin: 2mm 0; } th, td { text-align: left; padding: 0.8mm 2mm; border-bottom: 1px solid #ddd; vertical-align: top; }
 thead th { border-bottom: 1px solid #666; } td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 tr, figure { break-inside: avoid; } figure { margin: 4mm 0; } svg { width: 100%; height: auto; border: 1px solid #ddd; }
-.met { color: #05620f; font-weight: bold; } .not-met { color: #a60b0b; font-weight: bold; } .open { color: #7a5200; font-weight: bold; }
+.met, .not-met { white-space: nowrap; font-weight: bold; } .met { color: #05620f; } .not-met { color: #a60b0b; } .open { color: #7a5200; font-weight: bold; }
 .warning { background: #fff3d6; padding: 2mm 3mm; } .small { font-size: 9pt; color: #444; }
 @media print { body { margin: 0; padding: 0; max-width: none; } }";
 

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::super::results::Results;
 use super::super::summary::{AREAS, LEVELS, Provision};
 use super::super::verdict::Verdict;
-use crate::daylight::metrics::{EN_17037_LUX, Passing};
+use crate::daylight::metrics::{Blinds, EN_17037_LUX, Passing};
 use crate::output::escaped;
 
 /// LEED v4.1, EQ credit Daylight, option 1: percent of the area for 1, 2, 3 points.
@@ -92,7 +92,33 @@ fn of_en17037(provision: &Provision) -> String {
     text
 }
 
-/// Figures of LM-83, and what LEED makes of them. Without blinds sDA is none of the standard.
+/// Spatial daylight autonomy. Without blinds it is none of LM-83.
+fn of_autonomy(sda: Passing, blinds: Blinds) -> String {
+    let clause = "LM-83-12, 2.1, 2.2.6; LEED v4.1 EQ Daylight, option 1";
+    if blinds == Blinds::None {
+        return row(
+            "sDA300/50 of 40, 55, 75 %: 1, 2, 3 points",
+            clause,
+            &shown(sda),
+            "no verdict: LM-83 wants blinds; add --blinds lm83",
+            "open",
+        );
+    }
+    let level = |(points, percent)| {
+        let verdict = Verdict::at_least(sda, percent);
+        let demand = format!("sDA300/50 of {percent} %: LEED points, {points}");
+        row(
+            &demand,
+            clause,
+            &shown(sda),
+            &verdict.to_string(),
+            class(verdict),
+        )
+    };
+    (1..).zip(LEED_PERCENT).map(level).collect()
+}
+
+/// Figures of LM-83, and what LEED makes of them.
 fn of_lm83(results: &Results) -> String {
     let summary = &results.summary;
     if summary.sda.is_none() && summary.ase.is_none() {
@@ -100,15 +126,7 @@ fn of_lm83(results: &Results) -> String {
     }
     let mut text = format!("<h3>IES LM-83-12, LEED v4.1</h3>\n{HEAD}");
     if let Some(sda) = summary.sda {
-        for (points, percent) in LEED_PERCENT.into_iter().enumerate() {
-            text += &row(
-                &format!("sDA300/50 of {percent} %: {} points", points + 1),
-                "LM-83-12, 2.1, 2.2.6; LEED v4.1 EQ Daylight, option 1",
-                &shown(sda),
-                "none: measured without blinds, which LM-83 operates",
-                "open",
-            );
-        }
+        text += &of_autonomy(sda, results.args.blinds);
     }
     if let Some(ase) = summary.ase {
         let verdict = if ase <= LEED_EXPOSED {

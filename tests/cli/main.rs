@@ -10,6 +10,7 @@ mod bake_ktx2;
 mod bench;
 mod compare;
 mod daylight;
+mod daylight_facade;
 mod daylight_pictures;
 mod daylight_year;
 mod devices;

@@ -112,6 +112,30 @@ fn the_year_of_an_office_behind_glass_is_the_path_tracers() {
 }
 
 #[test]
+fn blinds_close_as_often_as_the_path_tracers() {
+    // All sensors: the rule counts them.
+    let Some(case) = Case::new("office", "chicago", 1) else {
+        return;
+    };
+    let words = "--metrics da,sda,ase --blinds lm83 --error 0.03";
+    let report = case.run("office_glass", words);
+    assert_eq!(report["blinds"], "lm83");
+    let hours = report["blinds_closed_hours"].as_f64().expect("hours");
+    println!("{hours} occupied hours with closed blinds");
+    assert!((hours - 1661.0).abs() <= 10.0, "{hours}");
+    let table = "annual/office_glass_chicago_total_metrics.csv";
+    let found = case.differences(&report, "da300", (table, "da300_blinds5"), false);
+    check("da300 with blinds", &found, 1.0, 5.0);
+    let sda = report["sda"]["percent"].as_f64().expect("percent");
+    let sensors = (sda - 32.142_857) / 100.0 * 84.0;
+    println!("{sensors:+.0} sensors of sDA");
+    assert!(sensors.abs() <= 3.01, "{sda}");
+    // Exposure knows no blinds.
+    let found = case.differences(&report, "ase_hours", (table, "ase_hours_gt1000"), false);
+    check("hours of direct sun", &found, 6.0, 15.0);
+}
+
+#[test]
 fn the_year_without_bounces_is_the_path_tracers() {
     let Some(case) = Case::new("openplan", "amsterdam_iwec", 8) else {
         return;

@@ -7,14 +7,14 @@ use std::process::Command;
 use crate::common::{self, Table};
 
 /// Every `n`th sensor of a grid, unpacked weather, and a folder for both.
-struct Case {
+pub struct Case {
     folder: tempfile::TempDir,
     shared: PathBuf,
-    every: usize,
+    pub every: usize,
 }
 
 impl Case {
-    fn new(grid: &str, weather: &str, every: usize) -> Option<Self> {
+    pub fn new(grid: &str, weather: &str, every: usize) -> Option<Self> {
         let shared = common::shared()?.join("daylight");
         let folder = tempfile::tempdir().expect("a scratch folder");
         let points =
@@ -36,7 +36,7 @@ impl Case {
     }
 
     /// The JSON of a run.
-    fn run(&self, model: &str, words: &str) -> serde_json::Value {
+    pub fn run(&self, model: &str, words: &str) -> serde_json::Value {
         let path = |name: &str| -> PathBuf { self.folder.path().join(name) };
         let mut command = Command::new(env!("CARGO_BIN_EXE_skylight"));
         command

@@ -21,19 +21,21 @@ pub struct Panel {
 }
 
 impl Panel {
-    /// Around some cells, within a square of this size.
-    pub fn around(cells: &[[DVec2; 4]], corner: [f64; 2], size: f64) -> Self {
-        let corners = || cells.iter().flatten().copied();
-        let least = corners().reduce(DVec2::min).unwrap_or_default();
-        let most = corners().reduce(DVec2::max).unwrap_or_default();
-        let around = AROUND[0] + AROUND[1] * (most - least).max_element();
-        let (least, most) = (least - around, most + around);
+    /// Around some cells, at so many pixels a metre.
+    pub fn around(cells: &[[DVec2; 4]], corner: [f64; 2], scale: f64) -> Self {
+        let [least, most] = bounds(cells);
         Self {
-            scale: size / (most - least).max_element(),
+            scale,
             least,
             most,
             corner,
         }
+    }
+
+    /// Longer edge of the panel around some cells, metres.
+    pub fn edge(cells: &[[DVec2; 4]]) -> f64 {
+        let [least, most] = bounds(cells);
+        (most - least).max_element()
     }
 
     /// A place on paper.
@@ -99,14 +101,24 @@ impl Panel {
     }
 }
 
+/// Least and largest coordinates of some cells, with space around.
+fn bounds(cells: &[[DVec2; 4]]) -> [DVec2; 2] {
+    let corners = || cells.iter().flatten().copied();
+    let least = corners().reduce(DVec2::min).unwrap_or_default();
+    let most = corners().reduce(DVec2::max).unwrap_or_default();
+    let around = AROUND[0] + AROUND[1] * (most - least).max_element();
+    [least - around, most + around]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn panel() -> Panel {
-        // 10 m with 0.9 m around, 118 pixels: 10 for a metre.
+        // 10 m with 0.9 m around.
         let cell = [[0.0, 0.0], [10.0, 0.0], [10.0, 4.0], [0.0, 4.0]].map(DVec2::from);
-        Panel::around(&[cell], [5.0, 7.0], 118.0)
+        assert!((Panel::edge(&[cell]) - 11.8).abs() < 1e-12);
+        Panel::around(&[cell], [5.0, 7.0], 10.0)
     }
 
     #[test]

@@ -89,6 +89,9 @@ impl Plan<'_> {
             y += LINE;
             drawing.text([MARGIN, y], Anchor::Start, Size::Small, note);
         }
+        // One scale for all, which the bar tells.
+        let edges_of = shown.iter().map(|(sheet, _)| Panel::edge(&sheet.cells));
+        let metre = PANEL / edges_of.fold(1e-3, f64::max);
         let top = y + MARGIN + 10.0;
         y = top;
         for (sheet, walls) in shown {
@@ -96,7 +99,7 @@ impl Plan<'_> {
                 drawing.text([MARGIN, y], Anchor::Start, Size::Small, self.caption(sheet));
                 y += 8.0;
             }
-            let panel = Panel::around(&sheet.cells, [MARGIN, y], PANEL);
+            let panel = Panel::around(&sheet.cells, [MARGIN, y], metre);
             self.draw_sheet(&mut drawing, &panel, sheet, &scale);
             draw_model(&mut drawing, &panel, sheet, walls, &edges);
             y = panel.bottom() + MARGIN + 10.0;
@@ -106,7 +109,7 @@ impl Plan<'_> {
         scale.draw(&mut drawing, [x, top + 10.0], LEGEND);
         let below = top + LEGEND + 40.0;
         if let Some((sheet, _)) = shown.first() {
-            let panel = Panel::around(&sheet.cells, [0.0; 2], PANEL);
+            let panel = Panel::around(&sheet.cells, [0.0; 2], metre);
             panel.draw_bar(&mut drawing, [x, below]);
             if sheet.is_level() {
                 draw_north(&mut drawing, [x + 12.0, below + 40.0]);

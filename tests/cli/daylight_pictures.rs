@@ -258,12 +258,19 @@ fn the_report_has_the_numbers_of_the_json() {
 fn the_report_says_what_blinds_there_are() {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let folder = folder.path();
-    let report = ran(folder, "--weather a.epw --blinds lm83 --report a.html --plan a.svg");
+    let report = ran(
+        folder,
+        "--weather a.epw --blinds lm83 --report a.html --plan a.svg",
+    );
     // In the open every second hour has direct sun: ten of twenty.
     assert_eq!(report["blinds"], "lm83");
     assert_eq!(report["blinds_closed_hours"], 10.0);
     let page = text(folder, "a.html");
-    for part in ["all windows are one group", "10 of the occupied hours", "sDA300/50 of 75 %"] {
+    for part in [
+        "all windows are one group",
+        "10 of the occupied hours",
+        "sDA300/50 of 75 %",
+    ] {
         assert!(page.contains(part), "{part}");
     }
     assert!(!page.contains("LM-83 wants blinds") && !page.contains("no blinds"));

@@ -15,8 +15,12 @@ fn check(model: &str, case: &Case, (number, hour): (u32, &str)) {
     let sensors = report["sensors"].as_array().expect("a list");
     let rows: Vec<_> = table.rows().step_by(case.every).collect();
     assert_eq!(sensors.len(), rows.len());
-    let ours = |sensor: &Value, addend: &str| sensor[format!("{addend}_lux")].as_f64().expect("lux");
-    let full = sensors.iter().map(|s| ours(s, "sun_direct")).fold(0.0, f64::max);
+    let ours =
+        |sensor: &Value, addend: &str| sensor[format!("{addend}_lux")].as_f64().expect("lux");
+    let full = sensors
+        .iter()
+        .map(|s| ours(s, "sun_direct"))
+        .fold(0.0, f64::max);
     let (mut worst, mut ratios, mut edges) = ([0.0_f64; 4], Vec::new(), 0);
     for (sensor, row) in sensors.iter().zip(&rows) {
         let theirs = |addend: &str| row.get(&format!("m{number}_{addend}"));
@@ -39,7 +43,9 @@ fn check(model: &str, case: &Case, (number, hour): (u32, &str)) {
     if let Some(first) = ratios.first() {
         println!("sun direct: {first:.5} of the reference's, {ratios:.5?}");
         assert!((first - 1.0).abs() < 0.006, "{first}");
-        let is_one = ratios.iter().all(|ratio| (ratio / first - 1.0).abs() < 1e-4);
+        let is_one = ratios
+            .iter()
+            .all(|ratio| (ratio / first - 1.0).abs() < 1e-4);
         assert!(is_one, "{ratios:?}");
     }
 }

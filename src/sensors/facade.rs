@@ -229,7 +229,9 @@ mod tests {
 
     #[test]
     fn outer_walls_are_covered_and_inner_ones_are_not() {
-        let sensors = make_facades(&house(), &facades(&[])).expect("sensors");
+        let mut sensors = make_facades(&house(), &facades(&[])).expect("sensors");
+        // The edges of the ground are upright, too.
+        sensors.retain(|sensor| sensor.position.y > 0.0);
         let middle = Vec3::new(3.0, 0.0, 2.0);
         for sensor in &sensors {
             assert!(

@@ -4,12 +4,15 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 /// A house of 8 x 6 x 5 m, faces outward, with a pane before its southern wall.
-const HOUSE: &str = "v 0 0 0\nv 8 0 0\nv 8 5 0\nv 0 5 0\nv 0 0 -6\nv 8 0 -6\nv 8 5 -6\nv 0 5 -6\n\
+const HOUSE: &str = "mtllib house.mtl\nv 0 0 0\nv 8 0 0\nv 8 5 0\nv 0 5 0\nv 0 0 -6\nv 8 0 -6\nv 8 5 -6\nv 0 5 -6\n\
 v 2 1 0.1\nv 6 1 0.1\nv 6 4 0.1\nv 2 4 0.1\n\
 usemtl brick\nf 1 2 3 4\nf 6 5 8 7\nf 5 1 4 8\nf 2 6 7 3\nusemtl roof\nf 4 3 7 8\nusemtl sill\nf 9 10 11 12\n";
 
 fn daylight(folder: &Path, words: &str) -> Output {
     std::fs::write(folder.join("house.obj"), HOUSE).expect("written");
+    let material = |name| format!("newmtl {name}\nKd 0.4 0.4 0.4\n");
+    let materials: String = ["brick", "roof", "sill"].map(material).concat();
+    std::fs::write(folder.join("house.mtl"), materials).expect("written");
     Command::new(env!("CARGO_BIN_EXE_skylight"))
         .current_dir(folder)
         .args(["daylight", "house.obj", "--quiet", "--no-warnings"])

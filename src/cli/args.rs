@@ -213,16 +213,16 @@ pub struct DaylightArgs {
     #[arg(long, value_name = "NAMES", num_args = 0..=1, require_equals = true, default_missing_value = "", value_delimiter = ',', conflicts_with_all = ["grid", "plane"])]
     pub facade: Option<Vec<String>>,
     /// Distance of the sensors of --facade from their surface, metres.
-    #[arg(long, value_name = "M", requires = "facade", default_value_t = 0.05, value_parser = crate::options::offset)]
+    #[arg(long, value_name = "M", conflicts_with_all = ["grid", "plane"], default_value_t = 0.05, value_parser = crate::options::offset)]
     pub offset: f64,
     /// Largest distance from one made sensor to the next, metres.
     #[arg(long, value_name = "M", conflicts_with = "grid", default_value_t = 0.5, value_parser = crate::options::spacing)]
     pub spacing: f64,
     /// Least distance of made sensors from walls and furniture, metres.
-    #[arg(long, value_name = "M", requires = "plane", default_value_t = 0.0, value_parser = crate::options::inset)]
+    #[arg(long, value_name = "M", requires = "plane", conflicts_with = "facade", default_value_t = 0.0, value_parser = crate::options::inset)]
     pub inset: f64,
     /// Materials of floors on which to make sensors, separated by commas, instead of those of rooms that are found.
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plane")]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plane", conflicts_with = "facade")]
     pub rooms: Vec<String>,
     /// Weather file (.epw, .wea): measures its year, every hour with its own sun and Perez' sky; with --hour one moment of it.
     #[arg(long, value_name = "FILE")]

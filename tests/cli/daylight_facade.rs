@@ -83,7 +83,8 @@ fn named_facades_are_those_of_the_material() {
         ("--metrics vsc --facade=stone", "brick", 1),
         ("--metrics vsc --facade=roof", "no upright surface", 1),
         ("--metrics vsc --facade --plane 1", "--plane", 2),
-        ("--metrics vsc --plane 1 --offset 1", "--facade", 2),
+        ("--metrics vsc --plane 1 --offset 1", "--offset", 2),
+        ("--metrics vsc --facade --inset 1", "--inset", 2),
         (
             "--metrics vsc --facade --offset 0",
             "distance from a façade",

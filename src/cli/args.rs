@@ -222,7 +222,13 @@ pub struct DaylightArgs {
     #[arg(long, value_name = "M", requires = "plane", conflicts_with = "facade", default_value_t = 0.0, value_parser = crate::options::inset)]
     pub inset: f64,
     /// Materials of floors on which to make sensors, separated by commas, instead of those of rooms that are found.
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plane", conflicts_with = "facade")]
+    #[arg(
+        long,
+        value_name = "NAMES",
+        value_delimiter = ',',
+        requires = "plane",
+        conflicts_with = "facade"
+    )]
     pub rooms: Vec<String>,
     /// Weather file (.epw, .wea): measures its year, every hour with its own sun and Perez' sky; with --hour one moment of it.
     #[arg(long, value_name = "FILE")]

@@ -76,7 +76,7 @@ pub enum Command {
     Daylight {
         /// Arguments of its own.
         #[command(flatten)]
-        args: DaylightArgs,
+        args: Box<DaylightArgs>,
         /// Options of the daylight.
         #[command(flatten)]
         options: OptionValues,

@@ -26,6 +26,7 @@ use clap::builder::ArgPredicate;
 use clap::{ArgAction, Args, Command, value_parser};
 
 pub use crate::daylight::false_colour::{ColourMap, Quantity, Range};
+pub use crate::daylight::metrics::Blinds;
 pub use crate::daylight::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCurve};
 pub use crate::frame::{AntiAliasing, Filter, Visibility};
 pub use crate::gpu::Optional;
@@ -45,7 +46,8 @@ pub use values::{
     RouteChoice, Size, SolarTime, Switch, When,
 };
 pub(crate) use values::{
-    elevation, exposure_factor, inset, plane_height, ratio, spacing, sun as direction, threshold,
+    elevation, exposure_factor, inset, offset, plane_height, ratio, spacing, sun as direction,
+    threshold,
 };
 
 use crate::daylight::atmosphere::air::Air;

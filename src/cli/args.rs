@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::builder::{ArgPredicate, PathBufValueParser, TypedValueParser};
 use clap::{Args, value_parser};
 
-use crate::daylight::metrics::Schedule;
+use crate::daylight::metrics::{Blinds, Schedule};
 use crate::daylight::sun_hours::SunDate;
 use crate::daylight::weather::YearHour;
 use crate::options::{Direction, choice, choice_enum};
@@ -217,20 +217,33 @@ pub struct DaylightArgs {
     pub scene: PathBuf,
     /// Sensors: lines of x y z, or x y z and a normal (up without one), separated by blanks or commas. A .pts file is Radiance's, with
     /// +Z up; any other has the model's axes. Metres.
-    #[arg(long, value_name = "FILE", required_unless_present = "plane")]
+    #[arg(long, value_name = "FILE", required_unless_present_any = ["plane", "facade"])]
     pub grid: Option<PathBuf>,
     /// Makes the sensors instead: this height above the floor of every room, metres. A room has walls, a ceiling and a level floor. The
     /// grid is fitted between its walls.
     #[arg(long, value_name = "M", conflicts_with = "grid", value_parser = crate::options::plane_height)]
     pub plane: Option<f64>,
+    /// Makes sensors on façades instead: before the outer faces of upright surfaces, facing out. With names those of these materials,
+    /// separated by commas; without, the surfaces that see the sky. Bodies must face outward.
+    #[arg(long, value_name = "NAMES", num_args = 0..=1, require_equals = true, default_missing_value = "", value_delimiter = ',', conflicts_with_all = ["grid", "plane"])]
+    pub facade: Option<Vec<String>>,
+    /// Distance of the sensors of --facade from their surface, metres.
+    #[arg(long, value_name = "M", conflicts_with_all = ["grid", "plane"], default_value_t = 0.05, value_parser = crate::options::offset)]
+    pub offset: f64,
     /// Largest distance from one made sensor to the next, metres.
-    #[arg(long, value_name = "M", requires = "plane", default_value_t = 0.5, value_parser = crate::options::spacing)]
+    #[arg(long, value_name = "M", conflicts_with = "grid", default_value_t = 0.5, value_parser = crate::options::spacing)]
     pub spacing: f64,
     /// Least distance of made sensors from walls and furniture, metres.
-    #[arg(long, value_name = "M", requires = "plane", default_value_t = 0.0, value_parser = crate::options::inset)]
+    #[arg(long, value_name = "M", requires = "plane", conflicts_with = "facade", default_value_t = 0.0, value_parser = crate::options::inset)]
     pub inset: f64,
     /// Materials of floors on which to make sensors, separated by commas, instead of those of rooms that are found.
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plane")]
+    #[arg(
+        long,
+        value_name = "NAMES",
+        value_delimiter = ',',
+        requires = "plane",
+        conflicts_with = "facade"
+    )]
     pub rooms: Vec<String>,
     /// Weather file (.epw, .wea): measures its year, every hour with its own sun and Perez' sky; with --hour one moment of it.
     #[arg(long, value_name = "FILE")]
@@ -256,6 +269,9 @@ pub struct DaylightArgs {
     /// Occupied hours of every day, by the clock of the weather file.
     #[arg(long, value_name = "FROM-TO", default_value_t, requires = "weather")]
     pub schedule: Schedule,
+    /// Whether blinds close against the sun.
+    #[arg(long, value_name = "RULE", value_parser = choice::<Blinds>(), default_value_t, requires = "weather", conflicts_with = "hour")]
+    pub blinds: Blinds,
     /// Thresholds of daylight autonomy, lux.
     #[arg(long, value_name = "LUX", value_delimiter = ',', value_parser = crate::options::threshold, allow_hyphen_values = true, default_value = "300", requires = "weather")]
     pub thresholds: Vec<f64>,
@@ -273,6 +289,21 @@ pub struct DaylightArgs {
         requires = "weather"
     )]
     pub ill: Option<PathBuf>,
+    /// Also draw a metric over the plane of the sensors: false colours, contours, the model's lines, legend, north arrow, scale bar.
+    #[arg(long, value_name = "FILE.svg|.png", value_parser = named(&["svg", "png"]))]
+    pub plan: Option<PathBuf>,
+    /// What --plan shows: a metric, or a column of --csv; by default the first of --metrics.
+    #[arg(long, value_name = "METRIC", requires = "plan")]
+    pub plan_of: Option<String>,
+    /// Also draw the illuminance of every hour, hour by day over the year: the mean of all sensors.
+    #[arg(long, value_name = "FILE.svg|.png", value_parser = named(&["svg", "png"]), conflicts_with = "hour", requires = "weather")]
+    pub heat: Option<PathBuf>,
+    /// The sensor that --heat shows instead of the mean: its number in the order of the grid, from 1.
+    #[arg(long, value_name = "N", requires = "heat", value_parser = value_parser!(u32).range(1..))]
+    pub heat_of: Option<u32>,
+    /// Also write a page with assumptions, pictures, results, and the verdict of each standard; en17037 is then one of the default metrics.
+    #[arg(long, value_name = "FILE.html", value_parser = named(&["html"]), conflicts_with = "hour", requires = "weather")]
+    pub report: Option<PathBuf>,
     /// Standard error at which to stop. Of a moment: of each sensor's total, relative to it. Of a year: of each metric, root mean square
     /// over the sensors; 0.01 is one point of a percentage, or 1 % of an illuminance or a daylight factor.
     #[arg(long, value_name = "R", value_parser = crate::options::ratio, default_value_t = 0.01)]
@@ -292,9 +323,22 @@ impl DaylightArgs {
     pub fn asked_metrics(&self) -> Vec<Metric> {
         if self.metrics.is_empty() {
             use Metric::{Ase, Cda, Da, Sda, Udi};
-            return vec![Da, Cda, Udi, Sda, Ase];
+            let mut metrics = vec![Da, Cda, Udi, Sda, Ase];
+            metrics.extend(self.report.as_ref().map(|_| Metric::En17037));
+            return metrics;
         }
         self.metrics.clone()
+    }
+
+    /// Whether the illuminances of every hour are kept.
+    pub fn keeps_hours(&self) -> bool {
+        self.ill.is_some() || self.heat.is_some() || self.report.is_some()
+    }
+
+    /// The files that are written besides the result.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        let files = [&self.ill, &self.plan, &self.heat, &self.report];
+        files.into_iter().flatten()
     }
 
     /// The hour of the weather file, if one is asked for.
@@ -320,7 +364,7 @@ choice_enum! {
         Da = "da": "Daylight autonomy: occupied hours with at least the threshold, percent",
         Cda = "cda": "Continuous daylight autonomy: hours below the threshold count in part",
         Udi = "udi": "Useful daylight illuminance: below 100, to below 300, to 3000 and above 3000 lux, percent of the occupied hours",
-        Sda = "sda": "Spatial daylight autonomy: sensors with 300 lux in half of the occupied hours, percent (IES LM-83, without blinds)",
+        Sda = "sda": "Spatial daylight autonomy: sensors with 300 lux in half of the occupied hours, percent (IES LM-83; without --blinds lm83 higher than it has it)",
         Ase = "ase": "Annual sunlight exposure: sensors with more than 1000 lux of direct sun in more than 250 occupied hours, percent",
         En17037 = "en17037": "EN 17037, daylight provision by both methods",
         Illuminance = "illuminance": "Mean illuminance of all hours, lux",

@@ -17,7 +17,7 @@ use crate::output::print;
 /// Largest weather file, bytes: a year by the minute has 90 MB.
 const MAX_BYTES: u64 = 1 << 28;
 
-const MONTHS: [&str; 12] = [
+pub(super) const MONTHS: [&str; 12] = [
     "January",
     "February",
     "March",

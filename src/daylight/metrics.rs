@@ -77,6 +77,24 @@ fn schedule_form() -> String {
     "write the first hour and the end, for instance 8-18".to_owned()
 }
 
+/// Whether blinds are closed against the sun.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Blinds {
+    /// There are none.
+    #[default]
+    None,
+    /// All are one group, closed in every hour in which more than 2 % of the points have 1000 lux of direct sun or more (IES LM-83-12, 2.2.6).
+    Lm83,
+}
+
+/// Direct sun from which a point asks for closed blinds, lux (IES LM-83-12, 2.2.6).
+pub const BLINDS_LUX: f64 = 1000.0;
+/// Share of the points above which they are closed.
+pub const BLINDS_SHARE: f64 = 0.02;
+/// What closed blinds leave of all light: 5 %, diffuse, which LM-83-12 is said to give blinds that are not specified; honeybee-radiance-postprocess
+/// takes 2 %.
+pub const CLOSED_BLINDS: f64 = 0.05;
+
 /// Which hours count, and thresholds: what turns a year of illuminances into metrics.
 /// The default has no hours: no values.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -95,6 +113,8 @@ pub struct Measures {
     count: usize,
     /// Length of an interval, hours.
     step_hours: f64,
+    /// Of each lit hour, whether blinds are closed; empty without blinds.
+    closed: Vec<bool>,
 }
 
 impl Measures {
@@ -132,7 +152,22 @@ impl Measures {
             brightest_count,
             count: records.len(),
             step_hours: weather.step_hours,
+            closed: Vec::new(),
         })
+    }
+
+    /// Closes blinds in these of the lit hours, for the shares of the occupied hours: DA, cDA, UDI. Not for EN 17037, means and exposure, of
+    /// which no definition knows blinds.
+    pub fn close_blinds(&mut self, closed: Vec<bool>) {
+        self.closed = closed;
+    }
+
+    /// Occupied hours with closed blinds.
+    pub fn closed_hours(&self) -> f64 {
+        let both = self.closed.iter().zip(&self.occupied);
+        both.filter(|(closed, occupied)| **closed && **occupied)
+            .count() as f64
+            * self.step_hours
     }
 
     /// Occupied hours of the file.
@@ -179,7 +214,7 @@ impl Measures {
         if self.count == 0 {
             return Vec::new();
         }
-        let occupied = self.counted(&self.occupied, lux);
+        let occupied = self.behind_blinds(lux);
         let percent = |sum: f64| 100.0 * sum / self.occupied_count as f64;
         let at_least = |list: &[f64], limit: f64| list.iter().filter(|e| **e >= limit).count();
         let share = |limit: f64| percent(at_least(&occupied, limit) as f64);
@@ -222,6 +257,18 @@ impl Measures {
         let occupied = self.counted(&self.occupied, sun_lux);
         let exposed = occupied.iter().filter(|lux| **lux > EXPOSED_LUX);
         exposed.count() as f64 * self.step_hours
+    }
+
+    /// The illuminances of the occupied hours, through closed blinds where they are.
+    fn behind_blinds(&self, lux: &[f32]) -> Vec<f64> {
+        if self.closed.is_empty() {
+            return self.counted(&self.occupied, lux);
+        }
+        let shaded = lux.iter().zip(&self.closed).map(|(lux, closed)| {
+            let left = if *closed { CLOSED_BLINDS } else { 1.0 };
+            (f64::from(*lux) * left) as f32
+        });
+        self.counted(&self.occupied, &shaded.collect::<Vec<f32>>())
     }
 
     /// The illuminances of the hours that count.
@@ -321,6 +368,23 @@ mod tests {
         assert_eq!(of("udi_aut"), 20.0);
         assert_eq!(of("udi_high"), 5.0);
         assert_eq!(measures.exposed_hours(&lux), 3.0);
+    }
+
+    #[test]
+    fn closed_blinds_leave_a_twentieth_to_the_occupied_hours() {
+        let (mut measures, lit) = measures("8-18");
+        let lux = vec![6200.0; lit];
+        // Every second hour of 28: ten of twenty occupied ones.
+        measures.close_blinds((0..lit).map(|at| at % 2 == 0).collect());
+        assert_eq!(measures.closed_hours(), 10.0);
+        let values = measures.values(&lux);
+        let of = |name: &str| values[measures.names().iter().position(|n| n == name).expect(name)];
+        // 310 and 6200 lux.
+        assert_eq!((of("da300"), of("da500")), (100.0, 50.0));
+        assert_eq!((of("udi_aut"), of("udi_high")), (50.0, 50.0));
+        assert_eq!(of("en17037_hours_ge750"), 28.0);
+        assert!((of("mean_lux") - 6200.0 * 28.0 / 48.0).abs() < 1e-9);
+        assert_eq!(measures.exposed_hours(&lux), 20.0);
     }
 
     #[test]

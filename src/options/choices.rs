@@ -7,8 +7,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Command};
 
 use super::{
-    Ambient, AntiAliasing, ColourMap, DomeBy, Filter, IrradianceMethod, Optional, Phong, Quantity,
-    Reflections, Show, SkyModel, SunPositionMethod, ToneCurve, Unit, Up, Visibility,
+    Ambient, AntiAliasing, Blinds, ColourMap, DomeBy, Filter, IrradianceMethod, Optional, Phong,
+    Quantity, Reflections, Show, SkyModel, SunPositionMethod, ToneCurve, Unit, Up, Visibility,
 };
 
 /// An enum whose variants are values of an option.
@@ -131,6 +131,10 @@ choices! {
         M = "m": "Metre",
         In = "in": "Inch, 25.4 mm",
         Ft = "ft": "Foot, 304.8 mm",
+    }
+    Blinds {
+        None = "none": "No blinds",
+        Lm83 = "lm83": "IES LM-83: all are closed in hours in which more than 2 % of the sensors have 1000 lux of direct sun, and leave 5 % of all light; for da, cda, udi, sda",
     }
     Ambient {
         Cells = "cells": "Cells of irradiance in the scene: the true visibility of the sky, and bounces",

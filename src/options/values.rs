@@ -331,6 +331,7 @@ ranged! {
     plane_height: "height above the floor", "m", 0.0..=100.0;
     spacing: "spacing", "m", 0.02..=100.0;
     inset: "distance from walls", "m", 0.0..=100.0;
+    offset: "distance from a façade", "m", 0.001..=10.0;
     elevation: "elevation", "degrees", 0.0..=90.0;
     noise: "noise", "", 1e-6..=1.0;
     irradiance_error: "error", "percent", 0.0..=100.0;

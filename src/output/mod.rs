@@ -1,5 +1,6 @@
 //! Output files, written atomically; or standard output, written when the whole is there.
 
+mod drawing;
 mod exr;
 mod exr_header;
 mod exr_rows;
@@ -13,6 +14,8 @@ mod stream;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+pub(crate) use self::drawing::escaped;
+pub use self::drawing::{Anchor, Drawing, Fill, Ink, Part, Shape, Size, Stroke, Text};
 pub use self::exr::{
     Channels, LATITUDE, LONGITUDE, Layer, MOMENT, WHITE_LUMINANCE, encode_exr, write_exr,
 };

@@ -30,6 +30,7 @@ mod placement;
 mod progress;
 mod reflectance;
 mod scene_file;
+mod section;
 mod size;
 mod subject;
 mod texture;

@@ -42,6 +42,20 @@ pub enum GridError {
         /// Whether floors were named.
         is_named: bool,
     },
+    /// No material has the name of a façade.
+    #[error("no material \"{name}\" for --facade; the model has {known}")]
+    UnknownFacade {
+        /// The name.
+        name: String,
+        /// Those of the model.
+        known: String,
+    },
+    /// Nowhere is a place for a made sensor on a façade.
+    #[error("{}", if *is_named { "no upright surface of the materials of --facade has a place for a sensor" } else { "no upright surface that faces outward and sees the sky; name the materials of façades with --facade=NAMES, or give --grid FILE" })]
+    NoFacade {
+        /// Whether materials were named.
+        is_named: bool,
+    },
     /// A floor has too many samples.
     #[error(
         "a floor of {metres} m is too large to look for rooms at this spacing; name the materials of floors with --rooms, or choose a larger --spacing"

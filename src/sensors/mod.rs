@@ -3,11 +3,14 @@
 //!
 //! No device is needed. [`read_grid`] reads the points, [`measure`] lights them.
 
+mod blinds;
 mod cells;
+mod facade;
 mod grid;
 mod numbers;
 mod path;
 mod plane;
+mod sheets;
 mod suns;
 mod surface;
 mod unreflected;
@@ -22,14 +25,18 @@ use std::thread;
 
 use glam::{DVec3, Vec3};
 
+pub use self::blinds::closed_hours;
+pub use self::facade::{Facades, make_facades};
 pub use self::grid::{GridError, read_grid};
 pub use self::path::Lights;
 pub use self::plane::{Planes, make_grid};
+pub use self::sheets::{Sheet, sheets};
 pub use self::surface::TracedScene;
 pub use self::unreflected::{sky_components, suns_seen};
 pub use self::year::{SensorYear, Year, YearRun, measure_year};
 pub use self::year_light::YearLight;
 
+use self::path::PARTS;
 use crate::daylight::colour::luminance;
 
 /// A point and the side from which light is counted.
@@ -50,6 +57,10 @@ pub struct Reading {
     pub sun_direct: f64,
     /// From surfaces: reflected once or more by those of the scene or by the ground below the horizon, or emitted by them.
     pub reflected: f64,
+    /// Of it, what the surfaces of the scene reflect of the sky.
+    pub sky_reflected: f64,
+    /// Of it, what they reflect of the sun.
+    pub sun_reflected: f64,
     /// Standard error of the sum.
     pub standard_error: f64,
     /// Paths that were traced.
@@ -129,7 +140,7 @@ fn read(
     lights: &Lights,
     accuracy: &Accuracy,
 ) -> Reading {
-    let mut sums = [[DVec3::ZERO; 3]; REPLICATES as usize];
+    let mut sums = [[DVec3::ZERO; PARTS]; REPLICATES as usize];
     let (mut traced, mut wanted) = (0, FIRST_ROUND);
     loop {
         for (replicate, sum) in sums.iter_mut().enumerate() {
@@ -150,19 +161,21 @@ fn read(
 }
 
 /// The means of all replicates of `paths` paths each, and their spread.
-fn reading(sums: &[[DVec3; 3]; REPLICATES as usize], paths: u32) -> Reading {
+fn reading(sums: &[[DVec3; PARTS]; REPLICATES as usize], paths: u32) -> Reading {
     let n = f64::from(REPLICATES);
     let lux = |part: usize, replicate: usize| luminance(sums[replicate][part]) / f64::from(paths);
     let mean = |part| (0..sums.len()).map(|r| lux(part, r)).sum::<f64>() / n;
     let totals: Vec<f64> = (0..sums.len())
-        .map(|r| (0..3).map(|part| lux(part, r)).sum())
+        .map(|r| (0..PARTS).map(|part| lux(part, r)).sum())
         .collect();
     let total = totals.iter().sum::<f64>() / n;
     let variance = totals.iter().map(|t| (t - total).powi(2)).sum::<f64>() / (n - 1.0);
     Reading {
         sky_direct: mean(0),
         sun_direct: mean(1),
-        reflected: mean(2),
+        reflected: mean(2) + mean(3) + mean(4),
+        sky_reflected: mean(2),
+        sun_reflected: mean(3),
         standard_error: (variance / n).sqrt(),
         paths: paths * REPLICATES,
     }

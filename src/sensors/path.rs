@@ -25,6 +25,9 @@ const SURE_BOUNCES: u32 = 3;
 /// Bounces after which a path ends: between surfaces that reflect 95 %, less than a millionth of the light is left.
 pub(super) const MAX_BOUNCES: u32 = 256;
 
+/// Parts of an irradiance.
+pub(super) const PARTS: usize = 5;
+
 /// Sun and sky of a moment.
 pub struct Lights<'a> {
     daylight: &'a Daylight,
@@ -41,14 +44,15 @@ impl<'a> Lights<'a> {
     }
 }
 
-/// Irradiance estimated by path `index` of a replicate after at most `bounces`, linear RGB, lux: from the sky, from the sun, from surfaces.
+/// Irradiance estimated by path `index` of a replicate after at most `bounces`, linear RGB, lux: from the sky, from the sun, of the sky and
+/// of the sun by reflection, and of surfaces that emit and the ground below the horizon.
 pub(super) fn trace(
     sensor: &Sensor,
     scene: &TracedScene,
     lights: &Lights,
     bounces: u32,
     [index, seed]: [u32; 2],
-) -> [DVec3; 3] {
+) -> [DVec3; PARTS] {
     let has_emitters = scene.is_emissive();
     let spread = SPREAD_BOUNCES * if has_emitters { 4 } else { 3 };
     let mut numbers = Numbers::new(index, seed, spread);
@@ -59,7 +63,7 @@ pub(super) fn trace(
         emission: DVec3::ZERO,
         emitter_density: 0.0,
     };
-    let [mut sky, mut sun, mut reflected] = [DVec3::ZERO; 3];
+    let mut parts = [DVec3::ZERO; PARTS];
     let mut throughput = DVec3::ONE;
     for bounce in 0..=bounces.min(MAX_BOUNCES) {
         let from_sun = sun_at(&point, scene, lights, numbers.pair());
@@ -75,11 +79,10 @@ pub(super) fn trace(
         let [seen_sky, seen_surface] = seen(&met, local.z / PI, lights);
         from_sky += met.through * seen_sky;
         from_surfaces += met.through * seen_surface;
-        if bounce == 0 {
-            (sky, sun, reflected) = (from_sky, from_sun, from_surfaces);
-        } else {
-            reflected += throughput * (from_sky + from_sun + from_surfaces);
-        }
+        let first = if bounce == 0 { 0 } else { 2 };
+        parts[first] += throughput * from_sky;
+        parts[first + 1] += throughput * from_sun;
+        parts[4] += throughput * from_surfaces;
         let Some(next) = met.point else { break };
         throughput *= met.through * next.reflectance;
         if bounce >= SURE_BOUNCES {
@@ -91,7 +94,7 @@ pub(super) fn trace(
         }
         point = next;
     }
-    [sky, sun, reflected]
+    parts
 }
 
 /// Irradiance of what a ray in a direction of this density meets, linear RGB, lux: of the sky, of a surface that emits or the ground.

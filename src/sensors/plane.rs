@@ -145,4 +145,4 @@ fn is_clear(bvh: &Bvh, origin: Vec3, inset: f32) -> bool {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 /// Two days of an EPW file in June.
-fn two_days() -> String {
+pub fn two_days() -> String {
     let mut text =
         "LOCATION,Havnby,-,DNK,made,0,55.1,8.6,1.0,4.0\nDATA PERIODS,1,1,Data,Sunday, 6/20, 6/21\n"
             .to_owned();
@@ -21,11 +21,16 @@ fn two_days() -> String {
 }
 
 fn daylight(folder: &Path, words: &str) -> Output {
-    std::fs::write(folder.join("a.epw"), two_days()).expect("written");
     std::fs::write(folder.join("a.csv"), "30,1,40\n-30,1,40\n").expect("written");
+    daylight_at(folder, "a.csv", words)
+}
+
+/// A run in a folder that has the two days as `a.epw`, with a grid of the folder.
+pub fn daylight_at(folder: &Path, grid: &str, words: &str) -> Output {
+    std::fs::write(folder.join("a.epw"), two_days()).expect("written");
     Command::new(env!("CARGO_BIN_EXE_skylight"))
         .current_dir(folder)
-        .args(["daylight", "colonnade", "--grid", "a.csv", "--quiet"])
+        .args(["daylight", "colonnade", "--grid", grid, "--quiet"])
         .args(words.split_whitespace())
         .output()
         .expect("it runs")

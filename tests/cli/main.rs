@@ -10,6 +10,8 @@ mod bake_ktx2;
 mod bench;
 mod compare;
 mod daylight;
+mod daylight_facade;
+mod daylight_pictures;
 mod daylight_year;
 mod devices;
 mod false_colour;

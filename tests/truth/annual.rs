@@ -7,14 +7,14 @@ use std::process::Command;
 use crate::common::{self, Table};
 
 /// Every `n`th sensor of a grid, unpacked weather, and a folder for both.
-struct Case {
+pub struct Case {
     folder: tempfile::TempDir,
     shared: PathBuf,
-    every: usize,
+    pub every: usize,
 }
 
 impl Case {
-    fn new(grid: &str, weather: &str, every: usize) -> Option<Self> {
+    pub fn new(grid: &str, weather: &str, every: usize) -> Option<Self> {
         let shared = common::shared()?.join("daylight");
         let folder = tempfile::tempdir().expect("a scratch folder");
         let points =
@@ -36,7 +36,7 @@ impl Case {
     }
 
     /// The JSON of a run.
-    fn run(&self, model: &str, words: &str) -> serde_json::Value {
+    pub fn run(&self, model: &str, words: &str) -> serde_json::Value {
         let path = |name: &str| -> PathBuf { self.folder.path().join(name) };
         let mut command = Command::new(env!("CARGO_BIN_EXE_skylight"));
         command
@@ -107,6 +107,31 @@ fn the_year_of_an_office_behind_glass_is_the_path_tracers() {
         check(key, &found, 1.0, 3.0);
     }
     // The edge of the sun's light lies on some sensors for some hours.
+    let found = case.differences(&report, "ase_hours", (table, "ase_hours_gt1000"), false);
+    check("hours of direct sun", &found, 6.0, 15.0);
+}
+
+#[test]
+fn blinds_close_as_often_as_the_path_tracers() {
+    // All sensors: the rule counts them.
+    let Some(case) = Case::new("office", "chicago", 1) else {
+        return;
+    };
+    let words = "--metrics da,sda,ase --blinds lm83 --error 0.03";
+    let report = case.run("office_glass", words);
+    assert_eq!(report["blinds"], "lm83");
+    let hours = report["blinds_closed_hours"].as_f64().expect("hours");
+    println!("{hours} occupied hours with closed blinds");
+    assert!((hours - 1661.0).abs() <= 10.0, "{hours}");
+    let table = "annual/office_glass_chicago_total_metrics.csv";
+    let found = case.differences(&report, "da300", (table, "da300_blinds5"), false);
+    // At a standard error of three points.
+    check("da300 with blinds", &found, 1.0, 7.0);
+    let sda = report["sda"]["percent"].as_f64().expect("percent");
+    let sensors = (sda - 32.142_857) / 100.0 * 84.0;
+    println!("{sensors:+.0} sensors of sDA");
+    assert!(sensors.abs() <= 3.01, "{sda}");
+    // Exposure knows no blinds.
     let found = case.differences(&report, "ase_hours", (table, "ase_hours_gt1000"), false);
     check("hours of direct sun", &found, 6.0, 15.0);
 }

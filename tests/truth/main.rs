@@ -8,5 +8,6 @@ mod truth;
 mod annual;
 mod bounces;
 mod converged;
+mod moments;
 mod preview;
 mod sensors;

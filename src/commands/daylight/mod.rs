@@ -1,19 +1,24 @@
 //! `skylight daylight`: light at the sensors of a grid, at a moment or over a year. Needs no device.
 
+mod drawings;
 mod ill;
 mod moment;
+mod report;
+mod results;
 mod summary;
 mod table;
 mod unreflected;
+mod verdict;
 mod year;
 
 use super::weather;
 use crate::cli::DaylightArgs;
+use crate::daylight::metrics::Blinds;
 use crate::error::Result;
 use crate::options::{OptionValues, Options};
 use crate::passes::bounces::cells::Bounces;
 use crate::scene::Scene;
-use crate::sensors::{ALL_BOUNCES, Planes, Sensor, make_grid, read_grid};
+use crate::sensors::{ALL_BOUNCES, Facades, Planes, Sensor, make_facades, make_grid, read_grid};
 
 /// Measures metrics if there is a weather file without an hour or some are asked for, else a moment.
 ///
@@ -34,6 +39,14 @@ fn sensors(args: &DaylightArgs, scene: &Scene) -> Result<Vec<Sensor>> {
     if let Some(path) = &args.grid {
         return Ok(read_grid(path, scene.origin)?);
     }
+    if let Some(names) = &args.facade {
+        let facades = Facades {
+            spacing: args.spacing as f32,
+            offset: args.offset as f32,
+            materials: names.iter().filter(|n| !n.is_empty()).cloned().collect(),
+        };
+        return Ok(make_facades(scene, &facades)?);
+    }
     let planes = Planes {
         height: args.plane.unwrap_or_default() as f32,
         spacing: args.spacing as f32,
@@ -41,6 +54,14 @@ fn sensors(args: &DaylightArgs, scene: &Scene) -> Result<Vec<Sensor>> {
         floors: args.rooms.clone(),
     };
     Ok(make_grid(scene, &planes)?)
+}
+
+/// What is said of blinds, always.
+fn blinds(args: &DaylightArgs) -> &'static str {
+    match args.blinds {
+        Blinds::None => "no blinds",
+        Blinds::Lm83 => "blinds by LM-83",
+    }
 }
 
 /// The limit of bounces.

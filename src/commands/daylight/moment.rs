@@ -7,12 +7,13 @@ use serde_json::json;
 
 use super::super::job::Job;
 use super::super::{progress, tell, tell_no_device};
-use super::table::place;
+use super::drawings::Plan;
+use super::table::{Column, place};
 use super::{bounces, sensors};
 use crate::cli::DaylightArgs;
-use crate::error::Result;
-use crate::options::{OptionValues, in_world};
-use crate::output::print;
+use crate::error::{Error, Result};
+use crate::options::{OptionValues, OptionsError, in_world};
+use crate::output::{Drawing, check_writable, print};
 use crate::sensors::{Accuracy, Lights, Reading, Sensor, TracedScene, measure};
 
 /// Measures all sensors and prints them in the order of the file.
@@ -20,8 +21,13 @@ use crate::sensors::{Accuracy, Lights, Reading, Sensor, TracedScene, measure};
 /// # Errors
 /// Fails when the grid or the model cannot be read, or when options are invalid.
 pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
+    if args.plan_of.is_some() {
+        let what = "--plan-of is for metrics; the plan of a moment shows all light".to_owned();
+        return Err(Error::from(OptionsError(what)));
+    }
     let job = Job::new(Some(&args.scene), options)?;
     tell_no_device("daylight", &job.settings);
+    args.files().try_for_each(|path| check_writable(path))?;
     let sensors = sensors(args, &job.scene)?;
     let accuracy = Accuracy {
         relative_error: args.error,
@@ -36,6 +42,9 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
     let rows: Vec<(Sensor, Reading)> = sensors.into_iter().zip(readings).collect();
     let imprecise = imprecise(&rows, args);
     tell(&job.settings, imprecise.iter())?;
+    if let Some(path) = &args.plan {
+        plan(&rows, &job, args).write(path)?;
+    }
     let origin = job.scene.origin;
     let text = if args.json {
         let warnings = job.warnings().chain(&imprecise);
@@ -48,6 +57,33 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
         table(&rows, origin)
     };
     print(&text)
+}
+
+/// A plan of all light.
+fn plan(rows: &[(Sensor, Reading)], job: &Job, args: &DaylightArgs) -> Drawing {
+    let sensors: Vec<Sensor> = rows.iter().map(|(sensor, _)| *sensor).collect();
+    let column = Column {
+        name: "total_lux".to_owned(),
+        unit: "lux",
+        values: rows.iter().map(|(_, reading)| reading.total()).collect(),
+        errors: rows.iter().map(|(_, r)| r.standard_error).collect(),
+    };
+    let sun = job.sun;
+    let mut notes = vec![format!(
+        "sun: azimuth {:.2}°, elevation {:.2}°; bounces: {}",
+        sun.azimuth_deg, sun.apparent_elevation_deg, job.settings.bounces
+    )];
+    let hour = args.weather.iter().zip(args.hour);
+    notes.extend(hour.map(|(file, hour)| format!("{}, {hour}", file.display())));
+    let plan = Plan {
+        sensors: &sensors,
+        scene: &job.scene,
+        column: &column,
+        limit: None,
+        notes,
+        map: job.settings.colour_map,
+    };
+    plan.drawing()
 }
 
 /// Sensors that ran out of paths before they were precise enough, in one line.
@@ -65,7 +101,7 @@ fn imprecise(rows: &[(Sensor, Reading)], args: &DaylightArgs) -> Option<String> 
 }
 
 /// Columns of JSON and CSV: metres, unit vector, lux.
-fn columns(sensor: &Sensor, reading: &Reading, origin: DVec3) -> [(&'static str, f64); 11] {
+fn columns(sensor: &Sensor, reading: &Reading, origin: DVec3) -> [(&'static str, f64); 13] {
     let [x, y, z, nx, ny, nz] = place(sensor, origin);
     [
         x,
@@ -79,6 +115,8 @@ fn columns(sensor: &Sensor, reading: &Reading, origin: DVec3) -> [(&'static str,
         ("reflected_lux", reading.reflected),
         ("total_lux", reading.total()),
         ("standard_error_lux", reading.standard_error),
+        ("sky_reflected_lux", reading.sky_reflected),
+        ("sun_reflected_lux", reading.sun_reflected),
     ]
 }
 

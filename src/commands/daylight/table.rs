@@ -22,6 +22,13 @@ pub(super) struct Column {
 }
 
 impl Column {
+    /// Mean, root mean square of the standard errors, least and largest value.
+    pub fn figures(&self) -> [f64; 4] {
+        let least = self.values.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = self.values.iter().copied().fold(0.0, f64::max);
+        [self.mean(), self.error(), least, most]
+    }
+
     fn mean(&self) -> f64 {
         self.values.iter().sum::<f64>() / self.values.len().max(1) as f64
     }
@@ -91,15 +98,11 @@ pub(super) fn overview(columns: &[Column]) -> String {
         "", "", "mean", "least", "most", "error"
     );
     for column in columns {
-        let least = column.values.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = column.values.iter().copied().fold(0.0, f64::max);
+        let [mean, error, least, most] = column.figures();
         let _ = writeln!(
             text,
-            "{:24}{:>8}{:>12.2}{least:>12.2}{most:>12.2}{:>10.2}",
-            column.name,
-            column.unit,
-            column.mean(),
-            column.error()
+            "{:24}{:>8}{mean:>12.2}{least:>12.2}{most:>12.2}{error:>10.2}",
+            column.name, column.unit
         );
     }
     text

@@ -3,7 +3,7 @@
 use chrono::Datelike;
 
 use super::table::Column;
-use crate::cli::DaylightArgs;
+use crate::cli::{DaylightArgs, Metric};
 use crate::daylight::place::Place;
 use crate::daylight::sun_hours::Site;
 use crate::daylight::weather::Weather;
@@ -11,8 +11,30 @@ use crate::error::{Error, Result};
 use crate::options::{Options, OptionsError};
 use crate::sensors::{Sensor, TracedScene, sky_components, suns_seen};
 
+/// The columns of those that are asked for.
+///
+/// # Errors
+/// See [`sun_hours`].
+pub(super) fn unreflected(
+    args: &DaylightArgs,
+    weather: Option<&Weather>,
+    settings: &Options,
+    sensors: &[Sensor],
+    scene: &TracedScene,
+) -> Result<Vec<Column>> {
+    let asks = |metric| args.asked_metrics().contains(&metric);
+    let mut columns = Vec::new();
+    if asks(Metric::Vsc) {
+        columns.push(sky_component(sensors, scene, settings.seed));
+    }
+    if asks(Metric::Sunhours) {
+        columns.extend(sun_hours(args, weather, settings, sensors, scene)?);
+    }
+    Ok(columns)
+}
+
 /// The vertical sky component.
-pub(super) fn sky_component(sensors: &[Sensor], scene: &TracedScene, seed: u32) -> Column {
+fn sky_component(sensors: &[Sensor], scene: &TracedScene, seed: u32) -> Column {
     let found = sky_components(sensors, scene, seed);
     Column {
         name: "vsc".to_owned(),
@@ -26,7 +48,7 @@ pub(super) fn sky_component(sensors: &[Sensor], scene: &TracedScene, seed: u32) 
 ///
 /// # Errors
 /// No place, or a date that does not exist.
-pub(super) fn sun_hours(
+fn sun_hours(
     args: &DaylightArgs,
     weather: Option<&Weather>,
     settings: &Options,

@@ -1,23 +1,24 @@
 //! `skylight daylight` with metrics: over the year of a weather file, or of what needs none.
 
-use serde_json::json;
-
 use super::super::job::{load_options, scene_of};
 use super::super::weather::{check_given, read_weather, warnings};
 use super::super::{interrupt, progress, tell, tell_no_device};
+use super::results::Results;
 use super::summary::Summary;
-use super::table::{Column, csv, objects, overview};
-use super::unreflected::{sky_component, sun_hours};
-use super::{bounces, ill, sensors};
+use super::table::Column;
+use super::unreflected::unreflected;
+use super::{bounces, sensors};
 use crate::cli::{DaylightArgs, Metric};
-use crate::daylight::metrics::{Measures, SPATIAL_LUX};
+use crate::daylight::metrics::{Blinds, Measures, SPATIAL_LUX};
 use crate::daylight::weather::Weather;
 use crate::daylight::weather::clock::ClockCheck;
 use crate::error::{Error, Result};
 use crate::options::{OptionValues, Options, OptionsError};
 use crate::output::{check_writable, print};
 use crate::scene;
-use crate::sensors::{Accuracy, Sensor, TracedScene, Year, YearLight, YearRun, measure_year};
+use crate::sensors::{
+    Accuracy, Sensor, TracedScene, Year, YearLight, YearRun, closed_hours, measure_year,
+};
 
 /// Most records of a weather file: with more, the skies of the year no longer fit into memory.
 const MOST_RECORDS: usize = 60_000;
@@ -27,6 +28,7 @@ const MOST_RECORDS: usize = 60_000;
 /// # Errors
 /// A grid, a model or a weather file that cannot be read, or invalid options.
 pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
+    args.files().try_for_each(|path| check_writable(path))?;
     let weather = weather(args, options)?;
     let weather = weather.as_ref();
     let mut loaded = scene::load_with_progress(
@@ -46,46 +48,35 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
         Some(weather) => YearLight::new(weather, settings.ground_albedo),
         None => YearLight::overcast(settings.ground_albedo),
     };
-    let measures = measures(args, weather, &light)?;
+    let mut measures = measures(args, weather, &light)?;
+    check_pictures(args, &measures, all.len())?;
     let traced = TracedScene::new(&scene);
+    if args.blinds == Blinds::Lm83 {
+        measures.close_blinds(closed_hours(&all, &traced, &light));
+    }
     let year = measured(args, &settings, &traced, &light, &measures, &all);
     let sensors = &all[..year.sensors.len()];
     let odd = oddities(args, &year, &all);
     tell(&settings, odd.iter())?;
     told.extend(odd);
-    if let (Some(path), Some(weather)) = (&args.ill, weather) {
-        ill::write(path, weather, &light, &year)?;
-    }
     let mut columns = columns(args, &measures, &year);
-    let asks = |metric| args.asked_metrics().contains(&metric);
-    if asks(Metric::Vsc) {
-        columns.push(sky_component(sensors, &traced, settings.seed));
-    }
-    if asks(Metric::Sunhours) {
-        columns.extend(sun_hours(args, weather, &settings, sensors, &traced)?);
-    }
-    let summary = Summary::of(args, &measures, &light, &year);
-    print(&if args.json {
-        let report = json!({
-            "sensors": objects(sensors, &columns, scene.origin),
-            "sda": summary.sda_json(),
-            "ase": summary.ase,
-            "en17037": summary.en17037,
-            "blinds": "none",
-            "schedule": args.schedule.to_string(),
-            "occupied_hours": measures.occupied_hours(),
-            "bounces": settings.bounces.to_string(),
-            "paths": year.sensors.first().map_or(0, |sensor| sensor.paths),
-            "weather": weather.map(|weather| weather_json(weather, clock.as_ref())),
-            "warnings": told,
-        });
-        format!("{report:#}\n")
-    } else if args.csv {
-        csv(sensors, &columns, scene.origin)
-    } else {
-        let head = head(args, &settings, weather, &measures, sensors);
-        head + &overview(&columns) + &summary.text()
-    })
+    columns.extend(unreflected(args, weather, &settings, sensors, &traced)?);
+    let results = Results {
+        summary: Summary::of(args, &measures, &light, &year),
+        args,
+        settings: &settings,
+        scene: &scene,
+        weather,
+        clock: clock.as_ref(),
+        light: &light,
+        measures: &measures,
+        sensors,
+        year: &year,
+        columns: &columns,
+        told: &told,
+    };
+    results.write_files()?;
+    print(&results.text())
 }
 
 /// The weather file, if one is given.
@@ -101,9 +92,6 @@ fn weather(args: &DaylightArgs, options: &OptionValues) -> Result<Option<Weather
         };
     };
     check_given(options)?;
-    if let Some(path) = &args.ill {
-        check_writable(path)?;
-    }
     let weather = read_weather(file)?;
     if weather.records.len() > MOST_RECORDS {
         return wrong(format!(
@@ -124,6 +112,38 @@ fn measures(args: &DaylightArgs, weather: Option<&Weather>, light: &YearLight) -
     }
     let measures = Measures::new(weather, &light.hours, args.schedule, thresholds);
     measures.map_err(|what| Error::from(OptionsError(what)))
+}
+
+/// Fails early with a picture of what is not measured.
+///
+/// # Errors
+/// See above.
+fn check_pictures(args: &DaylightArgs, measures: &Measures, sensors: usize) -> Result<()> {
+    let wrong = |what: String| Err(Error::from(OptionsError(what)));
+    if args.heat_of.is_some_and(|number| number as usize > sensors) {
+        return wrong(format!("--heat-of is a sensor from 1 to {sensors}"));
+    }
+    let Some(asked) = &args.plan_of else {
+        return Ok(());
+    };
+    let metrics = args.asked_metrics();
+    let mut known: Vec<String> = metrics.iter().map(ToString::to_string).collect();
+    let names = names(measures).into_iter();
+    known.extend(names.filter(|name| is_wanted(args, name) && *name != "df"));
+    if metrics.contains(&Metric::En17037) && !metrics.contains(&Metric::Df) {
+        known.push("df".to_owned());
+    }
+    if metrics.contains(&Metric::Ase) {
+        known.push("ase_hours".to_owned());
+    }
+    let is_date = metrics.contains(&Metric::Sunhours) && asked.starts_with("sun_hours");
+    if is_date || known.contains(asked) {
+        return Ok(());
+    }
+    wrong(format!(
+        "--plan-of {asked} is not measured; choose of {}, or add it to --metrics",
+        known.join(", ")
+    ))
 }
 
 /// Whether a value is part of a metric that was asked for.
@@ -176,7 +196,7 @@ fn measured(
                 bounces: bounces(settings),
             },
             wanted: wanted.collect(),
-            keeps_hours: args.ill.is_some(),
+            keeps_hours: args.keeps_hours(),
             progress: &|done, error| {
                 bar.set_position(done as u64);
                 if let Some(error) = error {
@@ -237,40 +257,4 @@ fn columns(args: &DaylightArgs, measures: &Measures, year: &Year) -> Vec<Column>
         });
     }
     columns
-}
-
-fn weather_json(weather: &Weather, clock: Option<&ClockCheck>) -> serde_json::Value {
-    let station = &weather.station;
-    json!({
-        "place": station.name,
-        "latitude": station.place.latitude,
-        "longitude": station.place.longitude,
-        "zone_hours": station.zone_hours,
-        "hours": weather.records.len() as f64 * weather.step_hours,
-        "clock_minutes": clock.map(|c| c.minutes),
-        "clock_is_off": clock.map(ClockCheck::is_off),
-    })
-}
-
-fn head(
-    args: &DaylightArgs,
-    settings: &Options,
-    weather: Option<&Weather>,
-    measures: &Measures,
-    sensors: &[Sensor],
-) -> String {
-    let place = weather.map(|weather| {
-        let hours = measures.occupied_hours();
-        let name = &weather.station.name;
-        format!(
-            "{name}\n{hours} h, {} every day; no blinds; ",
-            args.schedule
-        )
-    });
-    format!(
-        "{}{} sensors; bounces: {}\n\n",
-        place.unwrap_or_default(),
-        sensors.len(),
-        settings.bounces,
-    )
 }

@@ -2,7 +2,7 @@ use super::*;
 use crate::scene::{Bounds, Material, Part};
 
 /// Boxes that face outward, each by its least and its largest corner, and the name of its material.
-fn boxes(list: &[([f32; 3], [f32; 3], &str)]) -> Scene {
+pub fn boxes(list: &[([f32; 3], [f32; 3], &str)]) -> Scene {
     let mut scene = Scene::default();
     for (at, (low, high, name)) in list.iter().enumerate() {
         let (low, high) = (Vec3::from(*low), Vec3::from(*high));

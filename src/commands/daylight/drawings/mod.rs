@@ -1,0 +1,12 @@
+//! Pictures of results: a metric over its plane, a year hour by day.
+
+mod contours;
+mod heat;
+mod panel;
+mod plan;
+mod scale;
+mod words;
+
+pub(super) use self::heat::{Heat, hours};
+pub(super) use self::plan::Plan;
+pub(super) use self::words::{heading, limit};

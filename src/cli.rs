@@ -13,16 +13,20 @@ pub use args::{
     Sweep, Texels, WeatherArgs,
 };
 
-use crate::options::{OptionValues, Optional, choice, decides_light, one_line};
+use crate::options::{OptionValues, Optional, SeveralPictures, choice, decides_light, one_line};
 
 /// A command with its arguments.
 #[derive(Debug, Clone, PartialEq, Subcommand)]
 pub enum Command {
-    /// Render one picture to a file, without a window.
+    /// Render a picture to a file, or several of one scene, without a window.
+    ///
+    /// --camera, --moment and --when may be given several times, or as lists (--camera porch,pool): every camera in every moment. The scene is
+    /// loaded once, and each picture is the same as by itself.
     Render {
         /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, the default; island).
         scene: Option<PathBuf>,
-        /// File to write: .png is tone-mapped, .exr is scene-linear cd/m² (lux for irradiance).
+        /// File to write: .png is tone-mapped, .exr is scene-linear cd/m² (lux for irradiance). {camera} and {moment} in the name stand for
+        /// those of each picture.
         #[arg(short, long, value_name = "FILE", default_value = "skylight.png", value_parser = args::named(&["png", "exr"]))]
         output: PathBuf,
         /// An hour of a weather file.
@@ -30,7 +34,7 @@ pub enum Command {
         at: HourArgs,
         /// Options of the picture.
         #[command(flatten)]
-        options: OptionValues,
+        options: SeveralPictures,
     },
     /// Open a window on a scene; press ? in it for the keys.
     View {
@@ -264,7 +268,7 @@ mod tests {
                 output,
                 options,
                 ..
-            }) => (scene, output, options.alone().expect(line)),
+            }) => (scene, output, options.first.alone().expect(line)),
             other => panic!("{line}: {other:?}"),
         }
     }

@@ -91,6 +91,16 @@ pub enum Error {
         /// What is slower, with ratios.
         slower: String,
     },
+    /// Ctrl-C before all was written.
+    #[error("interrupted: {done} of {all} {what} are written")]
+    Interrupted {
+        /// Of how many files the content is whole.
+        done: usize,
+        /// How many were asked for.
+        all: usize,
+        /// What they are.
+        what: &'static str,
+    },
     /// Results that nobody can read.
     #[error("cannot write to standard output: {0}")]
     Stdout(String),

@@ -17,6 +17,7 @@ mod choices;
 mod command_line;
 mod given;
 mod resolve;
+mod several;
 mod sun_input;
 mod values;
 
@@ -39,6 +40,7 @@ pub(crate) use choices::{choice, choice_enum, choices};
 pub use given::OptionValues;
 pub use resolve::ResolveError;
 pub(crate) use resolve::{in_world, shortest};
+pub use several::SeveralPictures;
 pub use sun_input::SunInput;
 pub use values::{
     AerosolInput, AoResolution, Direction, ExposureMode, Fresnel, Hdr, Penumbra, Place, Preset,

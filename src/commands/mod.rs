@@ -9,11 +9,13 @@ mod interrupt;
 mod job;
 mod light;
 mod motion;
+mod names;
 mod noise;
 mod panorama;
 mod plot_spectrum;
 mod plot_study;
 mod render;
+mod renderer;
 mod samples;
 mod sky;
 mod sky_almanac;
@@ -43,9 +45,9 @@ pub fn run(command: Command) -> Result<()> {
             scene,
             output,
             at,
-            options,
+            mut options,
         } => {
-            let options = weather::applied(&at, options)?;
+            options.first = weather::applied(&at, options.first)?;
             render::run(scene.as_deref(), &output, &options)
         }
         #[cfg(feature = "window")]

@@ -1,6 +1,7 @@
 //! The command line: words to [`Command`]. It touches no file and prints nothing.
 
 mod args;
+mod series;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -12,6 +13,7 @@ pub use args::{
     BakeArgs, BenchArgs, CompareArgs, DaylightArgs, HourArgs, Layout, Map, Metric, Motion, SkyArgs,
     Sweep, Texels, WeatherArgs,
 };
+pub use series::{Expose, MergeArgs, SequenceArgs, StudyArgs};
 
 use crate::options::{OptionValues, Optional, SeveralPictures, choice, decides_light, one_line};
 
@@ -35,6 +37,34 @@ pub enum Command {
         /// Options of the picture.
         #[command(flatten)]
         options: SeveralPictures,
+    },
+    /// Render pictures of one scene at equal steps of time: frames, or a film. The scene is loaded once.
+    ///
+    /// Ctrl-C ends after the frame before; frames that are finished stay.
+    Sequence {
+        /// Arguments of its own.
+        #[command(flatten)]
+        args: SequenceArgs,
+        /// Options of the picture.
+        #[command(flatten)]
+        options: OptionValues,
+    },
+    /// Render a shadow study: one sheet of pictures, a row for each day and a column for each hour, with the sun's place below each.
+    ///
+    /// Each picture is exposed by itself unless --ev100 is given; --size is that of one, by default 480x320, with 16 --samples.
+    Study {
+        /// Arguments of its own.
+        #[command(flatten)]
+        args: StudyArgs,
+        /// Options of the picture.
+        #[command(flatten)]
+        options: OptionValues,
+    },
+    /// Put together what several machines did with --shard, and find what is missing or damaged.
+    Merge {
+        /// Arguments of its own.
+        #[command(flatten)]
+        args: MergeArgs,
     },
     /// Open a window on a scene; press ? in it for the keys.
     View {

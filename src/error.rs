@@ -92,15 +92,18 @@ pub enum Error {
         slower: String,
     },
     /// Ctrl-C before all was written.
-    #[error("interrupted: {done} of {all} {what} are written")]
+    #[error("interrupted: {done} of {all} {what}")]
     Interrupted {
-        /// Of how many files the content is whole.
+        /// How many are done.
         done: usize,
         /// How many were asked for.
         all: usize,
-        /// What they are.
+        /// What they are, and what became of them.
         what: &'static str,
     },
+    /// Parts of a job that do not make a whole.
+    #[error("cannot merge: {0}")]
+    Merge(String),
     /// Results that nobody can read.
     #[error("cannot write to standard output: {0}")]
     Stdout(String),

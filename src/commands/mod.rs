@@ -8,6 +8,7 @@ mod info;
 mod interrupt;
 mod job;
 mod light;
+mod merge;
 mod motion;
 mod names;
 mod noise;
@@ -17,12 +18,14 @@ mod plot_study;
 mod render;
 mod renderer;
 mod samples;
+mod sequence;
 mod sky;
 mod sky_almanac;
 mod sky_compare;
 mod sky_report;
 mod sky_table;
 mod startup;
+mod study;
 mod tiled;
 #[cfg(feature = "window")]
 pub mod view;
@@ -50,6 +53,9 @@ pub fn run(command: Command) -> Result<()> {
             options.first = weather::applied(&at, options.first)?;
             render::run(scene.as_deref(), &output, &options)
         }
+        Command::Sequence { args, options } => sequence::run(&args, &options),
+        Command::Study { args, options } => study::run(&args, &options),
+        Command::Merge { args } => merge::run(&args),
         #[cfg(feature = "window")]
         Command::View {
             scene,

@@ -31,7 +31,7 @@ pub fn run(scene: Option<&Path>, output: &Path, options: &SeveralPictures) -> Re
     let mut renderer: Option<Renderer> = None;
     for (done, (options, file)) in pictures.iter().zip(&files).enumerate() {
         if interrupt::is_interrupted() {
-            let (all, what) = (files.len(), "pictures");
+            let (all, what) = (files.len(), "pictures are written");
             return Err(Error::Interrupted { done, all, what });
         }
         if done > 0 {

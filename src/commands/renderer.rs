@@ -103,15 +103,31 @@ impl Renderer {
         Ok(self.recorder.finish()?)
     }
 
-    /// Draws a picture and writes it; returns a summary.
+    /// Draws a picture and writes it, with fewer samples if it is interrupted; returns a summary.
     ///
     /// # Errors
     /// Any error up to writing the file; an existing file is then left unchanged.
     pub fn save(&mut self, job: &Job, path: &Path) -> Result<String> {
+        let saved = self.write(job, path, true)?;
+        Ok(saved.unwrap_or_default())
+    }
+
+    /// As [`Renderer::save`], but `None` if it is interrupted: then nothing is written.
+    ///
+    /// # Errors
+    /// See there.
+    pub fn save_whole(&mut self, job: &Job, path: &Path) -> Result<Option<String>> {
+        self.write(job, path, false)
+    }
+
+    fn write(&mut self, job: &Job, path: &Path, keeps_part: bool) -> Result<Option<String>> {
         if self.precision == Precision::Float {
-            return self.save_exr(job, path);
+            return self.write_exr(job, path, keeps_part);
         }
         let picture = self.picture(job)?;
+        if picture.drawn.is_interrupted && !keeps_part {
+            return Ok(None);
+        }
         let effort = if picture.drawn.samples < AVERAGED {
             Effort::Quick
         } else {
@@ -122,8 +138,10 @@ impl Renderer {
         self.progress.clear();
         let samples = picture.drawn.summary(&self.rule);
         let [width, height] = picture.size;
-        Ok(format!("{width}x{height}{}{samples}", picture.summary))
+        let summary = format!("{width}x{height}{}{samples}", picture.summary);
+        Ok(Some(summary))
     }
+
     /// Draws the displayed quantity.
     fn draw(&mut self, job: &Job, rule: Rule) -> Result<Drawn> {
         while !self.frame.is_refined() {
@@ -214,10 +232,11 @@ impl Renderer {
         Ok(Some(job.automatic_ev100(f64::from(average) * 1e3)))
     }
 
-    fn save_exr(&mut self, job: &Job, path: &Path) -> Result<String> {
+    fn write_exr(&mut self, job: &Job, path: &Path, keeps_part: bool) -> Result<Option<String>> {
         let shown = job.settings.show;
         let (picture, drawn) = self.layer(job, (shown, ""), self.rule)?;
         let mut layers = vec![picture];
+        let mut is_whole = !drawn.is_interrupted;
         if job.settings.layers {
             // Same sample count as the image, so that the addends sum to it.
             let same = Rule {
@@ -228,11 +247,15 @@ impl Renderer {
                 self.progress.name(name(show));
                 self.frame.show(show)?;
                 let (layer, drawn) = self.layer(job, (show, name(show)), same)?;
-                if drawn.is_interrupted {
+                is_whole &= !drawn.is_interrupted;
+                if !is_whole {
                     break;
                 }
                 layers.push(layer);
             }
+        }
+        if !is_whole && !keeps_part {
+            return Ok(None);
         }
         let size = self.frame.settings().size.to_array();
         let mut metadata = job.metadata();
@@ -240,10 +263,9 @@ impl Renderer {
         write_exr(path, size, &layers, &metadata)?;
         self.progress.clear();
         let (count, samples) = (layers.len(), drawn.summary(&self.rule));
-        Ok(format!(
-            "{}x{}, {count} layer(s){samples}",
-            size[0], size[1]
-        ))
+        let [width, height] = size;
+        let summary = format!("{width}x{height}, {count} layer(s){samples}");
+        Ok(Some(summary))
     }
 
     fn layer(

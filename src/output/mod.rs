@@ -1,5 +1,6 @@
 //! Output files, written atomically.
 
+mod canvas;
 mod exr;
 mod exr_rows;
 mod hdr;
@@ -7,6 +8,7 @@ mod ktx2;
 mod legend;
 mod png;
 mod rows;
+mod sheet;
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -18,6 +20,7 @@ pub use self::ktx2::{CubeLevel, TexelFormat, encode_ktx2, scale};
 pub use self::legend::draw_legend;
 pub use self::png::{Effort, Encoding, write_png};
 pub use self::rows::PngRows;
+pub use self::sheet::{Cell, SheetLayout, SheetPixels, compose};
 
 use crate::error::{Error, Result};
 

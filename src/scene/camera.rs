@@ -19,6 +19,11 @@ const FRAMING_ELEVATION_DEG: f32 = 14.0;
 /// Distance of the default view, as a factor on the distance at which the model just fits.
 const FRAMING_MARGIN: f32 = 1.05;
 
+/// Vertical field of view of a plan, degrees: so narrow that verticals lean by less than a sixtieth.
+const PLAN_FOV_DEG: f32 = 2.0;
+/// Half of the height of a plan's subject is kept free around it, so that shadows have room: as a factor on its height.
+const PLAN_ROOM: f32 = 0.5;
+
 /// A perspective camera without roll (+Y up).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
@@ -99,6 +104,21 @@ impl Camera {
             eye: target + toward_eye * distance.max(10.0 * near),
             target,
             fov_deg,
+            near,
+        }
+    }
+
+    /// A view of all of `bounds` from high above its middle, north at the top: nearly a parallel projection. `aspect` is width / height.
+    pub fn plan(bounds: &Bounds, aspect: f32) -> Self {
+        let (centre, extent) = (bounds.centre(), bounds.extent());
+        let half = 0.5 * (extent.z).max(extent.x / aspect) * FRAMING_MARGIN;
+        let half = half + PLAN_ROOM * extent.y;
+        let near = near_plane(bounds);
+        let height = (half / (0.5 * PLAN_FOV_DEG).to_radians().tan()).max(10.0 * near);
+        Self {
+            eye: centre + (0.5 * extent.y + height) * Vec3::Y,
+            target: centre,
+            fov_deg: PLAN_FOV_DEG,
             near,
         }
     }
@@ -254,6 +274,27 @@ mod tests {
         let clip_from_world = camera.clip_from_view(1.0) * camera.view_from_world();
         let north = clip_from_world.project_point3(Vec3::NEG_Z);
         assert!(north.is_finite() && north.y < -0.1, "{north}");
+    }
+
+    #[test]
+    fn a_plan_shows_every_corner_with_north_at_the_top() {
+        for bounds in boxes() {
+            for aspect in [16.0 / 9.0, 1.0, 0.4] {
+                let camera = Camera::plan(&bounds, aspect);
+                let clip_from_world = camera.clip_from_view(aspect) * camera.view_from_world();
+                let seen = bounds.corners().map(|corner| {
+                    let at = clip_from_world.project_point3(corner);
+                    let is_inside = at.x.abs() <= 1.0 && at.y.abs() <= 1.0;
+                    assert!(is_inside, "{bounds:?} aspect {aspect}: {corner} at {at}");
+                    (corner, at)
+                });
+                for (corner, at) in seen {
+                    let from_centre = corner - bounds.centre();
+                    assert!(from_centre.z * at.y >= 0.0, "south is down: {corner} {at}");
+                    assert!(from_centre.x * at.x >= 0.0, "east is right: {corner} {at}");
+                }
+            }
+        }
     }
 
     #[test]

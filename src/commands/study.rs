@@ -1,0 +1,218 @@
+//! `skylight study`: one sheet of pictures, a row for each day and a column for each hour.
+
+use chrono::{DateTime, Datelike, FixedOffset, NaiveDate};
+
+use super::interrupt;
+use super::job::Job;
+use super::progress;
+use super::render::check_anti_aliasing;
+use super::renderer::{Picture, Renderer};
+use crate::cli::StudyArgs;
+use crate::daylight::place::Place;
+use crate::daylight::sun_hours::SunDate;
+use crate::error::{Error, Result};
+use crate::options::{OptionValues, Options, OptionsError};
+use crate::output::{
+    Cell, Effort, Encoding, Metadata, SheetLayout, check_writable, compose, print, write_png,
+};
+use crate::scene::Camera;
+
+/// Size of each picture unless `--size` is given.
+const PICTURE: &str = "480x320";
+/// Samples of each picture unless `--samples` is given: the fewest with converging shadows of the sky.
+const SAMPLES: u32 = 16;
+/// Most pixels of a sheet.
+const MOST_PIXELS: u64 = 1 << 28;
+/// Lines of the title and of each caption.
+const LINES: [u32; 2] = [2, 2];
+
+/// Draws all pictures and writes the sheet.
+///
+/// # Errors
+/// Any error up to writing the file; an existing file is then left unchanged.
+pub fn run(args: &StudyArgs, options: &OptionValues) -> Result<()> {
+    let wrong = |what: String| Error::from(OptionsError(what));
+    if let Some(name) = ["solar", "sun"]
+        .iter()
+        .find(|name| options.get(name).is_some())
+    {
+        return Err(wrong(format!(
+            "--dates and --hours say when; leave out --{name}"
+        )));
+    }
+    check_writable(&args.output)?;
+    let mut options = options.clone();
+    options.set_default("size", PICTURE);
+    options.set_default("samples", SAMPLES);
+    if args.plan {
+        // A plan is seen from so far that its air would show.
+        options.set_default("aerial", "off");
+    }
+    let (mut job, context) = Job::on_device(args.scene.as_deref(), &options)?;
+    check_anti_aliasing(&job.settings, false)?;
+    let moments = moments(args, &job.settings).map_err(wrong)?;
+    let layout = layout(args, &job.settings).map_err(wrong)?;
+    let bar = progress(moments.len() as u64, "pictures", job.settings.quiet);
+    interrupt::listen();
+    let (mut renderer, mut cells): (Option<Renderer>, Vec<Cell>) = (None, Vec::new());
+    let mut metadata = None;
+    for moment in &moments {
+        options.set("when", moment.to_rfc3339());
+        job.turn_to(&options)?;
+        if args.plan {
+            job.camera = Camera::plan(&job.subject.bounds, layout.aspect());
+        }
+        let renderer = match &mut renderer {
+            Some(renderer) => {
+                renderer.turn_to(&job)?;
+                renderer
+            }
+            none => none.insert(Renderer::new(&job, &context, false)?.without_progress()),
+        };
+        let picture = renderer.picture(&job)?;
+        if picture.drawn.is_interrupted || interrupt::is_interrupted() {
+            let (done, all) = (cells.len(), moments.len());
+            let what = "pictures were drawn, and no sheet is written";
+            return Err(Error::Interrupted { done, all, what });
+        }
+        metadata.get_or_insert_with(|| (picture.metadata.clone(), picture.encoding));
+        cells.push(cell(&job, *moment, picture));
+        bar.inc(1);
+    }
+    context.check_validation()?;
+    bar.finish_and_clear();
+    let (metadata, encoding) = metadata.unwrap_or((Vec::new(), Encoding::Srgb));
+    let (size, rgba) = compose(&layout, &title(args, &job), &cells);
+    let metadata = of_sheet(args, metadata);
+    write_png(
+        &args.output,
+        size,
+        &rgba,
+        (encoding, Effort::Small),
+        &metadata,
+    )?;
+    let ([width, height], count) = (size, cells.len());
+    let output = args.output.display();
+    print(&format!(
+        "{output}: {width}x{height}, {count} pictures{}\n",
+        view(args, &job)
+    ))
+}
+
+/// Every hour of every day, by the clock of the place.
+fn moments(
+    args: &StudyArgs,
+    settings: &Options,
+) -> std::result::Result<Vec<DateTime<FixedOffset>>, String> {
+    let place = settings.sun.place();
+    let (latitude, longitude, when) = place.ok_or("a study needs a place; give --place")?;
+    let place = Place {
+        latitude,
+        longitude,
+    };
+    let mut all = Vec::new();
+    for date in &args.dates {
+        let SunDate::Day(year, month, day) = *date else {
+            return Err("--dates of a study are days, for instance 3-21".to_owned());
+        };
+        let year = year.unwrap_or(when.year());
+        let date = NaiveDate::from_ymd_opt(year, month, day);
+        let date = date.ok_or_else(|| format!("--dates: {year} has no {month}-{day}"))?;
+        for hour in &args.hours {
+            let moment = place.zone().moment(date.and_time(hour.0));
+            all.push(moment.map_err(|what| format!("--hours: {what}"))?);
+        }
+    }
+    Ok(all)
+}
+
+fn layout(args: &StudyArgs, settings: &Options) -> std::result::Result<SheetLayout, String> {
+    let [title_lines, caption_lines] = LINES;
+    let layout = SheetLayout {
+        picture: [settings.size.width, settings.size.height],
+        columns: args.hours.len() as u32,
+        rows: args.dates.len() as u32,
+        title_lines,
+        caption_lines,
+    };
+    let pixels = |[width, height]: [u32; 2]| u64::from(width) * u64::from(height);
+    let picture = pixels(layout.picture) * args.hours.len() as u64 * args.dates.len() as u64;
+    if picture.max(pixels(layout.size())) > MOST_PIXELS {
+        return Err(format!(
+            "the sheet would have more than {} million pixels; choose a smaller --size, or fewer --dates or --hours",
+            MOST_PIXELS >> 20
+        ));
+    }
+    Ok(layout)
+}
+
+/// A picture with date, hour, and where the sun stands.
+fn cell(job: &Job, moment: DateTime<FixedOffset>, picture: Picture) -> Cell {
+    let exposure = picture
+        .ev100
+        .map_or(String::new(), |ev| format!("  EV100 {ev:.1}"));
+    let when = moment.format("%Y-%m-%d  %H:%M %:z");
+    let (elevation, azimuth) = (job.sun.apparent_elevation_deg, job.sun.azimuth_deg);
+    let height = if elevation < 0.0 {
+        format!("{:.1}° below the horizon", -elevation)
+    } else {
+        format!("{elevation:.1}° high")
+    };
+    Cell {
+        rgba: picture.rgba,
+        caption: vec![
+            format!("{when}{exposure}"),
+            format!("sun {height}, azimuth {azimuth:.1}°"),
+        ],
+    }
+}
+
+fn title(args: &StudyArgs, job: &Job) -> Vec<String> {
+    let place = job
+        .settings
+        .sun
+        .place()
+        .map(|(latitude, longitude, _)| Place {
+            latitude,
+            longitude,
+        });
+    let place = place.map_or(String::new(), |place| place.to_string());
+    vec![
+        format!("{}  {place}", job.name),
+        format!("sky {}{}", job.settings.sky, view(args, job)),
+    ]
+}
+
+/// How a plan is seen; nothing for other views.
+fn view(args: &StudyArgs, job: &Job) -> String {
+    if !args.plan {
+        return String::new();
+    }
+    let above = job.camera.eye.y - job.camera.target.y;
+    format!(
+        ", seen from {above:.0} m above, north up (perspective of {}°)",
+        job.camera.fov_deg
+    )
+}
+
+/// The options of the sheet: those of its first picture, and its days and hours.
+fn of_sheet(args: &StudyArgs, mut metadata: Metadata) -> Metadata {
+    let of_one = [
+        "when",
+        "command",
+        "ev100 used",
+        "sun azimuth",
+        "sun elevation",
+    ];
+    let is_of_one = |name: &str| of_one.contains(&name) || name.ends_with(" illuminance");
+    metadata.retain(|(name, _)| !is_of_one(name));
+    let hours: Vec<String> = args
+        .hours
+        .iter()
+        .map(|h| h.0.format("%H:%M").to_string())
+        .collect();
+    let days: Vec<String> = args.dates.iter().map(SunDate::to_string).collect();
+    metadata.push(("dates".to_owned(), days.join(",")));
+    metadata.push(("hours".to_owned(), hours.join(",")));
+    metadata
+}

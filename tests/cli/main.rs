@@ -17,6 +17,8 @@ mod gpu_check;
 mod mitsuba_bake;
 mod moment;
 mod options;
+mod series;
+mod shards;
 mod sky;
 mod tiles;
 mod town;

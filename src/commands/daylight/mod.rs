@@ -1,16 +1,23 @@
 //! `skylight daylight`: light at the sensors of a grid, at a moment or over a year. Needs no device.
 
+mod exact;
 mod ill;
 mod moment;
+mod report;
+mod shards;
 mod summary;
 mod table;
 mod unreflected;
 mod year;
 
+use std::path::Path;
+
+pub(super) use self::shards::merge;
 use super::weather;
 use crate::cli::DaylightArgs;
 use crate::error::Result;
 use crate::options::{OptionValues, Options};
+use crate::output::{check_writable, print, write_text};
 use crate::passes::bounces::cells::Bounces;
 use crate::scene::Scene;
 use crate::sensors::{ALL_BOUNCES, Planes, Sensor, make_grid, read_grid};
@@ -20,6 +27,9 @@ use crate::sensors::{ALL_BOUNCES, Planes, Sensor, make_grid, read_grid};
 /// # Errors
 /// A grid, a model or a weather file that cannot be read, or invalid options.
 pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
+    if let Some(output) = &args.output {
+        check_writable(output)?;
+    }
     if args.asks_for_metrics() {
         return year::run(args, options);
     }
@@ -41,6 +51,17 @@ fn sensors(args: &DaylightArgs, scene: &Scene) -> Result<Vec<Sensor>> {
         floors: args.rooms.clone(),
     };
     Ok(make_grid(scene, &planes)?)
+}
+
+/// Prints a result, or writes it to a file.
+///
+/// # Errors
+/// It cannot be written.
+fn deliver(output: Option<&Path>, text: &str) -> Result<()> {
+    match output {
+        Some(path) => write_text(path, text),
+        None => print(text),
+    }
 }
 
 /// The limit of bounces.

@@ -2,14 +2,23 @@
 
 use std::fmt::Write as _;
 
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::table::rounded;
-use crate::cli::{DaylightArgs, Metric};
-use crate::daylight::metrics::{
-    EN_17037_LUX, EXPOSED_HOURS, Measures, Passing, SPATIAL_PERCENT, passing,
-};
-use crate::sensors::{Year, YearLight};
+use super::exact::Exact;
+use super::table::{Column, rounded};
+use crate::daylight::metrics::{EN_17037_LUX, EXPOSED_HOURS, Passing, SPATIAL_PERCENT, passing};
+
+/// Figures of the whole grid that are asked for.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Asked {
+    /// Spatial daylight autonomy.
+    pub sda: bool,
+    /// Annual sunlight exposure.
+    pub ase: bool,
+    /// EN 17037: half of the daylight hours, and the median of their diffuse illuminance, lux.
+    pub en17037: Option<Exact>,
+}
 
 /// Figures of the whole grid; those that were not asked for are `None` or null.
 pub(super) struct Summary {
@@ -27,35 +36,22 @@ const LEVELS: [(&str, usize, usize); 3] = [("minimum", 1, 0), ("medium", 2, 1), 
 const AREAS: [f64; 2] = [50.0, 95.0];
 
 impl Summary {
-    /// Of a year.
-    pub fn of(args: &DaylightArgs, measures: &Measures, light: &YearLight, year: &Year) -> Self {
-        let asks = |metric| args.asked_metrics().contains(&metric) && !year.sensors.is_empty();
-        let names = measures.names();
-        let column = |name: &str| {
-            let at = names
-                .iter()
-                .position(|own| own == name)
-                .unwrap_or(names.len());
-            let of = |list: &[f64]| list[at];
-            let values: Vec<f64> = year.sensors.iter().map(|s| of(&s.values)).collect();
-            let errors: Vec<f64> = year.sensors.iter().map(|s| of(&s.errors)).collect();
-            (values, errors)
-        };
+    /// Of the columns of the metrics.
+    pub fn of(asked: &Asked, columns: &[Column]) -> Self {
+        let column = |name: &str| columns.iter().find(|column| column.name == name);
+        let is_empty = columns.iter().all(|column| column.values.0.is_empty());
         let share = |name: &str, limit: f64| {
-            let (values, errors) = column(name);
-            passing(&values, &errors, limit)
+            let none = Column::default();
+            let column = column(name).unwrap_or(&none);
+            passing(&column.values.0, &column.errors.0, limit)
         };
         let exposed = || {
-            let is_exposed = year
-                .sensors
-                .iter()
-                .filter(|s| s.exposed_hours > EXPOSED_HOURS);
-            100.0 * is_exposed.count() as f64 / year.sensors.len() as f64
+            let hours = column("ase_hours").map_or(&[][..], |column| &column.values.0);
+            let is_exposed = hours.iter().filter(|hours| **hours > EXPOSED_HOURS);
+            100.0 * is_exposed.count() as f64 / hours.len() as f64
         };
-        let en17037 = || {
-            let hours = measures.en17037_hours();
+        let en17037 = |[hours, median]: [f64; 2]| {
             let by_hours = EN_17037_LUX.map(|lux| share(&format!("en17037_hours_ge{lux}"), hours));
-            let median = measures.median_diffuse_lux(&light.hours);
             let factors = EN_17037_LUX.map(|lux| 100.0 * lux / median);
             let by_factor = factors.map(|factor| share("df", factor));
             json!({
@@ -66,14 +62,12 @@ impl Summary {
                 "method_2": method(&by_hours),
             })
         };
+        let of_hours = asked.en17037.as_ref().filter(|_| !is_empty);
+        let of_hours = of_hours.and_then(|given| given.rows().first().copied());
         Self {
-            sda: asks(Metric::Sda).then(|| share("da300", SPATIAL_PERCENT)),
-            ase: asks(Metric::Ase).then(|| rounded(exposed())),
-            en17037: if asks(Metric::En17037) {
-                en17037()
-            } else {
-                Value::Null
-            },
+            sda: (asked.sda && !is_empty).then(|| share("da300", SPATIAL_PERCENT)),
+            ase: (asked.ase && !is_empty).then(|| rounded(exposed())),
+            en17037: of_hours.map_or(Value::Null, en17037),
         }
     }
 

@@ -3,80 +3,76 @@
 use std::fmt::Write as _;
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::exact::Exact;
 use crate::options::{in_world, shortest};
 use crate::sensors::Sensor;
 
 /// A quantity at every sensor.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct Column {
     /// Its key in JSON and CSV.
     pub name: String,
     /// Its unit, for the eye.
-    pub unit: &'static str,
+    pub unit: String,
     /// Its values, in the order of the sensors.
-    pub values: Vec<f64>,
+    pub values: Exact,
     /// Their standard errors.
-    pub errors: Vec<f64>,
+    pub errors: Exact,
 }
 
 impl Column {
     fn mean(&self) -> f64 {
-        self.values.iter().sum::<f64>() / self.values.len().max(1) as f64
+        self.values.0.iter().sum::<f64>() / self.values.0.len().max(1) as f64
     }
 
     /// Root mean square of the standard errors.
     fn error(&self) -> f64 {
-        let squares: f64 = self.errors.iter().map(|e| e * e).sum();
-        (squares / self.errors.len().max(1) as f64).sqrt()
+        let squares: f64 = self.errors.0.iter().map(|e| e * e).sum();
+        (squares / self.errors.0.len().max(1) as f64).sqrt()
     }
 }
 
-/// Position and normal of a sensor in the model's axes, with their keys in JSON and CSV.
-pub(super) fn place(sensor: &Sensor, origin: DVec3) -> [(&'static str, f64); 6] {
+/// Keys of position and normal in JSON and CSV.
+pub(super) const PLACE: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
+
+/// Position and normal of a sensor in the model's axes.
+pub(super) fn place(sensor: &Sensor, origin: DVec3) -> [f64; 6] {
     let [x, y, z] = in_world(sensor.position, origin);
     let [nx, ny, nz] = sensor.normal.to_array().map(shortest);
-    [
-        ("x", x),
-        ("y", y),
-        ("z", z),
-        ("nx", nx),
-        ("ny", ny),
-        ("nz", nz),
-    ]
+    [x, y, z, nx, ny, nz]
 }
 
 /// A list of objects, one for each sensor.
-pub(super) fn objects(sensors: &[Sensor], columns: &[Column], origin: DVec3) -> Value {
-    let object = |(at, sensor): (usize, &Sensor)| {
+pub(super) fn objects(places: &[[f64; 6]], columns: &[Column]) -> Value {
+    let object = |(at, place): (usize, &[f64; 6])| {
         let mut object = Map::new();
-        for (name, value) in place(sensor, origin) {
-            object.insert(name.to_owned(), value.into());
+        for (name, value) in PLACE.iter().zip(place) {
+            object.insert((*name).to_owned(), (*value).into());
         }
         for column in columns {
-            object.insert(column.name.clone(), rounded(column.values[at]).into());
+            object.insert(column.name.clone(), rounded(column.values.0[at]).into());
             let error = format!("{}_se", column.name);
-            object.insert(error, rounded(column.errors[at]).into());
+            object.insert(error, rounded(column.errors.0[at]).into());
         }
         Value::from(object)
     };
-    sensors.iter().enumerate().map(object).collect()
+    places.iter().enumerate().map(object).collect()
 }
 
 /// A line for each sensor, under one of names.
-pub(super) fn csv(sensors: &[Sensor], columns: &[Column], origin: DVec3) -> String {
-    let mut text = place(&Sensor::default(), DVec3::ZERO)
-        .map(|(name, _)| name)
-        .join(",");
+pub(super) fn csv(places: &[[f64; 6]], columns: &[Column]) -> String {
+    let mut text = PLACE.join(",");
     for column in columns {
         let _ = write!(text, ",{0},{0}_se", column.name);
     }
     text.push('\n');
-    for (at, sensor) in sensors.iter().enumerate() {
-        text += &place(sensor, origin).map(|(_, v)| v.to_string()).join(",");
+    for (at, place) in places.iter().enumerate() {
+        text += &place.map(|v| v.to_string()).join(",");
         for column in columns {
-            let [value, error] = [column.values[at], column.errors[at]].map(rounded);
+            let [value, error] = [column.values.0[at], column.errors.0[at]].map(rounded);
             let _ = write!(text, ",{value},{error}");
         }
         text.push('\n');
@@ -91,8 +87,13 @@ pub(super) fn overview(columns: &[Column]) -> String {
         "", "", "mean", "least", "most", "error"
     );
     for column in columns {
-        let least = column.values.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = column.values.iter().copied().fold(0.0, f64::max);
+        let least = column
+            .values
+            .0
+            .iter()
+            .copied()
+            .fold(f64::INFINITY, f64::min);
+        let most = column.values.0.iter().copied().fold(0.0, f64::max);
         let _ = writeln!(
             text,
             "{:24}{:>8}{:>12.2}{least:>12.2}{most:>12.2}{:>10.2}",

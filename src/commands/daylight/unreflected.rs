@@ -2,6 +2,7 @@
 
 use chrono::Datelike;
 
+use super::exact::Exact;
 use super::table::Column;
 use crate::cli::DaylightArgs;
 use crate::daylight::place::Place;
@@ -12,11 +13,11 @@ use crate::options::{Options, OptionsError};
 use crate::sensors::{Sensor, TracedScene, sky_components, suns_seen};
 
 /// The vertical sky component.
-pub(super) fn sky_component(sensors: &[Sensor], scene: &TracedScene, seed: u32) -> Column {
+pub(super) fn sky_component(sensors: &[(usize, Sensor)], scene: &TracedScene, seed: u32) -> Column {
     let found = sky_components(sensors, scene, seed);
     Column {
         name: "vsc".to_owned(),
-        unit: "%",
+        unit: "%".to_owned(),
         values: found.iter().map(|[value, _]| *value).collect(),
         errors: found.iter().map(|[_, error]| *error).collect(),
     }
@@ -30,7 +31,7 @@ pub(super) fn sun_hours(
     args: &DaylightArgs,
     weather: Option<&Weather>,
     settings: &Options,
-    sensors: &[Sensor],
+    sensors: &[(usize, Sensor)],
     scene: &TracedScene,
 ) -> Result<Vec<Column>> {
     let wrong = |what: String| Error::from(OptionsError(what));
@@ -44,12 +45,12 @@ pub(super) fn sun_hours(
         let seen = suns_seen(sensors, scene, &directions);
         columns.push(Column {
             name: format!("sun_hours_{}", suns.name),
-            unit: "h",
+            unit: "h".to_owned(),
             values: seen
                 .iter()
                 .map(|count| *count as f64 * suns.hours)
                 .collect(),
-            errors: vec![0.0; sensors.len()],
+            errors: Exact(vec![0.0; sensors.len()]),
         });
     }
     Ok(columns)

@@ -3,21 +3,26 @@
 use serde_json::json;
 
 use super::super::job::{load_options, scene_of};
+use super::super::merge::Kind;
 use super::super::weather::{check_given, read_weather, warnings};
 use super::super::{interrupt, progress, tell, tell_no_device};
-use super::summary::Summary;
-use super::table::{Column, csv, objects, overview};
+use super::exact::Exact;
+use super::report::{Common, Form, Report};
+use super::summary::Asked;
+use super::table::{Column, place};
 use super::unreflected::{sky_component, sun_hours};
-use super::{bounces, ill, sensors};
+use super::{bounces, deliver, ill, sensors, shards};
 use crate::cli::{DaylightArgs, Metric};
 use crate::daylight::metrics::{Measures, SPATIAL_LUX};
 use crate::daylight::weather::Weather;
 use crate::daylight::weather::clock::ClockCheck;
 use crate::error::{Error, Result};
 use crate::options::{OptionValues, Options, OptionsError};
-use crate::output::{check_writable, print};
+use crate::output::check_writable;
 use crate::scene;
-use crate::sensors::{Accuracy, Sensor, TracedScene, Year, YearLight, YearRun, measure_year};
+use crate::sensors::{
+    Accuracy, BLOCK, Sensor, Shard, TracedScene, Year, YearLight, YearRun, measure_year,
+};
 
 /// Most records of a weather file: with more, the skies of the year no longer fit into memory.
 const MOST_RECORDS: usize = 60_000;
@@ -49,43 +54,75 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
     let measures = measures(args, weather, &light)?;
     let traced = TracedScene::new(&scene);
     let year = measured(args, &settings, &traced, &light, &measures, &all);
-    let sensors = &all[..year.sensors.len()];
-    let odd = oddities(args, &year, &all);
-    tell(&settings, odd.iter())?;
-    told.extend(odd);
     if let (Some(path), Some(weather)) = (&args.ill, weather) {
         ill::write(path, weather, &light, &year)?;
     }
+    let sensors: Vec<(usize, Sensor)> = year.numbers.iter().map(|n| (*n, all[*n])).collect();
     let mut columns = columns(args, &measures, &year);
     let asks = |metric| args.asked_metrics().contains(&metric);
     if asks(Metric::Vsc) {
-        columns.push(sky_component(sensors, &traced, settings.seed));
+        columns.push(sky_component(&sensors, &traced, settings.seed));
     }
     if asks(Metric::Sunhours) {
-        columns.extend(sun_hours(args, weather, &settings, sensors, &traced)?);
+        columns.extend(sun_hours(args, weather, &settings, &sensors, &traced)?);
     }
-    let summary = Summary::of(args, &measures, &light, &year);
-    print(&if args.json {
-        let report = json!({
-            "sensors": objects(sensors, &columns, scene.origin),
-            "sda": summary.sda_json(),
-            "ase": summary.ase,
-            "en17037": summary.en17037,
-            "blinds": "none",
-            "schedule": args.schedule.to_string(),
-            "occupied_hours": measures.occupied_hours(),
-            "bounces": settings.bounces.to_string(),
-            "paths": year.sensors.first().map_or(0, |sensor| sensor.paths),
-            "weather": weather.map(|weather| weather_json(weather, clock.as_ref())),
-            "warnings": told,
-        });
-        format!("{report:#}\n")
-    } else if args.csv {
-        csv(sensors, &columns, scene.origin)
-    } else {
-        let head = head(args, &settings, weather, &measures, sensors);
-        head + &overview(&columns) + &summary.text()
-    })
+    let mut common = common(args, &settings, &measures, &light);
+    common.weather = weather
+        .map_or(serde_json::Value::Null, |w| weather_json(w, clock.as_ref()))
+        .to_string();
+    common.place = weather.map(|weather| weather.station.name.clone());
+    (common.sensors, common.warnings) = (all.len(), told);
+    let places = sensors
+        .iter()
+        .flat_map(|(_, sensor)| place(sensor, scene.origin));
+    let report = Report {
+        common,
+        places: places.collect(),
+        columns,
+        paths: year.sensors.iter().map(|sensor| sensor.paths).collect(),
+        error_so_far: year.error.into(),
+        numbers: year.numbers,
+    };
+    if let Some(shard) = args.shard {
+        let weather = format!("{:?}", weather.map(|w| (&w.station, &w.records)));
+        let key = shards::key(Kind::Year, args, &settings, (&scene, &all), weather);
+        let mine = (0..all.len()).filter(|at| shard.takes(at / BLOCK)).count();
+        return shards::write(args, (&key, shard), &report, [report.numbers.len(), mine]);
+    }
+    tell(&settings, report.oddities().iter())?;
+    deliver(args.output.as_deref(), &report.text())
+}
+
+/// What is the same for all sensors, but for weather and warnings.
+fn common(
+    args: &DaylightArgs,
+    settings: &Options,
+    measures: &Measures,
+    light: &YearLight,
+) -> Common {
+    let asks = |metric| args.asked_metrics().contains(&metric);
+    let hours = || {
+        Exact(vec![
+            measures.en17037_hours(),
+            measures.median_diffuse_lux(&light.hours),
+        ])
+    };
+    Common {
+        form: Form::of(args),
+        asked: Asked {
+            sda: asks(Metric::Sda),
+            ase: asks(Metric::Ase),
+            en17037: asks(Metric::En17037).then(hours),
+        },
+        schedule: args.schedule.to_string(),
+        occupied_hours: measures.occupied_hours().into(),
+        bounces: settings.bounces.to_string(),
+        weather: String::new(),
+        place: None,
+        error: args.error.into(),
+        sensors: 0,
+        warnings: Vec::new(),
+    }
 }
 
 /// The weather file, if one is given.
@@ -157,7 +194,10 @@ fn measured(
     sensors: &[Sensor],
 ) -> Year {
     interrupt::listen();
-    let bar = progress(sensors.len() as u64, "sensors", settings.quiet);
+    let shard = args.shard.unwrap_or(Shard::ALL);
+    let is_mine = |at: &usize| shard.takes(at / BLOCK);
+    let mine = (0..sensors.len()).filter(is_mine).count();
+    let bar = progress(mine as u64, "sensors", settings.quiet);
     let names = names(measures);
     // The daylight factor of EN 17037 comes along with its hours.
     let asks_for_factor = args.metrics.contains(&Metric::Df);
@@ -177,6 +217,7 @@ fn measured(
             },
             wanted: wanted.collect(),
             keeps_hours: args.ill.is_some(),
+            shard,
             progress: &|done, error| {
                 bar.set_position(done as u64);
                 if let Some(error) = error {
@@ -190,25 +231,6 @@ fn measured(
     year
 }
 
-/// What a reader must know of an incomplete result, one line each.
-fn oddities(args: &DaylightArgs, year: &Year, all: &[Sensor]) -> Vec<String> {
-    let done = year.sensors.len();
-    let mut lines = Vec::new();
-    if interrupt::is_interrupted() {
-        lines.push(format!(
-            "interrupted: {done} of {} sensors are measured",
-            all.len()
-        ));
-    }
-    if year.error > args.error {
-        lines.push(format!(
-            "the standard error is {:.4}, above {}; raise --max-paths or --error",
-            year.error, args.error
-        ));
-    }
-    lines
-}
-
 /// The columns of the metrics that were asked for, those of exposure last.
 fn columns(args: &DaylightArgs, measures: &Measures, year: &Year) -> Vec<Column> {
     let unit = |name: &str| match name {
@@ -219,7 +241,7 @@ fn columns(args: &DaylightArgs, measures: &Measures, year: &Year) -> Vec<Column>
     let names = names(measures);
     let of = |(at, name): (usize, &String)| Column {
         name: name.clone(),
-        unit: unit(name),
+        unit: unit(name).to_owned(),
         values: year.sensors.iter().map(|s| s.values[at]).collect(),
         errors: year.sensors.iter().map(|s| s.errors[at]).collect(),
     };
@@ -231,9 +253,9 @@ fn columns(args: &DaylightArgs, measures: &Measures, year: &Year) -> Vec<Column>
     if args.asked_metrics().contains(&Metric::Ase) {
         columns.push(Column {
             name: "ase_hours".to_owned(),
-            unit: "h",
+            unit: "h".to_owned(),
             values: year.sensors.iter().map(|s| s.exposed_hours).collect(),
-            errors: vec![0.0; year.sensors.len()],
+            errors: Exact(vec![0.0; year.sensors.len()]),
         });
     }
     columns
@@ -250,27 +272,4 @@ fn weather_json(weather: &Weather, clock: Option<&ClockCheck>) -> serde_json::Va
         "clock_minutes": clock.map(|c| c.minutes),
         "clock_is_off": clock.map(ClockCheck::is_off),
     })
-}
-
-fn head(
-    args: &DaylightArgs,
-    settings: &Options,
-    weather: Option<&Weather>,
-    measures: &Measures,
-    sensors: &[Sensor],
-) -> String {
-    let place = weather.map(|weather| {
-        let hours = measures.occupied_hours();
-        let name = &weather.station.name;
-        format!(
-            "{name}\n{hours} h, {} every day; no blinds; ",
-            args.schedule
-        )
-    });
-    format!(
-        "{}{} sensors; bounces: {}\n\n",
-        place.unwrap_or_default(),
-        sensors.len(),
-        settings.bounces,
-    )
 }

@@ -15,6 +15,6 @@ pub fn run(args: &MergeArgs) -> Result<()> {
     let parts = self::part::gather(&args.shards)?;
     match parts.kind {
         Kind::Sequence => super::sequence::merge(&parts, args),
-        Kind::Moment | Kind::Year => Ok(()),
+        Kind::Moment | Kind::Year => super::daylight::merge(&parts, args),
     }
 }

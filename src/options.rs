@@ -47,7 +47,8 @@ pub use values::{
     RouteChoice, Size, SolarTime, Switch, When,
 };
 pub(crate) use values::{
-    elevation, exposure_factor, inset, plane_height, ratio, spacing, sun as direction, threshold,
+    elevation, exposure_factor, inset, plan_width, plane_height, ratio, spacing, sun as direction,
+    threshold,
 };
 
 use crate::daylight::atmosphere::air::Air;

@@ -72,9 +72,11 @@ pub struct StudyArgs {
         default_value = "9,12,15,17"
     )]
     pub hours: Vec<DayTime>,
-    /// Look straight down, north at the top, instead of by a camera: in perspective, from so far above that verticals hardly lean.
-    #[arg(long, conflicts_with_all = ["camera", "eye", "target", "fov"])]
-    pub plan: bool,
+    /// Look straight down, north at the top, instead of by a camera: in perspective, from so far above that verticals hardly lean. A number
+    /// (--plan=60) is the width of what is shown, metres, around --target or the middle of the model.
+    #[arg(long, value_name = "METRES", num_args = 0..=1, require_equals = true, default_missing_value = "0",
+          value_parser = crate::options::plan_width, conflicts_with_all = ["camera", "eye", "fov"])]
+    pub plan: Option<f64>,
     /// The sheet.
     #[arg(short, long, value_name = "FILE.png", value_parser = named(&["png"]), default_value = "study.png")]
     pub output: PathBuf,

@@ -8,7 +8,7 @@ use super::names::files;
 use super::renderer::{Renderer, precision, wanted_layers};
 use super::tiled::Tiled;
 use crate::error::{Error, Result};
-use crate::options::{AntiAliasing, Options, OptionsError, SeveralPictures};
+use crate::options::{AntiAliasing, OptionValues, Options, OptionsError, SeveralPictures};
 use crate::output::{check_writable, print};
 use crate::passes::light::lighting::Show;
 use crate::passes::picture::tone_map::is_light;
@@ -19,10 +19,7 @@ use crate::passes::picture::tone_map::is_light;
 /// Any error up to writing the files; existing files are then left unchanged.
 pub fn run(scene: Option<&Path>, output: &Path, options: &SeveralPictures) -> Result<()> {
     let exr = is_exr(output);
-    if options.first.alone()?.layers && !exr {
-        let what = "--layers needs an .exr file; choose one with -o";
-        return Err(OptionsError(what.to_owned()).into());
-    }
+    check_layers(&options.first, exr)?;
     check_writable(output)?;
     let pictures = options.pictures()?;
     let (mut job, context) = Job::on_device(scene, &pictures[0])?;
@@ -51,6 +48,15 @@ pub fn run(scene: Option<&Path>, output: &Path, options: &SeveralPictures) -> Re
         };
         context.check_validation()?;
         print(&format!("{}: {summary}\n", file.display()))?;
+    }
+    Ok(())
+}
+
+/// Fails if there is nowhere to put layers.
+pub(super) fn check_layers(options: &OptionValues, exr: bool) -> Result<()> {
+    if options.alone()?.layers && !exr {
+        let what = "--layers needs an .exr file; choose one with -o";
+        return Err(OptionsError(what.to_owned()).into());
     }
     Ok(())
 }

@@ -1,12 +1,14 @@
 //! `skylight study`: one sheet of pictures, a row for each day and a column for each hour.
 
 use chrono::{DateTime, Datelike, FixedOffset, NaiveDate};
+use glam::{DVec3, Vec3};
 
 use super::interrupt;
 use super::job::Job;
 use super::progress;
-use super::render::check_anti_aliasing;
+use super::render::{check_anti_aliasing, check_layers};
 use super::renderer::{Picture, Renderer};
+use super::tiled::check_whole;
 use crate::cli::StudyArgs;
 use crate::daylight::place::Place;
 use crate::daylight::sun_hours::SunDate;
@@ -40,16 +42,18 @@ pub fn run(args: &StudyArgs, options: &OptionValues) -> Result<()> {
             "--dates and --hours say when; leave out --{name}"
         )));
     }
+    check_layers(options, false)?;
     check_writable(&args.output)?;
     let mut options = options.clone();
     options.set_default("size", PICTURE);
     options.set_default("samples", SAMPLES);
-    if args.plan {
+    if args.plan.is_some() {
         // A plan is seen from so far that its air would show.
         options.set_default("aerial", "off");
     }
     let (mut job, context) = Job::on_device(args.scene.as_deref(), &options)?;
     check_anti_aliasing(&job.settings, false)?;
+    check_whole(&job, &context)?;
     let moments = moments(args, &job.settings).map_err(wrong)?;
     let layout = layout(args, &job.settings).map_err(wrong)?;
     let bar = progress(moments.len() as u64, "pictures", job.settings.quiet);
@@ -59,8 +63,8 @@ pub fn run(args: &StudyArgs, options: &OptionValues) -> Result<()> {
     for moment in &moments {
         options.set("when", moment.to_rfc3339());
         job.turn_to(&options)?;
-        if args.plan {
-            job.camera = Camera::plan(&job.subject.bounds, layout.aspect());
+        if let Some(width) = args.plan {
+            job.camera = plan(&job, width, layout.aspect());
         }
         let renderer = match &mut renderer {
             Some(renderer) => {
@@ -97,6 +101,18 @@ pub fn run(args: &StudyArgs, options: &OptionValues) -> Result<()> {
         "{output}: {width}x{height}, {count} pictures{}\n",
         view(args, &job)
     ))
+}
+
+/// The view from above; a width of 0 is that of the model.
+fn plan(job: &Job, width: f64, aspect: f32) -> Camera {
+    let width = (width > 0.0).then_some(width as f32);
+    let mut camera = Camera::plan(&job.subject.bounds, width, aspect);
+    if let Some(target) = job.settings.target {
+        let middle = (DVec3::from(target) - job.scene.origin).as_vec3();
+        let aside = (middle - camera.target) * Vec3::new(1.0, 0.0, 1.0);
+        (camera.eye, camera.target) = (camera.eye + aside, camera.target + aside);
+    }
+    camera
 }
 
 /// Every hour of every day, by the clock of the place.
@@ -185,7 +201,7 @@ fn title(args: &StudyArgs, job: &Job) -> Vec<String> {
 
 /// How a plan is seen; nothing for other views.
 fn view(args: &StudyArgs, job: &Job) -> String {
-    if !args.plan {
+    if args.plan.is_none() {
         return String::new();
     }
     let above = job.camera.eye.y - job.camera.target.y;

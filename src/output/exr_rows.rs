@@ -11,6 +11,7 @@ use exr::meta::attribute::{ChannelDescription, SampleType, Text};
 use exr::meta::header::Header;
 
 use super::exr::{BT709, ENCODING, attributes, full_name};
+use super::exr_header::sort_attributes;
 use super::{Channels, Metadata, reason, temporary, write_error};
 use crate::error::{Error, Result};
 
@@ -37,7 +38,7 @@ pub fn write_exr_rows(
 ) -> Result<()> {
     let channels = sorted(layers);
     let header = header(size, &channels, metadata);
-    let file = temporary(path)?;
+    let mut file = temporary(path)?;
     let handle = file.as_file().try_clone();
     let handle = handle.map_err(|e| write_error(path, reason(&e)))?;
     // The library's error type cannot hold this error.
@@ -67,6 +68,8 @@ pub fn write_exr_rows(
         (Some(error), _) => return Err(error),
         (None, written) => written.map_err(|e| write_error(path, e))?,
     }
+    let sorted = sort_attributes(file.as_file_mut());
+    sorted.map_err(|e| write_error(path, reason(&e)))?;
     let synced = file.as_file().sync_all();
     synced.map_err(|e| write_error(path, reason(&e)))?;
     file.persist(path)

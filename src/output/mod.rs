@@ -2,6 +2,7 @@
 
 mod canvas;
 mod exr;
+mod exr_header;
 mod exr_rows;
 mod hdr;
 mod ktx2;

@@ -93,7 +93,6 @@ fn pictures_of_one_call_are_those_of_single_calls() {
             assert!(is_same, "{name} with {options} differs");
         }
     }
-    // The second has the default view, from within or without.
     let words = format!("render island {SMALL} --moment dusk,storm -o {{moment}}.png");
     let (error, code) = fail(folder.path(), &words);
     assert!(
@@ -306,8 +305,12 @@ fn a_study_is_one_sheet_of_all_days_and_hours() {
         said.contains("m above, north up (perspective of 2°)"),
         "{said}"
     );
+    succeed(
+        folder.path(),
+        &format!("{line} --plan=40 --target 3,0,2 -o near.png"),
+    );
     let bytes = |name: &str| fs::read(folder.path().join(name)).expect("a sheet");
-    assert!(bytes("plan.png") != bytes("sheet.png"));
+    assert!(bytes("plan.png") != bytes("sheet.png") && bytes("plan.png") != bytes("near.png"));
     succeed(folder.path(), &format!("{line} --plan -o again.png"));
     assert!(
         bytes("plan.png") == bytes("again.png"),
@@ -376,6 +379,16 @@ fn what_cannot_be_drawn_is_one_line() {
         (
             "sequence --place oslo --from 2026-03-29T02:30 --to 2026-06-21T12:00 --step 1d -o a%d.png",
             "--from: 2026-03-29 02:30 is skipped",
+            2,
+        ),
+        (
+            &format!("{sequence} -o a%d.png --tile 64"),
+            "drawn in one piece, not in tiles",
+            2,
+        ),
+        (
+            &format!("{sequence} -o a%d.png --layers"),
+            "--layers needs an .exr",
             2,
         ),
         ("study --dates year", "are days", 2),

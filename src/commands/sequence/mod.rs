@@ -17,8 +17,9 @@ use super::interrupt;
 use super::job::Job;
 use super::merge::{JobKey, Kind, write_part};
 use super::progress;
-use super::render::{check_anti_aliasing, is_exr};
+use super::render::{check_anti_aliasing, check_layers, is_exr};
 use super::renderer::Renderer;
+use super::tiled::check_whole;
 use crate::cli::{Expose, SequenceArgs};
 use crate::daylight::colour::luminance;
 use crate::daylight::place::Place;
@@ -56,6 +57,7 @@ pub fn run(args: &SequenceArgs, options: &OptionValues) -> Result<()> {
             "--from and --to say when; leave out --{name}"
         )));
     }
+    check_layers(options, is_exr(&args.output))?;
     check_writable(&args.output)?;
     let target = Target::new(args)?;
     let mut first = options.clone();
@@ -64,6 +66,7 @@ pub fn run(args: &SequenceArgs, options: &OptionValues) -> Result<()> {
     let loaded = Job::on_device(scene, &first);
     let (job, context) = loaded.map_err(|error| renamed(error, "--when:", "--from:"))?;
     check_anti_aliasing(&job.settings, is_exr(&args.output))?;
+    check_whole(&job, &context)?;
     let moments = moments(args, &job.settings).map_err(wrong)?;
     interrupt::listen();
     Sequence {
@@ -204,7 +207,8 @@ impl Sequence<'_> {
         decided_by.extend(moments);
         decided_by.push(self.args.expose.to_string());
         decided_by.push(self.job.scene.digest());
-        decided_by.push(self.args.output.to_string_lossy().into_owned());
+        let name = self.args.output.file_name().unwrap_or_default();
+        decided_by.push(name.to_string_lossy().into_owned());
         JobKey::new(Kind::Sequence, &decided_by)
     }
 

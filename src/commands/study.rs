@@ -1,5 +1,7 @@
 //! `skylight study`: one sheet of pictures, a row for each day and a column for each hour.
 
+use std::sync::Arc;
+
 use chrono::{DateTime, Datelike, FixedOffset, NaiveDate};
 use glam::{DVec3, Vec3};
 
@@ -13,6 +15,7 @@ use crate::cli::StudyArgs;
 use crate::daylight::place::Place;
 use crate::daylight::sun_hours::SunDate;
 use crate::error::{Error, Result};
+use crate::gpu::Context;
 use crate::options::{OptionValues, Options, OptionsError};
 use crate::output::{
     Cell, Effort, Encoding, Metadata, SheetLayout, check_writable, compose, print, write_png,
@@ -51,56 +54,85 @@ pub fn run(args: &StudyArgs, options: &OptionValues) -> Result<()> {
         // A plan is seen from so far that its air would show.
         options.set_default("aerial", "off");
     }
-    let (mut job, context) = Job::on_device(args.scene.as_deref(), &options)?;
+    let (job, context) = Job::on_device(args.scene.as_deref(), &options)?;
     check_anti_aliasing(&job.settings, false)?;
     check_whole(&job, &context)?;
     let moments = moments(args, &job.settings).map_err(wrong)?;
     let layout = layout(args, &job.settings).map_err(wrong)?;
-    let bar = progress(moments.len() as u64, "pictures", job.settings.quiet);
-    interrupt::listen();
-    let (mut renderer, mut cells): (Option<Renderer>, Vec<Cell>) = (None, Vec::new());
-    let mut metadata = None;
-    for moment in &moments {
-        options.set("when", moment.to_rfc3339());
-        job.turn_to(&options)?;
-        if let Some(width) = args.plan {
-            job.camera = plan(&job, width, layout.aspect());
+    let study = Study {
+        args,
+        options,
+        job,
+        context,
+        layout,
+    };
+    study.run(&moments)
+}
+
+/// A study while it is drawn.
+struct Study<'a> {
+    args: &'a StudyArgs,
+    options: OptionValues,
+    job: Job,
+    context: Arc<Context>,
+    layout: SheetLayout,
+}
+
+impl Study<'_> {
+    fn run(mut self, moments: &[DateTime<FixedOffset>]) -> Result<()> {
+        let bar = progress(moments.len() as u64, "pictures", self.job.settings.quiet);
+        interrupt::listen();
+        let (mut renderer, mut cells) = (None, Vec::new());
+        let mut of_first = None;
+        for moment in moments {
+            let picture = self.picture(*moment, &mut renderer)?;
+            if picture.drawn.is_interrupted || interrupt::is_interrupted() {
+                let (done, all) = (cells.len(), moments.len());
+                let what = "pictures were drawn, and no sheet is written";
+                return Err(Error::Interrupted { done, all, what });
+            }
+            of_first.get_or_insert_with(|| (picture.metadata.clone(), picture.encoding));
+            cells.push(cell(&self.job, *moment, picture));
+            bar.inc(1);
         }
-        let renderer = match &mut renderer {
+        self.context.check_validation()?;
+        bar.finish_and_clear();
+        self.write(&cells, of_first.unwrap_or((Vec::new(), Encoding::Srgb)))
+    }
+
+    fn picture(
+        &mut self,
+        moment: DateTime<FixedOffset>,
+        renderer: &mut Option<Renderer>,
+    ) -> Result<Picture> {
+        let job = &mut self.job;
+        self.options.set("when", moment.to_rfc3339());
+        job.turn_to(&self.options)?;
+        if let Some(width) = self.args.plan {
+            job.camera = plan(job, width, self.layout.aspect());
+        }
+        let renderer = match renderer {
             Some(renderer) => {
-                renderer.turn_to(&job)?;
+                renderer.turn_to(job)?;
                 renderer
             }
-            none => none.insert(Renderer::new(&job, &context, false)?.without_progress()),
+            none => none.insert(Renderer::new(job, &self.context, false)?.without_progress()),
         };
-        let picture = renderer.picture(&job)?;
-        if picture.drawn.is_interrupted || interrupt::is_interrupted() {
-            let (done, all) = (cells.len(), moments.len());
-            let what = "pictures were drawn, and no sheet is written";
-            return Err(Error::Interrupted { done, all, what });
-        }
-        metadata.get_or_insert_with(|| (picture.metadata.clone(), picture.encoding));
-        cells.push(cell(&job, *moment, picture));
-        bar.inc(1);
+        renderer.picture(job)
     }
-    context.check_validation()?;
-    bar.finish_and_clear();
-    let (metadata, encoding) = metadata.unwrap_or((Vec::new(), Encoding::Srgb));
-    let (size, rgba) = compose(&layout, &title(args, &job), &cells);
-    let metadata = of_sheet(args, metadata);
-    write_png(
-        &args.output,
-        size,
-        &rgba,
-        (encoding, Effort::Small),
-        &metadata,
-    )?;
-    let ([width, height], count) = (size, cells.len());
-    let output = args.output.display();
-    print(&format!(
-        "{output}: {width}x{height}, {count} pictures{}\n",
-        view(args, &job)
-    ))
+
+    fn write(&self, cells: &[Cell], (metadata, encoding): (Metadata, Encoding)) -> Result<()> {
+        let (args, job) = (self.args, &self.job);
+        let (size, rgba) = compose(&self.layout, &title(args, job), cells);
+        let metadata = of_sheet(args, metadata);
+        let how = (encoding, Effort::Small);
+        write_png(&args.output, size, &rgba, how, &metadata)?;
+        let ([width, height], count) = (size, cells.len());
+        let (output, view) = (args.output.display(), view(args, job));
+        print(&format!(
+            "{output}: {width}x{height}, {count} pictures{view}\n"
+        ))
+    }
 }
 
 /// The view from above; a width of 0 is that of the model.

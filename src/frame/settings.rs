@@ -9,7 +9,7 @@ use super::{AntiAliasing, Sampling, Visibility};
 use crate::gpu::{Context, Result};
 use crate::passes::bounces::cells::{Bounces, Cells};
 use crate::passes::bounces::tree::{RayConstants, Tree};
-use crate::passes::dome::route::DomeBy;
+use crate::passes::dome::route::{DomeBy, Work};
 use crate::passes::dome::specular::{Mirrors, Reflections};
 use crate::passes::light::background::Background;
 use crate::passes::light::lighting::{
@@ -286,13 +286,16 @@ impl FrameSettings {
         self
     }
 
-    /// Maps or rays of the dome: what costs less, but maps where lobes look light up in them.
+    /// Maps or rays of the dome: what serves better, but maps where lobes look light up in them.
     fn dome_by(&self, geometry: &Geometry) -> DomeBy {
         if self.lighting.mirrors.reflections == Reflections::Hidden {
             return DomeBy::Maps;
         }
-        let size = self.of_picture.unwrap_or(self.size).as_u64vec2();
-        let triangles = geometry.casting_triangles();
-        self.sampling.dome.by.chosen(triangles, size.x * size.y)
+        let (size, dome) = (self.of_picture.unwrap_or(self.size), self.sampling.dome);
+        dome.by.chosen(Work {
+            triangles: geometry.casting_triangles(),
+            pixels: u64::from(size.x) * u64::from(size.y),
+            texel: geometry.casters().extent().max_element() / dome.map_edge as f32,
+        })
     }
 }

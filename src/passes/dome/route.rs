@@ -1,12 +1,13 @@
 //! How the sky's visibility in the dome's directions is found: by shadow maps of the whole scene, or by rays through its hierarchy.
 //!
 //! A map costs its triangles, whatever the size of the picture; rays cost the pixels, whatever the number of triangles.
-//! Both sample the same directions, so they converge alike.
+//! Both sample the same directions, so they converge alike, but a map loses what is smaller than its texels.
 
 /// How the sky's visibility is found in the directions of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum DomeBy {
-    /// What costs less, by the numbers of triangles and pixels: the same for the same scene and options on every device.
+    /// What costs less, by the numbers of triangles and pixels, where maps are fine enough: the same for the same scene and options on every
+    /// device.
     #[default]
     Auto,
     /// A shadow map for each direction.
@@ -19,12 +20,28 @@ pub enum DomeBy {
 /// 33 ms for 230 400 pixels. Texels are left out: they are a constant that is small where either way is expensive.
 const TRIANGLE: f64 = 0.7;
 
+/// Coarsest texel of the maps, metres: the shade of what is thinner than two of them is lost, and people look at eaves, rails and steps of a
+/// decimetre.
+const COARSEST: f32 = 0.05;
+
+/// What the choice depends on.
+#[derive(Debug, Clone, Copy)]
+pub struct Work {
+    /// Number of triangles of opaque casters.
+    pub triangles: usize,
+    /// Number of pixels of the whole picture.
+    pub pixels: u64,
+    /// Edge of a texel of a map of all casters, metres.
+    pub texel: f32,
+}
+
 impl DomeBy {
-    /// Maps or rays, for opaque casters of this many triangles and pictures of this many pixels.
+    /// Maps or rays.
     #[must_use]
-    pub fn chosen(self, triangles: usize, pixels: u64) -> Self {
+    pub fn chosen(self, work: Work) -> Self {
+        let is_cheaper = TRIANGLE * work.triangles as f64 > work.pixels as f64;
         match self {
-            Self::Auto if TRIANGLE * triangles as f64 > pixels as f64 => Self::Rays,
+            Self::Auto if is_cheaper || work.texel > COARSEST => Self::Rays,
             Self::Auto => Self::Maps,
             asked => asked,
         }
@@ -35,9 +52,17 @@ impl DomeBy {
 mod tests {
     use super::*;
 
+    fn work(triangles: usize, pixels: u64) -> Work {
+        Work {
+            triangles,
+            pixels,
+            texel: 0.02,
+        }
+    }
+
     #[test]
     fn many_triangles_take_rays_and_many_pixels_maps() {
-        let auto = |triangles, pixels| DomeBy::Auto.chosen(triangles, pixels);
+        let auto = |triangles, pixels| DomeBy::Auto.chosen(work(triangles, pixels));
         let (small, large) = (640 * 360, 3840 * 2160);
         assert_eq!(auto(2_000, small), DomeBy::Maps);
         assert_eq!(auto(871_000, small), DomeBy::Rays);
@@ -46,10 +71,23 @@ mod tests {
     }
 
     #[test]
+    fn coarse_maps_make_way_for_rays() {
+        let auto = |texel| {
+            DomeBy::Auto.chosen(Work {
+                texel,
+                ..work(2_000, 640 * 360)
+            })
+        };
+        // A house of 30 m, and an island of 200 m, in maps of 1024 texels.
+        assert_eq!(auto(30.0 / 1024.0), DomeBy::Maps);
+        assert_eq!(auto(200.0 / 1024.0), DomeBy::Rays);
+    }
+
+    #[test]
     fn what_is_asked_for_is_taken() {
         for by in [DomeBy::Maps, DomeBy::Rays] {
-            assert_eq!(by.chosen(0, 1 << 20), by);
-            assert_eq!(by.chosen(1 << 30, 1), by);
+            assert_eq!(by.chosen(work(0, 1 << 20)), by);
+            assert_eq!(by.chosen(work(1 << 30, 1)), by);
         }
     }
 }

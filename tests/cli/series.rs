@@ -7,8 +7,11 @@ use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Small and quick, under a sky that is the same everywhere.
-const SMALL: &str = "--sky hosek --size 64x40 --irradiance-samples 64 --quiet";
+/// Small and quick: without bounces, under a quick sky.
+const SMALL: &str =
+    "--sky hosek --size 64x40 --irradiance-samples 64 --quiet --bounces 0 --ambient ssao";
+/// With the cells of all bounces, which keep light from picture to picture.
+const LIT: &str = "--sky hosek --size 48x32 --irradiance-samples 64 --quiet";
 
 fn run(folder: &Path, line: &str) -> Output {
     Command::new(env!("CARGO_BIN_EXE_skylight"))
@@ -67,11 +70,12 @@ fn pictures_of_one_call_are_those_of_single_calls() {
     let folder = scratch();
     let [noon, late] = ["2026-09-24T12:00", "2026-09-24T17:30"];
     for (extension, options) in [
-        ("png", "--samples 16 --visibility dome"),
-        ("png", "--false-colour luminance"),
-        ("exr", "--layers"),
+        ("png", LIT.to_owned()),
+        ("png", format!("{SMALL} --samples 16 --visibility dome")),
+        ("png", format!("{SMALL} --false-colour luminance")),
+        ("exr", format!("{SMALL} --layers")),
     ] {
-        let words = format!("render colonnade {SMALL} {options}");
+        let words = format!("render colonnade {options}");
         let all = format!("{words} --camera porch,pool --when {noon} --when {late}");
         let said = succeed(
             folder.path(),

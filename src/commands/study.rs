@@ -29,7 +29,7 @@ const SAMPLES: u32 = 16;
 /// Most pixels of a sheet.
 const MOST_PIXELS: u64 = 1 << 28;
 /// Lines of the title and of each caption.
-const LINES: [u32; 2] = [2, 2];
+const LINES: [u32; 2] = [2, 3];
 
 /// Draws all pictures and writes the sheet.
 ///
@@ -196,22 +196,15 @@ fn layout(args: &StudyArgs, settings: &Options) -> std::result::Result<SheetLayo
 
 /// A picture with date, hour, and where the sun stands.
 fn cell(job: &Job, moment: DateTime<FixedOffset>, picture: Picture) -> Cell {
-    let exposure = picture
-        .ev100
-        .map_or(String::new(), |ev| format!("  EV100 {ev:.1}"));
-    let when = moment.format("%Y-%m-%d  %H:%M %:z");
     let (elevation, azimuth) = (job.sun.apparent_elevation_deg, job.sun.azimuth_deg);
-    let height = if elevation < 0.0 {
-        format!("{:.1}° below the horizon", -elevation)
-    } else {
-        format!("{elevation:.1}° high")
-    };
+    let mut caption = vec![
+        moment.format("%Y-%m-%d  %H:%M %:z").to_string(),
+        format!("sun at {elevation:.1}°, azimuth {azimuth:.1}°"),
+    ];
+    caption.extend(picture.ev100.map(|ev100| format!("EV100 {ev100:.1}")));
     Cell {
         rgba: picture.rgba,
-        caption: vec![
-            format!("{when}{exposure}"),
-            format!("sun {height}, azimuth {azimuth:.1}°"),
-        ],
+        caption,
     }
 }
 

@@ -22,7 +22,7 @@ const FRAMING_MARGIN: f32 = 1.05;
 /// Vertical field of view of a plan, degrees: so narrow that verticals at its upper and lower edge lean by 1/57 of their height.
 const PLAN_FOV_DEG: f32 = 2.0;
 /// What a plan keeps free around its subject, so that shadows have room: as a factor on the subject's height.
-const PLAN_ROOM: f32 = 0.5;
+const PLAN_ROOM: f32 = 1.5;
 
 /// A perspective camera without roll (+Y up).
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -160,6 +160,7 @@ fn candidate(
         handle,
         extensions: &extensions,
         timestamp_bits,
+        driver: driver.driver_id,
     };
     missing.extend(lacks_for_window.iter().cloned());
     let summary = DeviceSummary {

@@ -1,6 +1,7 @@
 //! The command line: words to [`Command`]. It touches no file and prints nothing.
 
 mod args;
+mod series;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -12,17 +13,22 @@ pub use args::{
     BakeArgs, BenchArgs, CompareArgs, DaylightArgs, HourArgs, Layout, Map, Metric, Motion, SkyArgs,
     Sweep, Texels, WeatherArgs,
 };
+pub use series::{Expose, MergeArgs, SequenceArgs, StudyArgs};
 
-use crate::options::{OptionValues, Optional, choice, decides_light, one_line};
+use crate::options::{OptionValues, Optional, SeveralPictures, choice, decides_light, one_line};
 
 /// A command with its arguments.
 #[derive(Debug, Clone, PartialEq, Subcommand)]
 pub enum Command {
-    /// Render one picture to a file, without a window.
+    /// Render a picture to a file, or several of one scene, without a window.
+    ///
+    /// --camera, --moment and --when may be given several times, or as lists (--camera porch,pool): every camera in every moment. The scene is
+    /// loaded once, and each picture is the same as by itself.
     Render {
         /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (colonnade, the default; island).
         scene: Option<PathBuf>,
-        /// File to write: .png is tone-mapped, .exr is scene-linear cd/m² (lux for irradiance). - is standard output as PNG, exr:- as EXR.
+        /// File to write: .png is tone-mapped, .exr is scene-linear cd/m² (lux for irradiance). {camera} and {moment} in the name stand for
+        /// those of each picture. - is standard output as PNG, exr:- as EXR.
         #[arg(short, long, value_name = "FILE", default_value = "skylight.png", value_parser = args::named_or_stdout(&["png", "exr"]))]
         output: PathBuf,
         /// An hour of a weather file.
@@ -30,7 +36,35 @@ pub enum Command {
         at: HourArgs,
         /// Options of the picture.
         #[command(flatten)]
+        options: SeveralPictures,
+    },
+    /// Render pictures of one scene at equal steps of time: frames, or a film. The scene is loaded once.
+    ///
+    /// Ctrl-C ends after the frame before; frames that are finished stay.
+    Sequence {
+        /// Arguments of its own.
+        #[command(flatten)]
+        args: SequenceArgs,
+        /// Options of the picture.
+        #[command(flatten)]
         options: OptionValues,
+    },
+    /// Render a shadow study: one sheet of pictures, a row for each day and a column for each hour, with the sun's place below each.
+    ///
+    /// Each picture is exposed by itself unless --ev100 is given; --size is that of one, by default 480x320, with 16 --samples.
+    Study {
+        /// Arguments of its own.
+        #[command(flatten)]
+        args: StudyArgs,
+        /// Options of the picture.
+        #[command(flatten)]
+        options: OptionValues,
+    },
+    /// Put together what several machines did with --shard, and find what is missing or damaged.
+    Merge {
+        /// Arguments of its own.
+        #[command(flatten)]
+        args: MergeArgs,
     },
     /// Open a window on a scene; press ? in it for the keys.
     View {
@@ -283,7 +317,7 @@ mod tests {
                 output,
                 options,
                 ..
-            }) => (scene, output, options.alone().expect(line)),
+            }) => (scene, output, options.first.alone().expect(line)),
             other => panic!("{line}: {other:?}"),
         }
     }

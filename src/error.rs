@@ -94,6 +94,19 @@ pub enum Error {
         /// What is slower, with ratios.
         slower: String,
     },
+    /// Ctrl-C before all was written.
+    #[error("interrupted: {done} of {all} {what}")]
+    Interrupted {
+        /// How many are done.
+        done: usize,
+        /// How many were asked for.
+        all: usize,
+        /// What they are, and what became of them.
+        what: &'static str,
+    },
+    /// Parts of a job that do not make a whole.
+    #[error("cannot merge: {0}")]
+    Merge(String),
     /// Results that nobody can read.
     #[error("cannot write to standard output: {0}")]
     Stdout(String),

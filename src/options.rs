@@ -17,6 +17,7 @@ mod choices;
 mod command_line;
 mod given;
 mod resolve;
+mod several;
 mod sun_input;
 mod values;
 
@@ -40,14 +41,15 @@ pub(crate) use choices::{choice, choice_enum, choices};
 pub use given::OptionValues;
 pub use resolve::ResolveError;
 pub(crate) use resolve::{in_world, shortest};
+pub use several::SeveralPictures;
 pub use sun_input::SunInput;
 pub use values::{
     AerosolInput, AoResolution, Direction, ExposureMode, Fresnel, Hdr, Penumbra, Place, Preset,
     RouteChoice, Size, SolarTime, Switch, When,
 };
 pub(crate) use values::{
-    elevation, exposure_factor, inset, offset, plane_height, ratio, spacing, sun as direction,
-    threshold,
+    elevation, exposure_factor, inset, offset, plan_width, plane_height, ratio, spacing,
+    sun as direction, threshold,
 };
 
 use crate::daylight::atmosphere::air::Air;

@@ -11,6 +11,7 @@ use crate::daylight::sun_hours::SunDate;
 use crate::daylight::weather::YearHour;
 use crate::options::{Direction, choice, choice_enum};
 use crate::output::is_stdout;
+use crate::sensors::Shard;
 
 /// What to measure, and where to put it.
 #[derive(Debug, Clone, PartialEq, Args)]
@@ -163,7 +164,7 @@ pub struct CompareArgs {
 }
 
 /// The parser of a file name with one of these extensions; it need not be UTF-8.
-fn named(extensions: &'static [&'static str]) -> impl TypedValueParser<Value = PathBuf> {
+pub(super) fn named(extensions: &'static [&'static str]) -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(move |path| ends_in(path, extensions))
 }
 
@@ -304,6 +305,14 @@ pub struct DaylightArgs {
     /// Also write a page with assumptions, pictures, results, and the verdict of each standard; en17037 is then one of the default metrics.
     #[arg(long, value_name = "FILE.html", value_parser = named(&["html"]), conflicts_with = "hour", requires = "weather")]
     pub report: Option<PathBuf>,
+    /// Where to, instead of printing.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Measure the sensors of one part of the job, for instance 3/12, into a file, here daylight_3-of-12.shard unless -o names another:
+    /// other machines measure the others, and skylight merge makes the result of all. Over a year a part has whole blocks of 256 sensors, which
+    /// share their light.
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["ill", "plan", "heat", "report"])]
+    pub shard: Option<Shard>,
     /// Standard error at which to stop. Of a moment: of each sensor's total, relative to it. Of a year: of each metric, root mean square
     /// over the sensors; 0.01 is one point of a percentage, or 1 % of an illuminance or a daylight factor.
     #[arg(long, value_name = "R", value_parser = crate::options::ratio, default_value_t = 0.01)]

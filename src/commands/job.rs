@@ -173,6 +173,24 @@ impl Job {
         Ok(())
     }
 
+    /// Turns to another picture of the same scene: resolves other options of camera and moment. Tells what is new to warn of.
+    ///
+    /// # Errors
+    /// Invalid options, or a warning with `--strict`.
+    pub fn turn_to(&mut self, user: &OptionValues) -> Result<()> {
+        let settings = Options::resolve(user, &self.loaded)?;
+        let told = std::mem::take(&mut self.daylight.warnings);
+        self.relight(&settings)?;
+        let is_unseen = settings.eye.is_none() && settings.target.is_none();
+        if is_unseen && self.subject.inside.is_none() {
+            self.subject = self.subject.entered(&mut self.scene);
+        }
+        self.camera = settings.camera(&self.subject, self.scene.origin);
+        self.settings = settings;
+        let new = self.daylight.warnings.iter();
+        tell(&self.settings, new.filter(|line| !told.contains(line)))
+    }
+
     /// Like [`Job::new`], while another thread opens the device.
     ///
     /// # Errors

@@ -8,19 +8,24 @@ mod info;
 mod interrupt;
 mod job;
 mod light;
+mod merge;
 mod motion;
+mod names;
 mod noise;
 mod panorama;
 mod plot_spectrum;
 mod plot_study;
 mod render;
+mod renderer;
 mod samples;
+mod sequence;
 mod sky;
 mod sky_almanac;
 mod sky_compare;
 mod sky_report;
 mod sky_table;
 mod startup;
+mod study;
 mod tiled;
 mod validate;
 #[cfg(feature = "window")]
@@ -44,11 +49,14 @@ pub fn run(command: Command) -> Result<()> {
             scene,
             output,
             at,
-            options,
+            mut options,
         } => {
-            let options = weather::applied(&at, options)?;
+            options.first = weather::applied(&at, options.first)?;
             render::run(scene.as_deref(), &output, &options)
         }
+        Command::Sequence { args, options } => sequence::run(&args, &options),
+        Command::Study { args, options } => study::run(&args, &options),
+        Command::Merge { args } => merge::run(&args),
         #[cfg(feature = "window")]
         Command::View {
             scene,

@@ -128,7 +128,7 @@ impl Progress {
     /// Creates a bar for `rule`.
     pub(super) fn new(rule: &Rule, quiet: bool) -> Self {
         if quiet || rule.most < 2 {
-            return Self(ProgressBar::hidden());
+            return Self::hidden();
         }
         let bar = ProgressBar::new(u64::from(rule.most));
         // The template is constant and valid; a fault in it would only leave the default style.
@@ -138,6 +138,11 @@ impl Progress {
             bar.set_style(style);
         }
         Self(bar)
+    }
+
+    /// No bar.
+    pub(super) fn hidden() -> Self {
+        Self(ProgressBar::hidden())
     }
 
     /// Sets the name of the layer being drawn.

@@ -47,6 +47,18 @@ fn plan(job: &Job, context: &Context) -> Option<Plan> {
     )
 }
 
+/// Fails if the pictures of a job are too large to be drawn in one piece.
+///
+/// # Errors
+/// See above.
+pub(super) fn check_whole(job: &Job, context: &Context) -> Result<()> {
+    if plan(job, context).is_none() {
+        return Ok(());
+    }
+    let what = "pictures of a series are drawn in one piece, not in tiles; choose a smaller --size, and leave out --tile";
+    Err(OptionsError(what.to_owned()).into())
+}
+
 impl<'j> Tiled<'j> {
     /// Draws the overview. `None` if the image can be drawn in one piece.
     ///

@@ -69,6 +69,7 @@ pub mod sky;
 pub mod sky_sampler;
 pub mod spectrum;
 pub mod stars;
+pub mod steps;
 pub mod sun_hours;
 pub mod sun_path;
 pub mod sun_position;

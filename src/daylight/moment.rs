@@ -39,6 +39,16 @@ impl When {
     }
 }
 
+impl std::fmt::Display for When {
+    /// As it is read.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Moment(moment) => f.write_str(&moment.to_rfc3339()),
+            Self::Local(local) => write!(f, "{}", local.format("%Y-%m-%dT%H:%M:%S%.f")),
+        }
+    }
+}
+
 impl FromStr for When {
     type Err = String;
 
@@ -230,6 +240,18 @@ mod tests {
             error.contains("write 2026-03-29T03:30+02:00 or 2026-03-29T01:30+01:00"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        for text in [
+            "2026-06-21T14:00:00+02:00",
+            "2026-06-21T14:00:00",
+            "2026-06-21T14:00:00.250",
+            "2016-12-31T23:59:60+00:00",
+        ] {
+            assert_eq!(text.parse::<When>().expect(text).to_string(), text);
+        }
     }
 
     #[test]

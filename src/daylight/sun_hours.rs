@@ -20,6 +20,17 @@ pub enum SunDate {
     Day(Option<i32>, u32, u32),
 }
 
+impl std::fmt::Display for SunDate {
+    /// As it is read.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Year => f.write_str("year"),
+            Self::Day(Some(year), month, day) => write!(f, "{year}-{month}-{day}"),
+            Self::Day(None, month, day) => write!(f, "{month}-{day}"),
+        }
+    }
+}
+
 impl std::str::FromStr for SunDate {
     type Err = String;
 

@@ -116,7 +116,7 @@ fn read(line: &str, loaded: &Loaded) -> (Option<String>, Options) {
     match parse(words.iter().map(OsString::from)) {
         Ok(cli::Command::Render { scene, options, .. }) => (
             scene.map(|path| path.display().to_string()),
-            Options::resolve(&options, loaded).expect(line),
+            Options::resolve(&options.first, loaded).expect(line),
         ),
         other => panic!("{line}: {other:?}"),
     }

@@ -330,6 +330,7 @@ ranged! {
     threshold: "threshold", "lux", 1.0..=1e6;
     plane_height: "height above the floor", "m", 0.0..=100.0;
     spacing: "spacing", "m", 0.02..=100.0;
+    plan_width: "width of a plan", "m", 0.0..=1e5;
     inset: "distance from walls", "m", 0.0..=100.0;
     offset: "distance from a façade", "m", 0.001..=10.0;
     elevation: "elevation", "degrees", 0.0..=90.0;

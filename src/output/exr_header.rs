@@ -1,71 +1,75 @@
-//! The order of attributes in the head of an EXR file. The library that writes them keeps them in no order, so that the same picture would have
-//! other bytes each time.
+//! The attributes of an EXR file in the order of their names: the crate that writes them has them in another one each time, and the same
+//! picture should have the same bytes.
+//!
+//! OpenEXR, "File Layout": magic number and version, then attributes (name and type, each with a zero byte, the length and the value), a
+//! zero byte, and the table of offsets. They stay right, since the header keeps its length.
 
-/// Longest head, bytes: some hundred parameters, among them the command line.
-pub(super) const LONGEST: usize = 1 << 20;
+use std::io::{Read, Seek, SeekFrom, Write};
 
 /// Magic number and version.
-const START: usize = 8;
+const PREFIX: usize = 8;
+/// Longest header that is looked at, bytes.
+const MOST: u64 = 1 << 24;
 
-/// Sorts the attributes by name. The head keeps its length, so that all that follows keeps its place. Bytes that are no head of a file with one part
-/// stay as they are.
-pub(super) fn sort(bytes: &mut [u8]) {
-    let Some((mut attributes, end)) = attributes(bytes) else {
-        return;
+/// Sorts the attributes of a file with one part. Bytes that are no such file stay as they are.
+pub(super) fn sort_attributes(file: &mut (impl Read + Write + Seek)) -> std::io::Result<()> {
+    file.seek(SeekFrom::Start(0))?;
+    let (mut start, mut wanted) = (Vec::new(), 1 << 16);
+    let sorted = loop {
+        let missing = wanted - start.len() as u64;
+        let read = Read::take(&mut *file, missing).read_to_end(&mut start)?;
+        match sorted(&start) {
+            Some(sorted) => break sorted,
+            None if read == 0 || wanted >= MOST => return Ok(()),
+            None => wanted *= 2,
+        }
     };
-    attributes.sort();
-    let sorted: Vec<u8> = attributes.concat();
-    bytes[START..end].copy_from_slice(&sorted);
+    file.seek(SeekFrom::Start(PREFIX as u64))?;
+    file.write_all(&sorted)
 }
 
-/// The attributes, each with its name, type, size and value; and where they end.
-fn attributes(bytes: &[u8]) -> Option<(Vec<Vec<u8>>, usize)> {
-    let (mut found, mut at) = (Vec::new(), START);
-    while *bytes.get(at)? != 0 {
-        let name = at + text(&bytes[at..])?;
-        let size_at = name + text(bytes.get(name..)?)?;
-        let size = bytes.get(size_at..size_at + 4)?;
-        let size = u32::from_le_bytes([size[0], size[1], size[2], size[3]]) as usize;
-        let end = (size_at + 4).checked_add(size)?;
-        found.push(bytes.get(at..end)?.to_vec());
+/// The attributes in the order of their names; `None` if the header is not all there.
+fn sorted(file: &[u8]) -> Option<Vec<u8>> {
+    let header = file.get(PREFIX..)?;
+    let mut attributes = Vec::new();
+    let mut at = 0;
+    while *header.get(at)? != 0 {
+        let word = |from: usize| Some(from + header.get(from..)?.iter().position(|b| *b == 0)? + 1);
+        let end_of_type = word(word(at)?)?;
+        let length = header.get(end_of_type..end_of_type + 4)?;
+        let length = u32::from_le_bytes(length.try_into().ok()?);
+        let end = end_of_type + 4 + length as usize;
+        attributes.push(header.get(at..end)?);
         at = end;
     }
-    Some((found, at))
-}
-
-/// Length of a text with the zero at its end.
-fn text(bytes: &[u8]) -> Option<usize> {
-    Some(bytes.iter().position(|b| *b == 0)? + 1)
+    attributes.sort_unstable();
+    Some(attributes.concat())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Cursor;
+
+    fn attribute(name: &str, value: &[u8]) -> Vec<u8> {
+        let length = (value.len() as u32).to_le_bytes();
+        [name.as_bytes(), b"\0string\0", &length, value].concat()
+    }
 
     #[test]
-    fn attributes_are_sorted_and_the_rest_stays() {
-        let attribute = |name: &str, value: &[u8]| {
-            let size = (value.len() as u32).to_le_bytes();
-            [name.as_bytes(), b"\0string\0", &size, value].concat()
-        };
+    fn attributes_are_sorted_and_nothing_else_moves() {
         let [a, b, c] =
-            [("a", &b"1"[..]), ("b", b"two\0"), ("c", b"")].map(|(n, v)| attribute(n, v));
-        let file = |list: [&Vec<u8>; 3]| {
-            [
-                b"12345678".to_vec(),
-                list.map(Clone::clone).concat(),
-                b"\0rest".to_vec(),
-            ]
-            .concat()
-        };
-        let mut bytes = file([&c, &a, &b]);
-        sort(&mut bytes);
-        assert_eq!(bytes, file([&a, &b, &c]));
-        for end in 0..bytes.len() - 5 {
-            let mut cut = file([&c, &a, &b])[..end].to_vec();
-            let before = cut.clone();
-            sort(&mut cut);
-            assert_eq!(cut, before, "{end}");
+            [("a", &[0; 70_000][..]), ("b", b"2"), ("c", b"")].map(|(n, v)| attribute(n, v));
+        let file =
+            |list: [&[u8]; 3]| [b"magic..!", list.concat().as_slice(), b"\0offsets"].concat();
+        let mut bytes = Cursor::new(file([&c, &a, &b]));
+        sort_attributes(&mut bytes).expect("sorted");
+        assert!(bytes.into_inner() == file([&a, &b, &c]));
+        for cut in [0, 5, 30, 70_010] {
+            let part = file([&c, &a, &b])[..cut].to_vec();
+            let mut bytes = Cursor::new(part.clone());
+            sort_attributes(&mut bytes).expect("left");
+            assert!(bytes.into_inner() == part, "{cut}");
         }
     }
 }

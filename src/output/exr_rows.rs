@@ -1,6 +1,6 @@
 //! OpenEXR files written in bands, for pictures larger than memory; the files equal those of [`super::write_exr`].
 
-use std::io::{BufWriter, Read as _, Seek as _, Write as _};
+use std::io::BufWriter;
 use std::path::Path;
 
 use exr::block::writer::{ChunkWriter, SequentialBlocksCompressor};
@@ -11,7 +11,8 @@ use exr::meta::attribute::{ChannelDescription, SampleType, Text};
 use exr::meta::header::Header;
 
 use super::exr::{BT709, ENCODING, attributes, full_name};
-use super::{Channels, Metadata, exr_header, persist, reason, temporary, write_error};
+use super::exr_header::sort_attributes;
+use super::{Channels, Metadata, persist, reason, temporary, write_error};
 use crate::error::{Error, Result};
 
 /// Rows per block of the file. The rows of each band except the last must be a multiple of it.
@@ -37,7 +38,7 @@ pub fn write_exr_rows(
 ) -> Result<()> {
     let channels = sorted(layers);
     let header = header(size, &channels, metadata);
-    let file = temporary(path)?;
+    let mut file = temporary(path)?;
     let handle = file.as_file().try_clone();
     let handle = handle.map_err(|e| write_error(path, reason(&e)))?;
     // The library's error type cannot hold this error.
@@ -67,21 +68,11 @@ pub fn write_exr_rows(
         (Some(error), _) => return Err(error),
         (None, written) => written.map_err(|e| write_error(path, e))?,
     }
-    sort_header(file.as_file()).map_err(|e| write_error(path, reason(&e)))?;
+    let sorted = sort_attributes(file.as_file_mut());
+    sorted.map_err(|e| write_error(path, reason(&e)))?;
     let synced = file.as_file().sync_all();
     synced.map_err(|e| write_error(path, reason(&e)))?;
     persist(path, file)
-}
-
-/// Sorts the attributes of a file that is written.
-fn sort_header(mut file: &std::fs::File) -> std::io::Result<()> {
-    let mut head = Vec::new();
-    file.rewind()?;
-    file.take(exr_header::LONGEST as u64)
-        .read_to_end(&mut head)?;
-    exr_header::sort(&mut head);
-    file.rewind()?;
-    file.write_all(&head)
 }
 
 /// The channels in file order: sorted by name.

@@ -1,28 +1,13 @@
 //! The legend of a false-colour picture: a colour bar labelled with round values.
 
-use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
-
+use super::canvas::{Canvas, GAP, INK, LETTER, PANEL, Rectangle};
 use crate::daylight::colour::srgb_oetf;
 use crate::daylight::false_colour::{Colours, Quantity, Range, Tick};
 
-/// Font weight of the labels.
-const WEIGHT: FontWeight = FontWeight::Regular;
-/// Font height of the labels.
-const HEIGHT: RasterHeight = RasterHeight::Size16;
-/// Width and height of a character, pixels.
-const LETTER: [i32; 2] = [get_raster_width(WEIGHT, HEIGHT) as i32, HEIGHT.val() as i32];
-/// Colour of the panel, sRGB.
-const PANEL: [u8; 3] = [24; 3];
-/// Colour of labels and ticks, sRGB.
-const INK: [u8; 3] = [255; 3];
-/// Space between the parts, pixels.
-const GAP: i32 = 8;
 /// Width of the bar, pixels.
 const BAR: i32 = 18;
 /// Length of a tick, pixels.
 const TICK: i32 = 5;
-/// Picture height at which the legend is drawn at twice its size, pixels; at twice this height it is tripled, and so on.
-const HEIGHT_OF_ONE: u32 = 900;
 /// Height of the legend, tenths of the picture's height.
 const TENTHS: i32 = 7;
 
@@ -37,77 +22,6 @@ pub fn draw_legend(rgba: &mut [u8], size: [u32; 2], quantity: Quantity, colours:
         layout.draw(&mut canvas, &colours);
     }
     fits
-}
-
-/// A rectangle: left, top, width, height.
-#[derive(Debug, Clone, Copy)]
-struct Rectangle {
-    x: i32,
-    y: i32,
-    width: i32,
-    height: i32,
-}
-
-/// The picture as a canvas in units of `zoom` pixels.
-struct Canvas<'p> {
-    rgba: &'p mut [u8],
-    width: u32,
-    zoom: u32,
-    size: [i32; 2],
-}
-
-impl<'p> Canvas<'p> {
-    fn new(rgba: &'p mut [u8], [width, height]: [u32; 2]) -> Self {
-        let zoom = (height / HEIGHT_OF_ONE + 1).min(8);
-        Self {
-            rgba,
-            width,
-            zoom,
-            size: [width, height].map(|edge| (edge / zoom) as i32),
-        }
-    }
-
-    /// Blends a colour over one unit, with `alpha` in 0..=255. Units outside the picture are ignored.
-    fn blend(&mut self, x: i32, y: i32, colour: [u8; 3], alpha: u8) {
-        if !(0..self.size[0]).contains(&x) || !(0..self.size[1]).contains(&y) {
-            return;
-        }
-        let mix = |old: u8, new: u8| {
-            let [old, new, alpha] = [old, new, alpha].map(u32::from);
-            ((old * (255 - alpha) + new * alpha + 127) / 255) as u8
-        };
-        let (x, y) = (x as u32 * self.zoom, y as u32 * self.zoom);
-        for row in y..y + self.zoom {
-            for column in x..x + self.zoom {
-                let first = 4 * (row as usize * self.width as usize + column as usize);
-                for (old, new) in self.rgba[first..first + 3].iter_mut().zip(colour) {
-                    *old = mix(*old, new);
-                }
-            }
-        }
-    }
-
-    fn fill(&mut self, area: Rectangle, colour: [u8; 3]) {
-        for y in area.y..area.y + area.height {
-            for x in area.x..area.x + area.width {
-                self.blend(x, y, colour, 255);
-            }
-        }
-    }
-
-    /// Draws text from its upper left corner. Characters missing from the font are left blank.
-    fn text(&mut self, x: i32, y: i32, text: &str) {
-        for (character, left) in text.chars().zip((x..).step_by(LETTER[0] as usize)) {
-            let Some(raster) = get_raster(character, WEIGHT, HEIGHT) else {
-                continue;
-            };
-            for (row, alphas) in (y..).zip(raster.rows()) {
-                for (column, alpha) in (left..).zip(alphas) {
-                    self.blend(column, row, INK, *alpha);
-                }
-            }
-        }
-    }
 }
 
 /// Positions of the parts.
@@ -260,17 +174,6 @@ mod tests {
                 }
             }
             assert!(layout.ticks.len() >= 4);
-        }
-    }
-
-    #[test]
-    fn the_font_has_every_character_of_the_labels() {
-        let text = "0123456789.e-,cd/m²lux";
-        for character in text.chars() {
-            assert!(
-                get_raster(character, WEIGHT, HEIGHT).is_some(),
-                "{character}"
-            );
         }
     }
 

@@ -1,5 +1,6 @@
 //! Output files, written atomically; or standard output, written when the whole is there.
 
+mod canvas;
 mod drawing;
 mod exr;
 mod exr_header;
@@ -9,6 +10,7 @@ mod ktx2;
 mod legend;
 mod png;
 mod rows;
+mod sheet;
 mod stream;
 
 use std::io::Write as _;
@@ -25,6 +27,7 @@ pub use self::ktx2::{CubeLevel, TexelFormat, encode_ktx2, scale};
 pub use self::legend::draw_legend;
 pub use self::png::{Effort, Encoding, write_png};
 pub use self::rows::PngRows;
+pub use self::sheet::{Cell, SheetLayout, SheetPixels, compose};
 pub use self::stream::{STDOUT, is_exr, is_stdout, print_beside};
 
 use crate::error::{Error, Result};

@@ -19,6 +19,11 @@ const FRAMING_ELEVATION_DEG: f32 = 14.0;
 /// Distance of the default view, as a factor on the distance at which the model just fits.
 const FRAMING_MARGIN: f32 = 1.05;
 
+/// Vertical field of view of a plan, degrees: so narrow that verticals at its upper and lower edge lean by 1/57 of their height.
+const PLAN_FOV_DEG: f32 = 2.0;
+/// What a plan keeps free around its subject, so that shadows have room: as a factor on the subject's height.
+const PLAN_ROOM: f32 = 1.5;
+
 /// A perspective camera without roll (+Y up).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
@@ -99,6 +104,22 @@ impl Camera {
             eye: target + toward_eye * distance.max(10.0 * near),
             target,
             fov_deg,
+            near,
+        }
+    }
+
+    /// A view from high above, north at the top: nearly a parallel projection. `aspect` is width / height. It shows all of `bounds`, or `width`
+    /// metres around their middle.
+    pub fn plan(bounds: &Bounds, width: Option<f32>, aspect: f32) -> Self {
+        let (centre, extent) = (bounds.centre(), bounds.extent());
+        let whole = 0.5 * extent.z.max(extent.x / aspect) * FRAMING_MARGIN + PLAN_ROOM * extent.y;
+        let half = width.map_or(whole, |width| 0.5 * width / aspect);
+        let near = near_plane(bounds);
+        let height = (half / (0.5 * PLAN_FOV_DEG).to_radians().tan()).max(10.0 * near);
+        Self {
+            eye: centre + (0.5 * extent.y + height) * Vec3::Y,
+            target: centre,
+            fov_deg: PLAN_FOV_DEG,
             near,
         }
     }
@@ -254,6 +275,33 @@ mod tests {
         let clip_from_world = camera.clip_from_view(1.0) * camera.view_from_world();
         let north = clip_from_world.project_point3(Vec3::NEG_Z);
         assert!(north.is_finite() && north.y < -0.1, "{north}");
+    }
+
+    #[test]
+    fn a_plan_shows_every_corner_with_north_at_the_top() {
+        for bounds in boxes() {
+            for aspect in [16.0 / 9.0, 1.0, 0.4] {
+                let camera = Camera::plan(&bounds, None, aspect);
+                let clip_from_world = camera.clip_from_view(aspect) * camera.view_from_world();
+                let seen = bounds.corners().map(|corner| {
+                    let at = clip_from_world.project_point3(corner);
+                    let is_inside = at.x.abs() <= 1.0 && at.y.abs() <= 1.0;
+                    assert!(is_inside, "{bounds:?} aspect {aspect}: {corner} at {at}");
+                    (corner, at)
+                });
+                for (corner, at) in seen {
+                    let from_centre = corner - bounds.centre();
+                    assert!(from_centre.z * at.y >= 0.0, "south is down: {corner} {at}");
+                    assert!(from_centre.x * at.x >= 0.0, "east is right: {corner} {at}");
+                }
+                // A given width is that at the height of the top.
+                let camera = Camera::plan(&bounds, Some(8.0), aspect);
+                let clip_from_world = camera.clip_from_view(aspect) * camera.view_from_world();
+                let edge = bounds.centre() + Vec3::new(4.0, 0.5 * bounds.extent().y, 0.0);
+                let at = clip_from_world.project_point3(edge);
+                assert!((at.x - 1.0).abs() < 1e-3, "{bounds:?}: {at}");
+            }
+        }
     }
 
     #[test]

@@ -11,6 +11,7 @@ mod bvh;
 mod cache;
 mod camera;
 mod culling;
+mod digest;
 mod emitters;
 mod error;
 mod files;

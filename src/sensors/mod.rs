@@ -10,6 +10,7 @@ mod grid;
 mod numbers;
 mod path;
 mod plane;
+mod shard;
 mod sheets;
 mod suns;
 mod surface;
@@ -30,10 +31,11 @@ pub use self::facade::{Facades, make_facades};
 pub use self::grid::{GridError, read_grid};
 pub use self::path::Lights;
 pub use self::plane::{Planes, make_grid};
+pub use self::shard::Shard;
 pub use self::sheets::{Sheet, sheets};
 pub use self::surface::TracedScene;
 pub use self::unreflected::{sky_components, suns_seen};
-pub use self::year::{SensorYear, Year, YearRun, measure_year};
+pub use self::year::{BLOCK, SensorYear, Year, YearRun, measure_year};
 pub use self::year_light::YearLight;
 
 use self::path::PARTS;
@@ -105,20 +107,34 @@ pub fn measure(
     accuracy: &Accuracy,
     progress: &(dyn Fn() + Sync),
 ) -> Vec<Reading> {
+    measure_shard(sensors, Shard::ALL, scene, lights, accuracy, progress)
+}
+
+/// As [`measure`], of the sensors of a shard alone, each as it is measured among all.
+pub fn measure_shard(
+    sensors: &[Sensor],
+    shard: Shard,
+    scene: &TracedScene,
+    lights: &Lights,
+    accuracy: &Accuracy,
+    progress: &(dyn Fn() + Sync),
+) -> Vec<Reading> {
+    let mine: Vec<usize> = (0..sensors.len()).filter(|at| shard.takes(*at)).collect();
     let next = AtomicUsize::new(0);
     let work = || {
         let mut done = Vec::new();
         loop {
             let at = next.fetch_add(1, Ordering::Relaxed);
-            let Some(sensor) = sensors.get(at) else {
+            let Some(number) = mine.get(at) else {
                 return done;
             };
-            done.push((at, read(sensor, at as u32, scene, lights, accuracy)));
+            let sensor = &sensors[*number];
+            done.push((at, read(sensor, *number as u32, scene, lights, accuracy)));
             progress();
         }
     };
     let threads = thread::available_parallelism().map_or(1, usize::from);
-    let mut readings = vec![Reading::default(); sensors.len()];
+    let mut readings = vec![Reading::default(); mine.len()];
     thread::scope(|scope| {
         let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
         for worker in workers {

@@ -24,15 +24,19 @@ const MOST: u32 = 1 << 16;
 const PRECISE: f64 = 0.01;
 
 /// Light of the overcast sky of the CIE at each sensor without reflection, percent of that of open ground, and its standard error: on a
-/// façade the vertical sky component (Littlefair 2022, BR 209).
-pub fn sky_components(sensors: &[Sensor], scene: &TracedScene, of_grid: u32) -> Vec<[f64; 2]> {
-    let component = |(number, sensor): (usize, &Sensor)| {
+/// façade the vertical sky component (Littlefair 2022, BR 209). Each sensor comes with its number in the grid.
+pub fn sky_components(
+    sensors: &[(usize, Sensor)],
+    scene: &TracedScene,
+    of_grid: u32,
+) -> Vec<[f64; 2]> {
+    let component = |(number, sensor): &(usize, Sensor)| {
         let from = lifted(sensor.position, sensor.normal);
         let mut sums = [0.0; REPLICATES as usize];
         let (mut traced, mut until) = (0, FIRST_ROUND);
         loop {
             for (replicate, sum) in sums.iter_mut().enumerate() {
-                let seed = seed(of_grid, number as u32, replicate as u32);
+                let seed = seed(of_grid, *number as u32, replicate as u32);
                 for index in traced..until {
                     let mut numbers = Numbers::new(index, seed, 1);
                     let seen = outside(scene, from, sensor.normal, &mut numbers);
@@ -49,7 +53,7 @@ pub fn sky_components(sensors: &[Sensor], scene: &TracedScene, of_grid: u32) -> 
             until = 2 * traced;
         }
     };
-    sensors.par_iter().enumerate().map(component).collect()
+    sensors.par_iter().map(component).collect()
 }
 
 /// Moon & Spencer 1942: π times the luminance of the overcast sky that gives open ground 100; 0 below the horizon.
@@ -68,8 +72,8 @@ fn mean_and_error(values: &[f64]) -> [f64; 2] {
 }
 
 /// How many of these suns shine on each sensor: their centres above the horizon, in front of it and hidden by nothing opaque.
-pub fn suns_seen(sensors: &[Sensor], scene: &TracedScene, suns: &[Vec3]) -> Vec<usize> {
-    let seen = |sensor: &Sensor| {
+pub fn suns_seen(sensors: &[(usize, Sensor)], scene: &TracedScene, suns: &[Vec3]) -> Vec<usize> {
+    let seen = |(_, sensor): &(usize, Sensor)| {
         let from = lifted(sensor.position, sensor.normal);
         let shines = |sun: &&Vec3| {
             let is_before = sun.y > 0.0 && sensor.normal.dot(**sun) > 0.0;

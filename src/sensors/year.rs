@@ -15,6 +15,7 @@ use rayon::prelude::*;
 
 use super::cells::{CellLight, Cells};
 use super::numbers::{Numbers, seed};
+use super::shard::Shard;
 use super::surface::{TracedScene, lifted};
 use super::walk::{Vertex, outside, walk};
 use super::year_light::{YearLight, grey};
@@ -56,6 +57,8 @@ pub struct YearRun<'a> {
     pub wanted: Vec<bool>,
     /// Whether to keep the illuminances of every hour.
     pub keeps_hours: bool,
+    /// The part of the blocks to measure.
+    pub shard: Shard,
     /// Told of progress: sensors that are done, and the error of the block so far.
     pub progress: &'a (dyn Fn(usize, Option<f64>) + Sync),
     /// Whether to stop with what there is.
@@ -80,8 +83,10 @@ pub struct SensorYear {
 /// A year at the sensors of a grid.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Year {
-    /// Of each sensor in the order of the grid; fewer where it was stopped.
+    /// Of each sensor in the order of the grid; fewer where it was stopped, or of a shard.
     pub sensors: Vec<SensorYear>,
+    /// Numbers of these sensors in the grid.
+    pub numbers: Vec<usize>,
     /// Largest error of a block, as [`YearRun::accuracy`] counts it.
     pub error: f64,
 }
@@ -89,10 +94,14 @@ pub struct Year {
 /// Measures a year at all sensors. The same seed gives the same numbers, whatever the number of cores.
 pub fn measure_year(sensors: &[Sensor], run: &YearRun) -> Year {
     let mut year = Year::default();
-    for (number, block) in sensors.chunks(BLOCK).enumerate() {
-        let Some((measured, error)) = Block::new(block, number * BLOCK, run).measured() else {
+    let blocks = sensors.chunks(BLOCK).enumerate();
+    for (number, block) in blocks.filter(|(number, _)| run.shard.takes(*number)) {
+        let first = number * BLOCK;
+        let Some((measured, error)) = Block::new(block, first, run).measured(year.sensors.len())
+        else {
             break;
         };
+        year.numbers.extend(first..first + block.len());
         year.sensors.extend(measured);
         year.error = year.error.max(error);
         (run.progress)(year.sensors.len(), None);
@@ -138,8 +147,8 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// Rounds of paths until the error is met; `None` if stopped before the first is done.
-    fn measured(mut self) -> Option<(Vec<SensorYear>, f64)> {
+    /// Rounds of paths until the error is met; `None` if stopped before the first is done. Before it, `done` sensors were measured.
+    fn measured(mut self, done: usize) -> Option<(Vec<SensorYear>, f64)> {
         let accuracy = &self.run.accuracy;
         let most = (accuracy.max_paths / REPLICATES as u32).max(FIRST_ROUND);
         let is_wanted = self.run.wanted.contains(&true);
@@ -159,7 +168,7 @@ impl<'a> Block<'a> {
                 .map(|at| self.sensor_year(at))
                 .collect();
             let error = self.error(&measured);
-            (self.run.progress)(self.first, Some(error));
+            (self.run.progress)(done, Some(error));
             let is_met = error <= accuracy.relative_error || self.traced >= most;
             if is_met || (self.run.is_stopped)() {
                 return Some((measured, error));

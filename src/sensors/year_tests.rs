@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use super::tests::squares;
 use super::{
-    ALL_BOUNCES, Accuracy, Sensor, TracedScene, Year, YearLight, YearRun, measure_year,
+    ALL_BOUNCES, Accuracy, Sensor, Shard, TracedScene, Year, YearLight, YearRun, measure_year,
     sky_components, suns_seen,
 };
 use crate::daylight::metrics::{Measures, Schedule};
@@ -65,6 +65,7 @@ impl Setting {
             },
             wanted: vec![true; names],
             keeps_hours: true,
+            shard: Shard::ALL,
             progress: &|_, _| (),
             is_stopped: &|| false,
         };
@@ -142,13 +143,13 @@ fn a_free_facade_has_the_sky_component_of_the_formula() {
     let facade = sensor(Vec3::Y, Vec3::Z);
     let empty = Scene::default();
     let scene = TracedScene::new(&empty);
-    let [component, error] = sky_components(&[facade], &scene, 0)[0];
+    let [component, error] = sky_components(&[(0, facade)], &scene, 0)[0];
     assert!((component - expected).abs() < 0.05, "{component}");
     assert!(error <= 0.02, "{error}");
     // An endless wall as high as it is far, 45° above the sensor: the sky above 45° is left in front.
     let wall = squares(&[[Vec3::new(-1e4, 0.0, 10.0), 2e4 * Vec3::X, 11.0 * Vec3::Y]]);
     let scene = TracedScene::new(&wall);
-    let [component, _] = sky_components(&[facade], &scene, 0)[0];
+    let [component, _] = sky_components(&[(0, facade)], &scene, 0)[0];
     // The wedge of sky up to the angle t from the façade's plane: (1 − cos t)/2 of its uniform part, sin² t of the rest.
     let wedge = |t: f64| (1.0 - t.cos()) / 2.0 * 3.0 / 7.0 * 100.0;
     let steep = 100.0 * 3.0 / 7.0 * (4.0 / (3.0 * std::f64::consts::PI)) * (t45().sin().powi(2));
@@ -158,7 +159,7 @@ fn a_free_facade_has_the_sky_component_of_the_formula() {
         "{component} {expected}"
     );
     let suns = [Vec3::new(0.0, 0.6, 0.8), Vec3::new(0.0, 0.8, 0.6), -Vec3::Z];
-    assert_eq!(suns_seen(&[facade], &scene, &suns), [1]);
+    assert_eq!(suns_seen(&[(0, facade)], &scene, &suns), [1]);
 }
 
 /// 45°.

@@ -20,6 +20,8 @@ mod mitsuba_bake;
 mod moment;
 mod options;
 mod peers;
+mod series;
+mod shards;
 mod sky;
 mod streams;
 mod tiles;

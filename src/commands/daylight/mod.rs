@@ -1,21 +1,28 @@
 //! `skylight daylight`: light at the sensors of a grid, at a moment or over a year. Needs no device.
 
 mod drawings;
+mod exact;
 mod ill;
 mod moment;
+mod outcome;
 mod report;
 mod results;
+mod shards;
 mod summary;
 mod table;
 mod unreflected;
 mod verdict;
 mod year;
 
+use std::path::Path;
+
+pub(super) use self::shards::merge;
 use super::weather;
 use crate::cli::DaylightArgs;
 use crate::daylight::metrics::Blinds;
 use crate::error::Result;
 use crate::options::{OptionValues, Options};
+use crate::output::{check_writable, print, write_text};
 use crate::passes::bounces::cells::Bounces;
 use crate::scene::Scene;
 use crate::sensors::{ALL_BOUNCES, Facades, Planes, Sensor, make_facades, make_grid, read_grid};
@@ -25,6 +32,9 @@ use crate::sensors::{ALL_BOUNCES, Facades, Planes, Sensor, make_facades, make_gr
 /// # Errors
 /// A grid, a model or a weather file that cannot be read, or invalid options.
 pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
+    if let Some(output) = &args.output {
+        check_writable(output)?;
+    }
     if args.asks_for_metrics() {
         return year::run(args, options);
     }
@@ -61,6 +71,17 @@ fn blinds(args: &DaylightArgs) -> &'static str {
     match args.blinds {
         Blinds::None => "no blinds",
         Blinds::Lm83 => "blinds by LM-83",
+    }
+}
+
+/// Prints a result, or writes it to a file.
+///
+/// # Errors
+/// It cannot be written.
+fn deliver(output: Option<&Path>, text: &str) -> Result<()> {
+    match output {
+        Some(path) => write_text(path, text),
+        None => print(text),
     }
 }
 

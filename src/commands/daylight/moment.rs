@@ -3,18 +3,33 @@
 use std::fmt::Write as _;
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::super::job::Job;
+use super::super::merge::Kind;
 use super::super::{progress, tell, tell_no_device};
 use super::drawings::Plan;
-use super::table::{Column, place};
-use super::{bounces, sensors};
+use super::exact::Exact;
+use super::outcome::Form;
+use super::table::{Column, PLACE, place};
+use super::{bounces, deliver, sensors, shards};
 use crate::cli::DaylightArgs;
 use crate::error::{Error, Result};
-use crate::options::{OptionValues, OptionsError, in_world};
-use crate::output::{Drawing, check_writable, print};
-use crate::sensors::{Accuracy, Lights, Reading, Sensor, TracedScene, measure};
+use crate::options::{OptionValues, OptionsError};
+use crate::output::{Drawing, check_writable};
+use crate::sensors::{Accuracy, Lights, Reading, Sensor, Shard, TracedScene, measure_shard};
+
+/// Columns of JSON and CSV after the place: lux.
+const COLUMNS: [&str; 7] = [
+    "sky_direct_lux",
+    "sun_direct_lux",
+    "reflected_lux",
+    "total_lux",
+    "standard_error_lux",
+    "sky_reflected_lux",
+    "sun_reflected_lux",
+];
 
 /// Measures all sensors and prints them in the order of the file.
 ///
@@ -35,38 +50,43 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
         seed: job.settings.seed,
         bounces: bounces(&job.settings),
     };
+    let shard = args.shard.unwrap_or(Shard::ALL);
+    let numbers: Vec<usize> = (0..sensors.len()).filter(|at| shard.takes(*at)).collect();
     let (scene, lights) = (TracedScene::new(&job.scene), Lights::new(&job.daylight));
-    let bar = progress(sensors.len() as u64, "sensors", job.settings.quiet);
-    let readings = measure(&sensors, &scene, &lights, &accuracy, &|| bar.inc(1));
+    let bar = progress(numbers.len() as u64, "sensors", job.settings.quiet);
+    let readings = measure_shard(&sensors, shard, &scene, &lights, &accuracy, &|| bar.inc(1));
     bar.finish_and_clear();
-    let rows: Vec<(Sensor, Reading)> = sensors.into_iter().zip(readings).collect();
-    let imprecise = imprecise(&rows, args);
-    tell(&job.settings, imprecise.iter())?;
-    if let Some(path) = &args.plan {
-        plan(&rows, &job, args).write(path)?;
-    }
-    let origin = job.scene.origin;
-    let text = if args.json {
-        let warnings = job.warnings().chain(&imprecise);
-        let warnings: Vec<&String> = warnings.collect();
-        let list: Vec<_> = rows.iter().map(|(s, r)| object(s, r, origin)).collect();
-        format!("{:#}\n", json!({ "sensors": list, "warnings": warnings }))
-    } else if args.csv {
-        csv(&rows, origin)
-    } else {
-        table(&rows, origin)
+    let row =
+        |(number, reading): (&usize, &Reading)| row(&sensors[*number], reading, job.scene.origin);
+    let report = MomentReport {
+        form: Form::of(args),
+        error: args.error.into(),
+        max_paths: args.max_paths,
+        sensors: sensors.len(),
+        warnings: job.warnings().cloned().collect(),
+        rows: numbers.iter().zip(&readings).flat_map(row).collect(),
+        numbers,
     };
-    print(&text)
+    if args.shard.is_some() {
+        let given = (&job.scene, &sensors[..]);
+        let key = shards::key(Kind::Moment, args, &job.settings, given, String::new());
+        let count = report.numbers.len();
+        return shards::write(args, (&key, shard), &report, [count, count]);
+    }
+    tell(&job.settings, report.oddities().iter())?;
+    if let Some(path) = &args.plan {
+        plan(&sensors, &readings, &job, args).write(path)?;
+    }
+    deliver(args.output.as_deref(), &report.text())
 }
 
 /// A plan of all light.
-fn plan(rows: &[(Sensor, Reading)], job: &Job, args: &DaylightArgs) -> Drawing {
-    let sensors: Vec<Sensor> = rows.iter().map(|(sensor, _)| *sensor).collect();
+fn plan(sensors: &[Sensor], readings: &[Reading], job: &Job, args: &DaylightArgs) -> Drawing {
     let column = Column {
         name: "total_lux".to_owned(),
-        unit: "lux",
-        values: rows.iter().map(|(_, reading)| reading.total()).collect(),
-        errors: rows.iter().map(|(_, r)| r.standard_error).collect(),
+        unit: "lux".to_owned(),
+        values: readings.iter().map(Reading::total).collect(),
+        errors: readings.iter().map(|r| r.standard_error).collect(),
     };
     let sun = job.sun;
     let mut notes = vec![format!(
@@ -76,7 +96,7 @@ fn plan(rows: &[(Sensor, Reading)], job: &Job, args: &DaylightArgs) -> Drawing {
     let hour = args.weather.iter().zip(args.hour);
     notes.extend(hour.map(|(file, hour)| format!("{}, {hour}", file.display())));
     let plan = Plan {
-        sensors: &sensors,
+        sensors,
         scene: &job.scene,
         column: &column,
         limit: None,
@@ -86,79 +106,126 @@ fn plan(rows: &[(Sensor, Reading)], job: &Job, args: &DaylightArgs) -> Drawing {
     plan.drawing()
 }
 
-/// Sensors that ran out of paths before they were precise enough, in one line.
-fn imprecise(rows: &[(Sensor, Reading)], args: &DaylightArgs) -> Option<String> {
-    let is_imprecise = |r: &Reading| r.standard_error > args.error * r.total();
-    let count = rows.iter().filter(|(_, r)| is_imprecise(r)).count();
-    (count > 0).then(|| {
-        format!(
-            "{count} of {} sensors have a standard error above {} after {} paths; raise --max-paths or --error",
-            rows.len(),
-            args.error,
-            args.max_paths
-        )
-    })
+/// A sensor: its place and its light, in the order of [`PLACE`] and [`COLUMNS`].
+type Row = [f64; PLACE.len() + COLUMNS.len()];
+
+fn row(sensor: &Sensor, r: &Reading, origin: DVec3) -> Row {
+    let light = [
+        r.sky_direct,
+        r.sun_direct,
+        r.reflected,
+        r.total(),
+        r.standard_error,
+        r.sky_reflected,
+        r.sun_reflected,
+    ];
+    let mut row = Row::default();
+    let (of_place, of_light) = row.split_at_mut(PLACE.len());
+    of_place.copy_from_slice(&place(sensor, origin));
+    of_light.copy_from_slice(&light);
+    row
 }
 
-/// Columns of JSON and CSV: metres, unit vector, lux.
-fn columns(sensor: &Sensor, reading: &Reading, origin: DVec3) -> [(&'static str, f64); 13] {
-    let [x, y, z, nx, ny, nz] = place(sensor, origin);
-    [
-        x,
-        y,
-        z,
-        nx,
-        ny,
-        nz,
-        ("sky_direct_lux", reading.sky_direct),
-        ("sun_direct_lux", reading.sun_direct),
-        ("reflected_lux", reading.reflected),
-        ("total_lux", reading.total()),
-        ("standard_error_lux", reading.standard_error),
-        ("sky_reflected_lux", reading.sky_reflected),
-        ("sun_reflected_lux", reading.sun_reflected),
-    ]
+/// Where the total and its error are in a [`Row`].
+const TOTAL: usize = PLACE.len() + 3;
+
+/// The result at sensors.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct MomentReport {
+    form: Form,
+    /// Relative standard error at which to stop.
+    error: Exact,
+    max_paths: u32,
+    /// Sensors of the grid.
+    sensors: usize,
+    /// What is odd about model and light.
+    warnings: Vec<String>,
+    /// Numbers of these sensors in the grid.
+    numbers: Vec<usize>,
+    /// A [`Row`] for each.
+    rows: Exact,
 }
 
-fn object(sensor: &Sensor, reading: &Reading, origin: DVec3) -> serde_json::Value {
-    let columns = columns(sensor, reading, origin).into_iter();
-    columns
-        .map(|(name, value)| (name.to_owned(), value))
+impl MomentReport {
+    /// Sensors that ran out of paths before they were precise enough, in one line.
+    pub fn oddities(&self) -> Vec<String> {
+        let rows: Vec<Row> = self.rows.rows();
+        let error = self.error.one();
+        let is_imprecise = |row: &&Row| row[TOTAL + 1] > error * row[TOTAL];
+        let count = rows.iter().filter(is_imprecise).count();
+        let line = || {
+            format!(
+                "{count} of {} sensors have a standard error above {error} after {} paths; raise --max-paths or --error",
+                rows.len(),
+                self.max_paths
+            )
+        };
+        (count > 0).then(line).into_iter().collect()
+    }
+
+    /// The text of the result.
+    pub fn text(&self) -> String {
+        let rows: Vec<Row> = self.rows.rows();
+        match self.form {
+            Form::Json => {
+                let mut warnings = self.warnings.clone();
+                warnings.extend(self.oddities());
+                let list: Vec<_> = rows.iter().map(object).collect();
+                format!("{:#}\n", json!({ "sensors": list, "warnings": warnings }))
+            }
+            Form::Csv => csv(&rows),
+            Form::Table => table(&rows),
+        }
+    }
+
+    /// All parts as one, in the order of the grid. `None` if a sensor is missing or there twice, or without parts.
+    pub fn merged(parts: Vec<Self>) -> Option<Self> {
+        let mut all = parts.first()?.clone();
+        let mut rows: Vec<Option<Row>> = vec![None; all.sensors];
+        for part in &parts {
+            for (number, row) in part.numbers.iter().zip(part.rows.rows()) {
+                if rows.get_mut(*number)?.replace(row).is_some() {
+                    return None;
+                }
+            }
+        }
+        let rows: Vec<Row> = rows.into_iter().collect::<Option<_>>()?;
+        all.numbers = (0..all.sensors).collect();
+        all.rows = rows.into_iter().flatten().collect();
+        Some(all)
+    }
+}
+
+fn names() -> impl Iterator<Item = &'static str> {
+    PLACE.into_iter().chain(COLUMNS)
+}
+
+fn object(row: &Row) -> serde_json::Value {
+    let pairs = names().zip(row);
+    pairs
+        .map(|(name, value)| (name.to_owned(), *value))
         .collect()
 }
 
-fn csv(rows: &[(Sensor, Reading)], origin: DVec3) -> String {
-    let line = |cells: Vec<String>| cells.join(",") + "\n";
-    let names = columns(&Sensor::default(), &Reading::default(), DVec3::ZERO);
-    let head = line(names.map(|(name, _)| name.to_owned()).to_vec());
-    let rows = rows.iter().map(|(sensor, reading)| {
-        line(
-            columns(sensor, reading, origin)
-                .map(|(_, value)| value.to_string())
-                .to_vec(),
-        )
-    });
-    head + &rows.collect::<String>()
+fn csv(rows: &[Row]) -> String {
+    let mut text = names().collect::<Vec<_>>().join(",") + "\n";
+    for row in rows {
+        text += &row.map(|value| value.to_string()).join(",");
+        text.push('\n');
+    }
+    text
 }
 
-fn table(rows: &[(Sensor, Reading)], origin: DVec3) -> String {
+fn table(rows: &[Row]) -> String {
     let head = format!(
         "{:>9}{:>9}{:>9}{:>12}{:>12}{:>12}{:>12}{:>10}\n",
         "x, m", "y", "z", "sky, lux", "sun", "reflected", "total", "error"
     );
-    rows.iter().fold(head, |mut text, (s, r)| {
-        let [x, y, z] = in_world(s.position, origin);
+    rows.iter().fold(head, |mut text, row| {
+        let [x, y, z, _, _, _, sky, sun, reflected, total, error, ..] = row;
         let _ = writeln!(
             text,
-            "{:>9.2}{:>9.2}{:>9.2}{:>12.1}{:>12.1}{:>12.1}{:>12.1}{:>10.1}",
-            x,
-            y,
-            z,
-            r.sky_direct,
-            r.sun_direct,
-            r.reflected,
-            r.total(),
-            r.standard_error
+            "{x:>9.2}{y:>9.2}{z:>9.2}{sky:>12.1}{sun:>12.1}{reflected:>12.1}{total:>12.1}{error:>10.1}"
         );
         text
     })

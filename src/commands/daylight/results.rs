@@ -1,17 +1,15 @@
-//! All that a run found, for its outputs: JSON, pictures, the report.
-
-use serde_json::{Value, json};
+//! All that a single run found, for its files: pictures, the matrix, the report.
 
 use super::drawings::{Heat, Plan, hours, limit};
-use super::summary::Summary;
-use super::table::{Column, csv, objects, overview, place};
+use super::outcome::Outcome;
+use super::table::{Column, place};
 use super::{blinds, ill, report};
 use crate::cli::{DaylightArgs, Metric};
 use crate::daylight::metrics::Measures;
 use crate::daylight::weather::Weather;
 use crate::daylight::weather::clock::ClockCheck;
 use crate::error::{Error, Result};
-use crate::options::{Options, OptionsError, name};
+use crate::options::{Options, OptionsError};
 use crate::output::Drawing;
 use crate::scene::Scene;
 use crate::sensors::{Sensor, Year, YearLight};
@@ -28,65 +26,11 @@ pub(super) struct Results<'a> {
     /// Those that are measured.
     pub sensors: &'a [Sensor],
     pub year: &'a Year,
-    pub columns: &'a [Column],
-    pub summary: Summary,
-    /// Warnings.
-    pub told: &'a [String],
+    /// What is printed.
+    pub outcome: &'a Outcome,
 }
 
 impl Results<'_> {
-    /// What `--json` prints.
-    pub fn json(&self) -> Value {
-        json!({
-            "sensors": objects(self.sensors, self.columns, self.scene.origin),
-            "sda": self.summary.sda_json(),
-            "ase": self.summary.ase,
-            "en17037": self.summary.en17037_json(),
-            "blinds": name(self.args.blinds),
-            "blinds_closed_hours": self.measures.closed_hours(),
-            "schedule": self.args.schedule.to_string(),
-            "occupied_hours": self.measures.occupied_hours(),
-            "bounces": self.settings.bounces.to_string(),
-            "paths": self.paths(),
-            "weather": self.weather.map(|weather| weather_json(weather, self.clock)),
-            "warnings": self.told,
-        })
-    }
-
-    /// Paths of a sensor.
-    pub fn paths(&self) -> u32 {
-        self.year.sensors.first().map_or(0, |sensor| sensor.paths)
-    }
-
-    /// What is printed: a table, or JSON or CSV.
-    pub fn text(&self) -> String {
-        if self.args.json {
-            return format!("{:#}\n", self.json());
-        }
-        if self.args.csv {
-            return csv(self.sensors, self.columns, self.scene.origin);
-        }
-        self.head() + &overview(self.columns) + &self.summary.text()
-    }
-
-    fn head(&self) -> String {
-        let place = self.weather.map(|weather| {
-            let hours = self.measures.occupied_hours();
-            let name = &weather.station.name;
-            format!(
-                "{name}\n{hours} h, {} every day; {}; ",
-                self.args.schedule,
-                blinds(self.args)
-            )
-        });
-        format!(
-            "{}{} sensors; bounces: {}\n\n",
-            place.unwrap_or_default(),
-            self.sensors.len(),
-            self.settings.bounces,
-        )
-    }
-
     /// Writes the matrix, the plan, the heat map and the report that are asked for.
     ///
     /// # Errors
@@ -136,7 +80,7 @@ impl Results<'_> {
         let sensor = self.args.heat_of.map(|number| number as usize - 1);
         let title = match sensor.and_then(|number| self.sensors.get(number)) {
             Some(sensor) => {
-                let [x, y, z] = [0, 1, 2].map(|k| place(sensor, self.scene.origin)[k].1);
+                let [x, y, z] = [0, 1, 2].map(|k| place(sensor, self.scene.origin)[k]);
                 let number = self.args.heat_of.unwrap_or_default();
                 format!("Illuminance at sensor {number} ({x}, {y}, {z})")
             }
@@ -154,7 +98,10 @@ impl Results<'_> {
 
     /// The column of this name.
     pub fn column(&self, name: &str) -> Option<&Column> {
-        self.columns.iter().find(|column| column.name == name)
+        self.outcome
+            .columns
+            .iter()
+            .find(|column| column.name == name)
     }
 
     /// The column that a plan shows: the one asked for, or that of the first metric.
@@ -166,7 +113,12 @@ impl Results<'_> {
         let of_metric = metrics.iter().find(|metric| metric.to_string() == asked);
         let found = self.column(&asked).or_else(|| self.column_of(*of_metric?));
         found.ok_or_else(|| {
-            let known: Vec<&str> = self.columns.iter().map(|c| c.name.as_str()).collect();
+            let known: Vec<&str> = self
+                .outcome
+                .columns
+                .iter()
+                .map(|c| c.name.as_str())
+                .collect();
             Error::from(OptionsError(format!(
                 "--plan-of {asked} was not measured; choose of {}",
                 known.join(", ")
@@ -188,20 +140,7 @@ impl Results<'_> {
             Metric::Vsc => "vsc",
             Metric::Sunhours => "sun_hours",
         };
-        let mut columns = self.columns.iter();
+        let mut columns = self.outcome.columns.iter();
         columns.find(|column| column.name.starts_with(starts))
     }
-}
-
-fn weather_json(weather: &Weather, clock: Option<&ClockCheck>) -> Value {
-    let station = &weather.station;
-    json!({
-        "place": station.name,
-        "latitude": station.place.latitude,
-        "longitude": station.place.longitude,
-        "zone_hours": station.zone_hours,
-        "hours": weather.records.len() as f64 * weather.step_hours,
-        "clock_minutes": clock.map(|c| c.minutes),
-        "clock_is_off": clock.map(ClockCheck::is_off),
-    })
 }

@@ -2,15 +2,26 @@
 
 use std::fmt::Write as _;
 
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::table::rounded;
+use super::exact::Exact;
+use super::table::{Column, rounded};
 use super::verdict::Verdict;
-use crate::cli::{DaylightArgs, Metric};
-use crate::daylight::metrics::{
-    Blinds, EN_17037_LUX, EXPOSED_HOURS, Measures, Passing, SPATIAL_PERCENT, passing,
-};
-use crate::sensors::{Year, YearLight};
+use crate::daylight::metrics::{EN_17037_LUX, EXPOSED_HOURS, Passing, SPATIAL_PERCENT, passing};
+
+/// Figures of the whole grid that are asked for.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Asked {
+    /// Spatial daylight autonomy.
+    pub sda: bool,
+    /// Whether it is with blinds, as LM-83 wants.
+    pub has_blinds: bool,
+    /// Annual sunlight exposure.
+    pub ase: bool,
+    /// EN 17037: half of the daylight hours, and the median of their diffuse illuminance, lux.
+    pub en17037: Option<Exact>,
+}
 
 /// Figures of the whole grid; those that were not asked for are `None`.
 pub(super) struct Summary {
@@ -71,22 +82,21 @@ pub(super) const LEVELS: [Level; 3] = [
 pub(super) const AREAS: [f64; 2] = [50.0, 95.0];
 
 impl Summary {
-    /// Of a year.
-    pub fn of(args: &DaylightArgs, measures: &Measures, light: &YearLight, year: &Year) -> Self {
-        let asks = |metric| args.asked_metrics().contains(&metric) && !year.sensors.is_empty();
+    /// Of the columns of the metrics.
+    pub fn of(asked: &Asked, columns: &[Column]) -> Self {
+        let is_empty = columns.iter().all(|column| column.values.is_empty());
         let exposed = || {
-            let is_exposed = year
-                .sensors
-                .iter()
-                .filter(|s| s.exposed_hours > EXPOSED_HOURS);
-            100.0 * is_exposed.count() as f64 / year.sensors.len() as f64
+            let hours = column(columns, "ase_hours").map_or(&[][..], |column| &column.values);
+            let is_exposed = hours.iter().filter(|hours| **hours > EXPOSED_HOURS);
+            100.0 * is_exposed.count() as f64 / hours.len() as f64
         };
-        let sda = || share(measures, year, "da300", SPATIAL_PERCENT);
+        let of_hours = asked.en17037.as_ref().filter(|_| !is_empty);
+        let of_hours = of_hours.and_then(|given| given.rows().first().copied());
         Self {
-            sda: asks(Metric::Sda).then(sda),
-            has_blinds: args.blinds == Blinds::Lm83,
-            ase: asks(Metric::Ase).then(|| rounded(exposed())),
-            en17037: asks(Metric::En17037).then(|| Provision::of(measures, light, year)),
+            sda: (asked.sda && !is_empty).then(|| share(columns, "da300", SPATIAL_PERCENT)),
+            has_blinds: asked.has_blinds,
+            ase: (asked.ase && !is_empty).then(|| rounded(exposed())),
+            en17037: of_hours.map(|given| Provision::of(given, columns)),
         }
     }
 
@@ -138,14 +148,13 @@ impl Summary {
 }
 
 impl Provision {
-    fn of(measures: &Measures, light: &YearLight, year: &Year) -> Self {
-        let hours = measures.en17037_hours();
-        let median_lux = measures.median_diffuse_lux(&light.hours);
+    /// From half of the daylight hours and the median of their diffuse illuminance, lux.
+    fn of([hours, median_lux]: [f64; 2], columns: &[Column]) -> Self {
         let factors = EN_17037_LUX.map(|lux| 100.0 * lux / median_lux);
-        let hours_of = |lux: f64| share(measures, year, &format!("en17037_hours_ge{lux}"), hours);
+        let hours_of = |lux: f64| share(columns, &format!("en17037_hours_ge{lux}"), hours);
         Self {
             by_hours: EN_17037_LUX.map(hours_of),
-            by_factor: factors.map(|factor| share(measures, year, "df", factor)),
+            by_factor: factors.map(|factor| share(columns, "df", factor)),
             hours: 2.0 * hours,
             median_lux,
             factors,
@@ -186,15 +195,15 @@ impl Level {
     }
 }
 
+fn column<'a>(columns: &'a [Column], name: &str) -> Option<&'a Column> {
+    columns.iter().find(|column| column.name == name)
+}
+
 /// Share of the sensors with at least `limit` of a value.
-fn share(measures: &Measures, year: &Year, name: &str, limit: f64) -> Passing {
-    let names = measures.names();
-    let at = names.iter().position(|own| own == name);
-    // The daylight factor follows the named ones.
-    let at = at.unwrap_or(names.len());
-    let values: Vec<f64> = year.sensors.iter().map(|s| s.values[at]).collect();
-    let errors: Vec<f64> = year.sensors.iter().map(|s| s.errors[at]).collect();
-    passing(&values, &errors, limit)
+fn share(columns: &[Column], name: &str, limit: f64) -> Passing {
+    let none = Column::default();
+    let column = column(columns, name).unwrap_or(&none);
+    passing(&column.values, &column.errors, limit)
 }
 
 /// The level that shares reach.

@@ -3,21 +3,25 @@
 use std::fmt::Write as _;
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::exact;
 use crate::options::{in_world, shortest};
 use crate::sensors::Sensor;
 
 /// A quantity at every sensor.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct Column {
     /// Its key in JSON and CSV.
     pub name: String,
     /// Its unit, for the eye.
-    pub unit: &'static str,
+    pub unit: String,
     /// Its values, in the order of the sensors.
+    #[serde(with = "exact::list")]
     pub values: Vec<f64>,
     /// Their standard errors.
+    #[serde(with = "exact::list")]
     pub errors: Vec<f64>,
 }
 
@@ -40,26 +44,22 @@ impl Column {
     }
 }
 
-/// Position and normal of a sensor in the model's axes, with their keys in JSON and CSV.
-pub(super) fn place(sensor: &Sensor, origin: DVec3) -> [(&'static str, f64); 6] {
+/// Keys of position and normal in JSON and CSV.
+pub(super) const PLACE: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
+
+/// Position and normal of a sensor in the model's axes.
+pub(super) fn place(sensor: &Sensor, origin: DVec3) -> [f64; 6] {
     let [x, y, z] = in_world(sensor.position, origin);
     let [nx, ny, nz] = sensor.normal.to_array().map(shortest);
-    [
-        ("x", x),
-        ("y", y),
-        ("z", z),
-        ("nx", nx),
-        ("ny", ny),
-        ("nz", nz),
-    ]
+    [x, y, z, nx, ny, nz]
 }
 
 /// A list of objects, one for each sensor.
-pub(super) fn objects(sensors: &[Sensor], columns: &[Column], origin: DVec3) -> Value {
-    let object = |(at, sensor): (usize, &Sensor)| {
+pub(super) fn objects(places: &[[f64; 6]], columns: &[Column]) -> Value {
+    let object = |(at, place): (usize, &[f64; 6])| {
         let mut object = Map::new();
-        for (name, value) in place(sensor, origin) {
-            object.insert(name.to_owned(), value.into());
+        for (name, value) in PLACE.iter().zip(place) {
+            object.insert((*name).to_owned(), (*value).into());
         }
         for column in columns {
             object.insert(column.name.clone(), rounded(column.values[at]).into());
@@ -68,20 +68,18 @@ pub(super) fn objects(sensors: &[Sensor], columns: &[Column], origin: DVec3) -> 
         }
         Value::from(object)
     };
-    sensors.iter().enumerate().map(object).collect()
+    places.iter().enumerate().map(object).collect()
 }
 
 /// A line for each sensor, under one of names.
-pub(super) fn csv(sensors: &[Sensor], columns: &[Column], origin: DVec3) -> String {
-    let mut text = place(&Sensor::default(), DVec3::ZERO)
-        .map(|(name, _)| name)
-        .join(",");
+pub(super) fn csv(places: &[[f64; 6]], columns: &[Column]) -> String {
+    let mut text = PLACE.join(",");
     for column in columns {
         let _ = write!(text, ",{0},{0}_se", column.name);
     }
     text.push('\n');
-    for (at, sensor) in sensors.iter().enumerate() {
-        text += &place(sensor, origin).map(|(_, v)| v.to_string()).join(",");
+    for (at, place) in places.iter().enumerate() {
+        text += &place.map(|v| v.to_string()).join(",");
         for column in columns {
             let [value, error] = [column.values[at], column.errors[at]].map(rounded);
             let _ = write!(text, ",{value},{error}");

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::options::{Options, OptionsError};
 use crate::sensors::{Sensor, TracedScene, sky_components, suns_seen};
 
-/// The columns of those that are asked for.
+/// The columns of those that are asked for, for sensors with their numbers in the grid.
 ///
 /// # Errors
 /// See [`sun_hours`].
@@ -19,7 +19,7 @@ pub(super) fn unreflected(
     args: &DaylightArgs,
     weather: Option<&Weather>,
     settings: &Options,
-    sensors: &[Sensor],
+    sensors: &[(usize, Sensor)],
     scene: &TracedScene,
 ) -> Result<Vec<Column>> {
     let asks = |metric| args.asked_metrics().contains(&metric);
@@ -34,11 +34,11 @@ pub(super) fn unreflected(
 }
 
 /// The vertical sky component.
-fn sky_component(sensors: &[Sensor], scene: &TracedScene, seed: u32) -> Column {
+fn sky_component(sensors: &[(usize, Sensor)], scene: &TracedScene, seed: u32) -> Column {
     let found = sky_components(sensors, scene, seed);
     Column {
         name: "vsc".to_owned(),
-        unit: "%",
+        unit: "%".to_owned(),
         values: found.iter().map(|[value, _]| *value).collect(),
         errors: found.iter().map(|[_, error]| *error).collect(),
     }
@@ -52,7 +52,7 @@ fn sun_hours(
     args: &DaylightArgs,
     weather: Option<&Weather>,
     settings: &Options,
-    sensors: &[Sensor],
+    sensors: &[(usize, Sensor)],
     scene: &TracedScene,
 ) -> Result<Vec<Column>> {
     let wrong = |what: String| Error::from(OptionsError(what));
@@ -66,7 +66,7 @@ fn sun_hours(
         let seen = suns_seen(sensors, scene, &directions);
         columns.push(Column {
             name: format!("sun_hours_{}", suns.name),
-            unit: "h",
+            unit: "h".to_owned(),
             values: seen
                 .iter()
                 .map(|count| *count as f64 * suns.hours)

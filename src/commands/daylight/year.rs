@@ -1,23 +1,29 @@
 //! `skylight daylight` with metrics: over the year of a weather file, or of what needs none.
 
+use serde_json::{Value, json};
+
 use super::super::job::{load_options, scene_of};
+use super::super::merge::Kind;
 use super::super::weather::{check_given, read_weather, warnings};
 use super::super::{interrupt, progress, tell, tell_no_device};
+use super::exact::Exact;
+use super::outcome::{Common, Form, Outcome};
 use super::results::Results;
-use super::summary::Summary;
-use super::table::Column;
+use super::summary::Asked;
+use super::table::{Column, place};
 use super::unreflected::unreflected;
-use super::{bounces, sensors};
+use super::{blinds, bounces, deliver, sensors, shards};
 use crate::cli::{DaylightArgs, Metric};
 use crate::daylight::metrics::{Blinds, Measures, SPATIAL_LUX};
 use crate::daylight::weather::Weather;
 use crate::daylight::weather::clock::ClockCheck;
 use crate::error::{Error, Result};
-use crate::options::{OptionValues, Options, OptionsError};
-use crate::output::{check_writable, print};
+use crate::options::{OptionValues, Options, OptionsError, name};
+use crate::output::check_writable;
 use crate::scene;
 use crate::sensors::{
-    Accuracy, Sensor, TracedScene, Year, YearLight, YearRun, closed_hours, measure_year,
+    Accuracy, BLOCK, Sensor, Shard, TracedScene, Year, YearLight, YearRun, closed_hours,
+    measure_year,
 };
 
 /// Most records of a weather file: with more, the skies of the year no longer fit into memory.
@@ -55,14 +61,34 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
         measures.close_blinds(closed_hours(&all, &traced, &light));
     }
     let year = measured(args, &settings, &traced, &light, &measures, &all);
-    let sensors = &all[..year.sensors.len()];
-    let odd = oddities(args, &year, &all);
-    tell(&settings, odd.iter())?;
-    told.extend(odd);
+    let sensors: Vec<(usize, Sensor)> = year.numbers.iter().map(|n| (*n, all[*n])).collect();
     let mut columns = columns(args, &measures, &year);
-    columns.extend(unreflected(args, weather, &settings, sensors, &traced)?);
+    columns.extend(unreflected(args, weather, &settings, &sensors, &traced)?);
+    let mut common = common(args, &settings, &measures, &light);
+    common.weather = weather
+        .map_or(Value::Null, |w| weather_json(w, clock.as_ref()))
+        .to_string();
+    common.place = weather.map(|weather| weather.station.name.clone());
+    (common.sensors, common.warnings) = (all.len(), told);
+    let places = sensors.iter().flat_map(|(_, s)| place(s, scene.origin));
+    let outcome = Outcome {
+        common,
+        places: places.collect(),
+        columns,
+        paths: year.sensors.iter().map(|sensor| sensor.paths).collect(),
+        error_so_far: year.error.into(),
+        numbers: year.numbers.clone(),
+    };
+    if let Some(shard) = args.shard {
+        let weather = format!("{:?}", weather.map(|w| (&w.station, &w.records)));
+        let key = shards::key(Kind::Year, args, &settings, (&scene, &all), weather);
+        let mine = (0..all.len()).filter(|at| shard.takes(at / BLOCK)).count();
+        let done = outcome.numbers.len();
+        return shards::write(args, (&key, shard), &outcome, [done, mine]);
+    }
+    tell(&settings, outcome.oddities().iter())?;
+    let sensors: Vec<Sensor> = sensors.into_iter().map(|(_, sensor)| sensor).collect();
     let results = Results {
-        summary: Summary::of(args, &measures, &light, &year),
         args,
         settings: &settings,
         scene: &scene,
@@ -70,13 +96,46 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
         clock: clock.as_ref(),
         light: &light,
         measures: &measures,
-        sensors,
+        sensors: &sensors,
         year: &year,
-        columns: &columns,
-        told: &told,
+        outcome: &outcome,
     };
     results.write_files()?;
-    print(&results.text())
+    deliver(args.output.as_deref(), &outcome.text())
+}
+
+/// What is the same for all sensors, but for weather and warnings.
+fn common(
+    args: &DaylightArgs,
+    settings: &Options,
+    measures: &Measures,
+    light: &YearLight,
+) -> Common {
+    let asks = |metric| args.asked_metrics().contains(&metric);
+    let hours = || {
+        let median = measures.median_diffuse_lux(&light.hours);
+        Exact(vec![measures.en17037_hours(), median])
+    };
+    Common {
+        form: Form::of(args),
+        asked: Asked {
+            sda: asks(Metric::Sda),
+            has_blinds: args.blinds == Blinds::Lm83,
+            ase: asks(Metric::Ase),
+            en17037: asks(Metric::En17037).then(hours),
+        },
+        blinds: name(args.blinds).to_owned(),
+        blinds_closed_hours: measures.closed_hours().into(),
+        blinds_said: blinds(args).to_owned(),
+        schedule: args.schedule.to_string(),
+        occupied_hours: measures.occupied_hours().into(),
+        bounces: settings.bounces.to_string(),
+        weather: String::new(),
+        place: None,
+        error: args.error.into(),
+        sensors: 0,
+        warnings: Vec::new(),
+    }
 }
 
 /// The weather file, if one is given.
@@ -177,7 +236,9 @@ fn measured(
     sensors: &[Sensor],
 ) -> Year {
     interrupt::listen();
-    let bar = progress(sensors.len() as u64, "sensors", settings.quiet);
+    let shard = args.shard.unwrap_or(Shard::ALL);
+    let mine = (0..sensors.len()).filter(|at| shard.takes(at / BLOCK));
+    let bar = progress(mine.count() as u64, "sensors", settings.quiet);
     let names = names(measures);
     // The daylight factor of EN 17037 comes along with its hours.
     let asks_for_factor = args.metrics.contains(&Metric::Df);
@@ -197,6 +258,7 @@ fn measured(
             },
             wanted: wanted.collect(),
             keeps_hours: args.keeps_hours(),
+            shard,
             progress: &|done, error| {
                 bar.set_position(done as u64);
                 if let Some(error) = error {
@@ -210,25 +272,6 @@ fn measured(
     year
 }
 
-/// What a reader must know of an incomplete result, one line each.
-fn oddities(args: &DaylightArgs, year: &Year, all: &[Sensor]) -> Vec<String> {
-    let done = year.sensors.len();
-    let mut lines = Vec::new();
-    if interrupt::is_interrupted() {
-        lines.push(format!(
-            "interrupted: {done} of {} sensors are measured",
-            all.len()
-        ));
-    }
-    if year.error > args.error {
-        lines.push(format!(
-            "the standard error is {:.4}, above {}; raise --max-paths or --error",
-            year.error, args.error
-        ));
-    }
-    lines
-}
-
 /// The columns of the metrics that were asked for, those of exposure last.
 fn columns(args: &DaylightArgs, measures: &Measures, year: &Year) -> Vec<Column> {
     let unit = |name: &str| match name {
@@ -239,7 +282,7 @@ fn columns(args: &DaylightArgs, measures: &Measures, year: &Year) -> Vec<Column>
     let names = names(measures);
     let of = |(at, name): (usize, &String)| Column {
         name: name.clone(),
-        unit: unit(name),
+        unit: unit(name).to_owned(),
         values: year.sensors.iter().map(|s| s.values[at]).collect(),
         errors: year.sensors.iter().map(|s| s.errors[at]).collect(),
     };
@@ -251,10 +294,23 @@ fn columns(args: &DaylightArgs, measures: &Measures, year: &Year) -> Vec<Column>
     if args.asked_metrics().contains(&Metric::Ase) {
         columns.push(Column {
             name: "ase_hours".to_owned(),
-            unit: "h",
+            unit: "h".to_owned(),
             values: year.sensors.iter().map(|s| s.exposed_hours).collect(),
             errors: vec![0.0; year.sensors.len()],
         });
     }
     columns
+}
+
+fn weather_json(weather: &Weather, clock: Option<&ClockCheck>) -> Value {
+    let station = &weather.station;
+    json!({
+        "place": station.name,
+        "latitude": station.place.latitude,
+        "longitude": station.place.longitude,
+        "zone_hours": station.zone_hours,
+        "hours": weather.records.len() as f64 * weather.step_hours,
+        "clock_minutes": clock.map(|c| c.minutes),
+        "clock_is_off": clock.map(ClockCheck::is_off),
+    })
 }

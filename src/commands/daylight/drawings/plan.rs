@@ -67,7 +67,7 @@ impl Plan<'_> {
         let shown = &found[..found.len() - left_out];
         let scale = Scale::linear(
             &self.column.values,
-            self.column.unit,
+            &self.column.unit,
             is_share(&self.column.name),
             self.map,
         );
@@ -127,7 +127,7 @@ impl Plan<'_> {
 
     fn figures(&self) -> String {
         let [mean, error, least, most] = self.column.figures();
-        let unit = self.column.unit;
+        let unit = &self.column.unit;
         format!(
             "{}: mean {mean:.2} {unit}, least {least:.2}, most {most:.2}; standard error of a sensor {error:.2}; {} sensors",
             self.column.name,
@@ -155,8 +155,7 @@ impl Plan<'_> {
             .map(|number| self.column.values[*number])
             .collect();
         for ((cell, number), value) in sheet.cells.iter().zip(&sheet.members).zip(&values) {
-            let [x, y, z] =
-                [0, 1, 2].map(|k| place(&self.sensors[*number], self.scene.origin)[k].1);
+            let [x, y, z] = [0, 1, 2].map(|k| place(&self.sensors[*number], self.scene.origin)[k]);
             drawing.parts.push(Part::Shape(Shape {
                 corners: cell.map(|corner| panel.point(corner)).to_vec(),
                 ink: scale.ink(scale.share(*value)),

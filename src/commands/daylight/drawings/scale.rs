@@ -16,7 +16,7 @@ pub struct Scale {
     kind: Kind,
     map: ColourMap,
     /// Unit of the values.
-    pub unit: &'static str,
+    pub unit: String,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +29,7 @@ enum Kind {
 
 impl Scale {
     /// From 0 to 100 for percentages of hours or points; else to a round number above the largest value.
-    pub fn linear(values: &[f64], unit: &'static str, is_share: bool, map: ColourMap) -> Self {
+    pub fn linear(values: &[f64], unit: &str, is_share: bool, map: ColourMap) -> Self {
         let largest = values.iter().copied().fold(0.0, f64::max);
         let (most, step) = if is_share {
             (100.0, 20.0)
@@ -39,16 +39,12 @@ impl Scale {
         Self {
             kind: Kind::Linear { most, step },
             map,
-            unit,
+            unit: unit.to_owned(),
         }
     }
 
     /// Half decades around the values.
-    pub fn logarithmic(
-        values: impl Iterator<Item = f64>,
-        unit: &'static str,
-        map: ColourMap,
-    ) -> Self {
+    pub fn logarithmic(values: impl Iterator<Item = f64>, unit: &str, map: ColourMap) -> Self {
         let range = Range::around(values).unwrap_or(Range {
             min: 10.0,
             max: 100.0,
@@ -56,7 +52,7 @@ impl Scale {
         Self {
             kind: Kind::Logarithmic(range),
             map,
-            unit,
+            unit: unit.to_owned(),
         }
     }
 
@@ -92,7 +88,7 @@ impl Scale {
 
     /// Draws the legend: a bar of this height with its upper left corner there, the unit above.
     pub fn draw(&self, drawing: &mut Drawing, [x, y]: [f64; 2], height: f64) {
-        drawing.text([x, y - 10.0], Anchor::Start, Size::Small, self.unit);
+        drawing.text([x, y - 10.0], Anchor::Start, Size::Small, &self.unit);
         let band = height / BANDS as f64;
         for k in 0..BANDS {
             let share = 1.0 - (k as f64 + 0.5) / BANDS as f64;

@@ -43,12 +43,14 @@ fn page(results: &Results) -> String {
         .map(|weather| escaped(&weather.station.name));
     let place = place.unwrap_or_default();
     let warnings: String = results
-        .told
+        .outcome
+        .warnings()
         .iter()
         .map(|line| format!("<p class=\"warning\">{}</p>\n", escaped(line)))
         .collect();
     // Nothing in it may end the element.
     let data = results
+        .outcome
         .json()
         .to_string()
         .replace('<', "\\u003c")
@@ -94,7 +96,7 @@ fn table(results: &Results) -> String {
         let name = format!("{} ({})", heading(&column.name), column.name);
         vec![name, column.unit.to_owned(), mean, error, least, most]
     };
-    let columns: Vec<Vec<String>> = results.columns.iter().map(column).collect();
+    let columns: Vec<Vec<String>> = results.outcome.columns.iter().map(column).collect();
     let head = ["metric", "unit", "mean", "± error", "least", "most"];
     rows(&head, 2, &columns)
         + "<p class=\"small\">± error: standard error of a sensor, root mean square over the sensors. The results of every sensor, each with its own, are in this page as JSON: the element <code>results</code>.</p>\n"
@@ -104,7 +106,13 @@ fn pictures(results: &Results) -> String {
     let mut names: Vec<&str> = PLANS.to_vec();
     names.retain(|name| results.column(name).is_some());
     if names.is_empty() {
-        names.extend(results.columns.first().map(|column| column.name.as_str()));
+        names.extend(
+            results
+                .outcome
+                .columns
+                .first()
+                .map(|column| column.name.as_str()),
+        );
     }
     let plans = names.into_iter().filter_map(|name| results.column(name));
     let mut drawings: Vec<_> = plans.map(|column| results.plan(column)).collect();

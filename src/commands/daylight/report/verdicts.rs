@@ -17,7 +17,7 @@ const LEED_EXPOSED: f64 = 10.0;
 /// Tables of verdicts, or a line that none was asked for.
 pub fn verdicts(results: &Results) -> String {
     let mut text = String::new();
-    if let Some(provision) = &results.summary.en17037 {
+    if let Some(provision) = &results.outcome.summary().en17037 {
         text += &of_en17037(provision);
     }
     text += &of_lm83(results);
@@ -120,7 +120,7 @@ fn of_autonomy(sda: Passing, blinds: Blinds) -> String {
 
 /// Figures of LM-83, and what LEED makes of them.
 fn of_lm83(results: &Results) -> String {
-    let summary = &results.summary;
+    let summary = &results.outcome.summary();
     if summary.sda.is_none() && summary.ase.is_none() {
         return String::new();
     }

@@ -241,7 +241,7 @@ mod tests {
     fn normals_of_cut_outs_are_precise_to_a_tenth_of_a_degree_and_leave_the_marks_alone() {
         let normals = (0..500).map(|i| {
             let [u, v] = [0.754_877_7, 0.569_840_3].map(|step: f32| (step * i as f32).fract());
-            let (z, turn) = (2.0 * u - 1.0, 6.283 * v);
+            let (z, turn) = (2.0 * u - 1.0, std::f32::consts::TAU * v);
             let radius = (1.0 - z * z).sqrt();
             Vec3::new(radius * turn.cos(), radius * turn.sin(), z)
         });

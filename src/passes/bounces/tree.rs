@@ -253,10 +253,10 @@ mod tests {
     use crate::passes::surfaces::gbuffer::unpack_normal;
 
     #[test]
-    fn normals_of_cut_outs_are_precise_to_a_tenth_of_a_degree_and_leave_the_marks_alone() {
+    fn normals_of_cut_outs_are_precise_to_an_eighth_of_a_degree_and_leave_the_marks_alone() {
         let normals = (0..500).map(|i| {
             let [u, v] = [0.754_877_7, 0.569_840_3].map(|step: f32| (step * i as f32).fract());
-            let (z, turn) = (2.0 * u - 1.0, 6.283 * v);
+            let (z, turn) = (2.0 * u - 1.0, std::f32::consts::TAU * v);
             let radius = (1.0 - z * z).sqrt();
             Vec3::new(radius * turn.cos(), radius * turn.sin(), z)
         });
@@ -270,7 +270,7 @@ mod tests {
             };
             let decoded = Vec3::from(unpack_normal([half(0), half(NORMAL_BITS)]));
             let off = decoded.angle_between(n).to_degrees();
-            assert!(off < 0.1, "{n}: {off}");
+            assert!(off < 0.125, "{n}: {off}");
         }
     }
 }

@@ -1,5 +1,6 @@
 //! `skylight daylight` with metrics: over the year of a weather file, or of what needs none.
 
+use glam::DVec3;
 use serde_json::{Value, json};
 
 use super::super::job::{load_options, scene_of};
@@ -20,7 +21,7 @@ use crate::daylight::weather::clock::ClockCheck;
 use crate::error::{Error, Result};
 use crate::options::{OptionValues, Options, OptionsError, name};
 use crate::output::check_writable;
-use crate::scene;
+use crate::scene::{self, Scene};
 use crate::sensors::{
     Accuracy, BLOCK, Sensor, Shard, TracedScene, Year, YearLight, YearRun, closed_hours,
     measure_year,
@@ -65,26 +66,14 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
     let mut columns = columns(args, &measures, &year);
     columns.extend(unreflected(args, weather, &settings, &sensors, &traced)?);
     let mut common = common(args, &settings, &measures, &light);
-    common.weather = weather
-        .map_or(Value::Null, |w| weather_json(w, clock.as_ref()))
-        .to_string();
-    common.place = weather.map(|weather| weather.station.name.clone());
+    if let Some(weather) = weather {
+        common.weather = weather_json(weather, clock.as_ref()).to_string();
+        common.place = Some(weather.station.name.clone());
+    }
     (common.sensors, common.warnings) = (all.len(), told);
-    let places = sensors.iter().flat_map(|(_, s)| place(s, scene.origin));
-    let outcome = Outcome {
-        common,
-        places: places.collect(),
-        columns,
-        paths: year.sensors.iter().map(|sensor| sensor.paths).collect(),
-        error_so_far: year.error.into(),
-        numbers: year.numbers.clone(),
-    };
-    if let Some(shard) = args.shard {
-        let weather = format!("{:?}", weather.map(|w| (&w.station, &w.records)));
-        let key = shards::key(Kind::Year, args, &settings, (&scene, &all), weather);
-        let mine = (0..all.len()).filter(|at| shard.takes(at / BLOCK)).count();
-        let done = outcome.numbers.len();
-        return shards::write(args, (&key, shard), &outcome, [done, mine]);
+    let outcome = outcome(common, (&sensors, scene.origin), columns, &year);
+    if args.shard.is_some() {
+        return write_shard(args, &settings, weather, (&scene, &all), &outcome);
     }
     tell(&settings, outcome.oddities().iter())?;
     let sensors: Vec<Sensor> = sensors.into_iter().map(|(_, sensor)| sensor).collect();
@@ -102,6 +91,43 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
     };
     results.write_files()?;
     deliver(args.output.as_deref(), &outcome.text())
+}
+
+/// What is printed of sensors with their numbers in the grid.
+fn outcome(
+    common: Common,
+    (sensors, origin): (&[(usize, Sensor)], DVec3),
+    columns: Vec<Column>,
+    year: &Year,
+) -> Outcome {
+    let places = sensors.iter().flat_map(|(_, s)| place(s, origin));
+    Outcome {
+        common,
+        places: places.collect(),
+        columns,
+        paths: year.sensors.iter().map(|sensor| sensor.paths).collect(),
+        error_so_far: year.error.into(),
+        numbers: year.numbers.clone(),
+    }
+}
+
+/// Writes the result of a shard.
+///
+/// # Errors
+/// See [`shards::write`].
+fn write_shard(
+    args: &DaylightArgs,
+    settings: &Options,
+    weather: Option<&Weather>,
+    given: (&Scene, &[Sensor]),
+    outcome: &Outcome,
+) -> Result<()> {
+    let shard = args.shard.unwrap_or(Shard::ALL);
+    let weather = format!("{:?}", weather.map(|w| (&w.station, &w.records)));
+    let key = shards::key(Kind::Year, args, settings, given, weather);
+    let mine = (0..given.1.len()).filter(|at| shard.takes(at / BLOCK));
+    let count = [outcome.numbers.len(), mine.count()];
+    shards::write(args, (&key, shard), outcome, count)
 }
 
 /// What is the same for all sensors, but for weather and warnings.
@@ -130,7 +156,7 @@ fn common(
         schedule: args.schedule.to_string(),
         occupied_hours: measures.occupied_hours().into(),
         bounces: settings.bounces.to_string(),
-        weather: String::new(),
+        weather: Value::Null.to_string(),
         place: None,
         error: args.error.into(),
         sensors: 0,

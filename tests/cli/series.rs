@@ -91,7 +91,7 @@ fn pictures_of_one_call_are_those_of_single_calls() {
             assert!(is_same, "{name} with {options} differs");
         }
     }
-    let words = format!("render island {SMALL} --moment dusk,storm -o {{moment}}.png");
+    let words = format!("render island {SMALL} --moment noon,storm -o {{moment}}.png");
     let (error, code) = fail(folder.path(), &words);
     assert!(
         error.contains("no moment \"storm\"") && code == Some(2),

@@ -5,7 +5,7 @@ use std::process::{Command, Output};
 use crate::town;
 
 const RENDER: &str =
-    "render town.obj --size 48x32 --sky preetham --bounces 0 --ambient ssao --no-cache";
+    "render town.obj --size 96x48 --sky preetham --bounces 0 --ambient ssao --no-cache";
 
 fn run(folder: &tempfile::TempDir, line: &str) -> Output {
     Command::new(env!("CARGO_BIN_EXE_skylight"))
@@ -34,18 +34,18 @@ fn a_picture_on_standard_output_is_the_file() {
     for (name, file, more) in [
         ("-", "a.png", ""),
         ("exr:-", "a.exr", ""),
-        ("-", "b.png", "--tile 32"),
-        ("exr:-", "b.exr", "--tile 32"),
+        ("-", "b.png", "--tile 64"),
+        ("exr:-", "b.exr", "--tile 64"),
     ] {
         let written = run(&folder, &format!("{RENDER} {more} -o {file}"));
         assert!(written.status.success(), "{}", text(&written.stderr));
-        assert!(text(&written.stdout).starts_with(&format!("{file}: 48x32")));
+        assert!(text(&written.stdout).starts_with(&format!("{file}: 96x48")));
         let piped = run(&folder, &format!("{RENDER} {more} -o {name}"));
         assert!(piped.status.success(), "{}", text(&piped.stderr));
         let expected = std::fs::read(folder.path().join(file)).expect("a file");
         assert!(piped.stdout == expected, "{name} {more}: other bytes");
         let told = text(&piped.stderr);
-        assert!(told.contains(&format!("{name}: 48x32")), "{told}");
+        assert!(told.contains(&format!("{name}: 96x48")), "{told}");
         assert!(!folder.path().join(name).exists());
     }
 }

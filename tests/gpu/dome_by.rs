@@ -126,3 +126,50 @@ fn the_light_of_the_far_ground_does_not_pass_the_ground_of_the_model() {
         );
     }
 }
+
+/// A canopy of leaves much smaller than the texels of a map, which cover a quarter of it.
+#[test]
+fn leaves_finer_than_a_map_dim_the_sky_by_what_they_cover() {
+    const L: f64 = 5000.0;
+    const EDGE: u32 = 1024;
+    let mut device = Device::new();
+    let leaves = Material {
+        alpha_cutoff: Some(0.5),
+        diffuse_texture: Some(0),
+        ..matt(0.5)
+    };
+    let mut scene = Model::default()
+        .ground(8.0, &matt(0.5))
+        .square([0.0, 1.0, 0.0], 8.0, &leaves)
+        .build();
+    // By chance, four texels wide: the linear filter rounds their corners off.
+    let is_leaf = |i: u32| {
+        let leaf = i % EDGE / 4 + i / EDGE / 4 * EDGE;
+        (leaf ^ leaf >> 9).wrapping_mul(0x9e37_79b1) >> 30 == 0
+    };
+    scene.textures = vec![Texture {
+        name: String::from("leaves"),
+        width: EDGE,
+        height: EDGE,
+        rgba8: (0..EDGE * EDGE)
+            .flat_map(|i| [255, 255, 255, if is_leaf(i) { 255 } else { 0 }])
+            .collect(),
+        encoding: Encoding::Srgb,
+        wrap: [Wrap::Clamp; 2],
+    }];
+    let (day, view) = (constant_sky(L), camera([0.0, 0.6, 0.6], [0.0; 3]));
+    // A square from below its middle, eight times its height away from the edges.
+    let corner = 8.0 / 65f64.sqrt() * (8.0 / 65f64.sqrt()).atan() / PI;
+    let expected = 1.0 - 0.25 * 4.0 * corner;
+    for way in [DomeBy::Maps, DomeBy::Rays] {
+        let mut set = by(way, dome(16, 64));
+        set.sampling.dome.map_edge = 64;
+        let picture = device.picture(&scene, set, &day, &view);
+        let [sum, count] = picture.pixels().fold([0.0; 2], |[sum, count], (_, e)| {
+            [sum + 1000.0 * luminance(e) / (PI * L), count + 1.0]
+        });
+        let share = sum / count;
+        println!("{way:?}: {share:.4} of the open sky, by the factor {expected:.4}");
+        assert!((share - expected).abs() < 0.03, "{way:?}: {share}");
+    }
+}

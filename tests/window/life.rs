@@ -164,13 +164,14 @@ fn nth_size(n: u32) -> (u32, u32) {
     }
 }
 
-/// Number of resizes until memory settles, number of resizes after that, and allowed growth in the latter (relative). The C
-/// library returns freed driver memory to the system at times: resident memory fluctuates by 1 % to 8 % in resizes 50 to 100.
+/// Number of resizes until memory settles, number of resizes after that, and allowed growth in the latter (relative). Resident memory
+/// fluctuates by some per cent, and with lavapipe it grows by 0.3 to 0.45 MB a resize, as the code that it compiled does. The images of a frame,
+/// left behind, would be several times as much.
 fn resizes() -> (u32, u32, f64) {
     if is_soaking() {
         (400, 300, 0.02)
     } else {
-        (50, 50, 0.12)
+        (150, 50, 0.2)
     }
 }
 

@@ -83,15 +83,19 @@ fn staged_uploads_are_visible_to_draws_of_the_same_submission() {
     device.context.check_validation().expect("no message");
 }
 
+/// Coarser levels would fill the holes of leaves, or empty the leaves.
 #[test]
-fn each_mip_level_of_a_texture_gets_its_own_texels() {
+fn shadow_maps_look_cut_outs_up_at_their_finest_level() {
     let mut device = Device::new();
-    for level in 0..4 {
+    // The quad covers EDGE pixels, so each doubling of the texture's size would select the next mip level.
+    for doublings in 0..4 {
         for opaque in 0..4 {
-            let depth = if level == opaque { 0.5 } else { 0.0 };
-            // The quad covers EDGE pixels, so each doubling of the texture's size selects the next mip level.
-            let drawn = draw_uploaded_quad(&mut device, EDGE << level, opaque);
-            assert_eq!(drawn, [depth; 64], "level {level}, opaque {opaque}");
+            let depth = if opaque == 0 { 0.5 } else { 0.0 };
+            let drawn = draw_uploaded_quad(&mut device, EDGE << doublings, opaque);
+            assert_eq!(
+                drawn, [depth; 64],
+                "{doublings} doublings, opaque in level {opaque}"
+            );
         }
     }
 }

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::Sensor;
 use super::grid::GridError;
+use super::made::{DIGITS, counts, unknown_material};
 use crate::daylight::sampling::{cosine_hemisphere, sobol};
 use crate::daylight::tangent_frame;
 use crate::scene::{Bvh, Ray, Scene};
@@ -37,12 +38,6 @@ const LOOKS: u32 = 64;
 /// Share of them, of those above the horizon, that must end in the sky.
 const LEAST_SKY: f32 = 0.125;
 
-/// Part of the spacing by which it may be exceeded: lengths of models are rounded.
-const ROUNDING: f32 = 0.01;
-
-/// Made sensors lie on tenths of a millimetre, for numbers that are easy to read.
-const DIGITS: f32 = 1e4;
-
 /// Upright triangles on one plane, facing one way.
 struct Wall {
     normal: Vec3,
@@ -68,13 +63,8 @@ impl Wall {
 /// # Errors
 /// A name that no material has, or no place for a sensor.
 pub fn make_facades(scene: &Scene, facades: &Facades) -> Result<Vec<Sensor>, GridError> {
-    let names = || scene.materials.iter().map(|m| m.name.as_str());
-    let unknown = |name: &&String| !names().any(|known| known == name.as_str());
-    if let Some(name) = facades.materials.iter().find(unknown) {
-        return Err(GridError::UnknownFacade {
-            name: name.clone(),
-            known: names().collect::<Vec<_>>().join(", "),
-        });
+    if let Some((name, known)) = unknown_material(scene, &facades.materials) {
+        return Err(GridError::UnknownFacade { name, known });
     }
     let bvh = scene.hierarchy();
     let mut sensors = Vec::new();
@@ -151,7 +141,7 @@ fn grid(wall: &Wall, spacing: f32) -> Vec<Vec2> {
     let corners = || wall.triangles.iter().flatten().copied();
     let least = corners().reduce(Vec2::min).unwrap_or_default();
     let most = corners().reduce(Vec2::max).unwrap_or_default();
-    let counts = ((most - least) / spacing - ROUNDING).ceil().max(Vec2::ONE);
+    let counts = counts(most - least, spacing);
     let step = (most - least) / counts;
     let mut places = Vec::new();
     for row in 0..counts.y as u32 {

@@ -7,6 +7,7 @@ mod blinds;
 mod cells;
 mod facade;
 mod grid;
+mod made;
 mod numbers;
 mod path;
 mod plane;

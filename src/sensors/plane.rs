@@ -10,6 +10,7 @@ use glam::{Vec2, Vec3};
 use self::region::{Raster, Region};
 use super::Sensor;
 use super::grid::GridError;
+use super::made::{DIGITS, counts, unknown_material};
 use crate::scene::{Bvh, Ray, Scene};
 
 /// What to make.
@@ -37,12 +38,6 @@ const LEAST_AREA: f32 = 1.0;
 /// Directions in which walls must be farther than the inset.
 const AROUND: u32 = 16;
 
-/// Part of the spacing by which it may be exceeded: lengths of models are rounded.
-const ROUNDING: f32 = 0.01;
-
-/// Made sensors lie on tenths of a millimetre, for numbers that are easy to read.
-const DIGITS: f32 = 1e4;
-
 /// Horizontal triangles at one height.
 pub(super) struct Level {
     /// Height, metres.
@@ -56,13 +51,8 @@ pub(super) struct Level {
 /// # Errors
 /// A name that no material has, or no room with a place for a sensor.
 pub fn make_grid(scene: &Scene, planes: &Planes) -> Result<Vec<Sensor>, GridError> {
-    let names = || scene.materials.iter().map(|m| m.name.as_str());
-    let unknown = |name: &&String| !names().any(|known| known == name.as_str());
-    if let Some(name) = planes.floors.iter().find(unknown) {
-        return Err(GridError::UnknownFloor {
-            name: name.clone(),
-            known: names().collect::<Vec<_>>().join(", "),
-        });
+    if let Some((name, known)) = unknown_material(scene, &planes.floors) {
+        return Err(GridError::UnknownFloor { name, known });
     }
     let bvh = scene.hierarchy();
     let mut sensors = Vec::new();
@@ -117,7 +107,7 @@ fn levels(scene: &Scene, names: &[String]) -> Vec<Level> {
 /// Adds the sensors of a region.
 fn fill(bvh: &Bvh, raster: &Raster, region: &Region, planes: &Planes, sensors: &mut Vec<Sensor>) {
     let size = region.max - region.min;
-    let counts = (size / planes.spacing - ROUNDING).ceil().max(Vec2::ONE);
+    let counts = counts(size, planes.spacing);
     let step = size / counts;
     for row in (0..counts.y as u32).rev() {
         for column in 0..counts.x as u32 {

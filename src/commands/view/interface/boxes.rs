@@ -12,11 +12,7 @@ pub(super) fn corner(
     offset: [f32; 2],
     content: impl FnOnce(&mut Ui),
 ) -> egui::Response {
-    egui::Area::new(egui::Id::new(id))
-        .anchor(anchor, offset)
-        .interactable(true)
-        .show(ui.ctx(), |ui| style::backdrop().show(ui, content))
-        .response
+    shown(ui, area(id, anchor, offset), content)
 }
 
 /// The same of what is read alone: the pointer reaches the image through it. A read-out of what is under the pointer that took it
@@ -28,13 +24,20 @@ pub(super) fn read_out(
     offset: [f32; 2],
     content: impl FnOnce(&mut Ui),
 ) -> egui::Response {
+    shown(ui, area(id, anchor, offset).interactable(false), |ui| {
+        ui.style_mut().interaction.selectable_labels = false;
+        content(ui);
+    })
+}
+
+fn area(id: &str, anchor: Align2, offset: [f32; 2]) -> egui::Area {
     egui::Area::new(egui::Id::new(id))
         .anchor(anchor, offset)
-        .interactable(false)
-        .show(ui.ctx(), |ui| {
-            ui.style_mut().interaction.selectable_labels = false;
-            style::backdrop().show(ui, content)
-        })
+        .interactable(true)
+}
+
+fn shown(ui: &Ui, area: egui::Area, content: impl FnOnce(&mut Ui)) -> egui::Response {
+    area.show(ui.ctx(), |ui| style::backdrop().show(ui, content))
         .response
 }
 

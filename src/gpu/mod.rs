@@ -41,7 +41,7 @@ pub use pipeline::shader::{Binding, BindingKind, Field, Shader, Stage, compiled 
 pub use pipeline::{Blend, Depth, Pipeline, PipelineDesc};
 #[cfg(feature = "window")]
 pub use present::{
-    output::{Encoding, Output},
+    output::{Content, Encoding, Output},
     presenter::{FRAMES, Presenter},
     ui::{Overlay, UiFrame},
 };

@@ -163,6 +163,7 @@ choices! {
         FloatBlend = "float-blend": "Blending of 32-bit floats; pictures of 32-bit floats have no stars otherwise",
         StoredPictures = "stored-pictures": "Storage images of the formats of pictures; fragment shaders run full-screen passes otherwise",
         Timestamps = "timestamps": "Timestamps of the queue; each pass is submitted alone and timed by the wall clock otherwise",
+        HdrMetadata = "hdr-metadata": "Extension VK_EXT_hdr_metadata; an HDR screen assumes how bright pictures get otherwise",
     }
     Phong {
         ByFormat = "by-format": "GGX and a sky hidden by what stands before it for glTF, the lecture's for MTL",

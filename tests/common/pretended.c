@@ -7,7 +7,7 @@
 //   short   the last column of every dispatch's workgroups is missing
 //   deep    the depth test of what writes depth lets everything pass
 //   plain   compute shaders have the default values of their constants
-//   hang    waits for fences end with a timeout; a wait for the whole device after that is told on stderr
+//   hang    waits for fences end with a timeout; after that a wait for the whole device is told on stderr, and what frees a window's images
 #define vkNegotiateLoaderLayerInterfaceVersion negotiate_pretence
 #include PRETENCE
 #undef vkNegotiateLoaderLayerInterfaceVersion
@@ -134,6 +134,16 @@ static VkResult VKAPI_CALL device_wait_idle(VkDevice device) {
 
 #define D(name) ((PFN_##name)gdpa(device, #name))
 
+static void VKAPI_CALL destroy_swapchain(VkDevice device, VkSwapchainKHR swapchain, const VkAllocationCallbacks *allocator) {
+    if (has_hung) fprintf(stderr, "the images of the window are freed on a device that hangs\n");
+    D(vkDestroySwapchainKHR)(device, swapchain, allocator);
+}
+
+static void VKAPI_CALL destroy_semaphore(VkDevice device, VkSemaphore semaphore, const VkAllocationCallbacks *allocator) {
+    if (has_hung) fprintf(stderr, "a semaphore is freed on a device that hangs\n");
+    D(vkDestroySemaphore)(device, semaphore, allocator);
+}
+
 static VkResult VKAPI_CALL create_sampler(VkDevice device, const VkSamplerCreateInfo *info, const VkAllocationCallbacks *allocator, VkSampler *sampler) {
     VkSamplerCreateInfo own = *info;
     if (on("nearest")) own.magFilter = own.minFilter = VK_FILTER_NEAREST;
@@ -185,6 +195,8 @@ static PFN_vkVoidFunction VKAPI_CALL device_function(VkDevice device, const char
     INSTEAD("vkCreateCommandPool", command_pool)
     INSTEAD("vkWaitForFences", wait_for_fences)
     INSTEAD("vkDeviceWaitIdle", device_wait_idle)
+    INSTEAD("vkDestroySwapchainKHR", destroy_swapchain)
+    INSTEAD("vkDestroySemaphore", destroy_semaphore)
     return FakeGdpa(device, name);
 }
 

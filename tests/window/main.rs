@@ -11,6 +11,7 @@ mod x;
 
 mod devices;
 mod faults;
+mod hdr;
 #[cfg(feature = "hot-reload")]
 mod hot_reload;
 mod life;

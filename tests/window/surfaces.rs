@@ -24,7 +24,7 @@ fn view() -> Vec<&'static str> {
 }
 
 /// Compiles a C file beside this one to a shared library in `folder`.
-fn library(folder: &Path, source: &str, define: &str) -> PathBuf {
+pub fn library(folder: &Path, source: &str, define: &str) -> PathBuf {
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/window");
     let library = folder.join(source).with_extension("so");
     let built = Command::new("cc")

@@ -202,7 +202,8 @@ impl App {
             if size.width > 0 && size.height > 0 && !is_set {
                 document.job.settings.size = size;
             }
-            if let Err(error) = stage.set_hdr(document.job.settings.hdr) {
+            let settings = &document.job.settings;
+            if let Err(error) = stage.set_hdr(settings.hdr, settings.hdr_peak) {
                 document.job.settings.hdr = Hdr::Off;
                 tell(interface, &error);
             }

@@ -9,10 +9,11 @@ use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
 
 use crate::commands::job::{context_options, notice, planned_fault};
+use crate::daylight::colour::{BT709_PRIMARIES, D65_WHITE};
 use crate::error::{Error, Result};
 use crate::gpu::{
-    Context, ContextOptions, Format, GpuError, Image, ImageDesc, Overlay, Presenter, Recorder,
-    Timing, Timings, UiFrame,
+    Content, Context, ContextOptions, Format, GpuError, Image, ImageDesc, Overlay, Presenter,
+    Recorder, Timing, Timings, UiFrame,
 };
 use crate::options::{Hdr, Options};
 use crate::passes::picture::present::{Present, interface_format};
@@ -140,15 +141,20 @@ impl Stage {
             size,
             started: Instant::now(),
         };
-        stage.set_hdr(options.hdr)?;
+        stage.set_hdr(options.hdr, options.hdr_peak)?;
         Ok(stage)
     }
 
-    /// Draws with an HDR signal, or without. On an error the window has none.
+    /// Draws with an HDR signal for a screen of this `peak`, cd/m², or without. On an error the window has none.
     ///
     /// # Errors
     /// Fails when one is insisted on and the surface offers none, and when the device cannot create the resources.
-    pub(super) fn set_hdr(&mut self, hdr: Hdr) -> Result<()> {
+    pub(super) fn set_hdr(&mut self, hdr: Hdr, peak: f64) -> Result<()> {
+        self.presenter.set_content(Content {
+            primaries: BT709_PRIMARIES,
+            white: D65_WHITE,
+            peak,
+        });
         let output = self.presenter.output_for(hdr != Hdr::Off);
         if output != self.presenter.output() {
             self.presenter.idle()?;

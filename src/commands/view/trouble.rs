@@ -80,6 +80,11 @@ impl App {
     /// Does what there is to do about an error.
     pub(super) fn trouble_of(&mut self, event_loop: &ActiveEventLoop, error: Error) {
         match self.trouble.verdict(&error) {
+            // A device that is lost before there is a view has nothing to recover.
+            Verdict::Recover if self.stage.is_none() => {
+                self.trouble.end(error);
+                event_loop.exit();
+            }
             Verdict::Recover => {
                 if let Err(error) = self.recover() {
                     self.trouble.end(Error::LostForGood(Box::new(error)));

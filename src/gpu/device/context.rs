@@ -60,6 +60,8 @@ pub(in crate::gpu) struct Extensions {
     pub(in crate::gpu) push_descriptor: Option<khr::push_descriptor::Device>,
     #[cfg(feature = "window")]
     pub(in crate::gpu) swapchain: Option<khr::swapchain::Device>,
+    #[cfg(feature = "window")]
+    pub(in crate::gpu) hdr_metadata: Option<ext::hdr_metadata::Device>,
     /// Names and labels for the messages of the validation layer.
     pub(in crate::gpu) debug: Option<ext::debug_utils::Device>,
 }
@@ -68,15 +70,19 @@ impl Extensions {
     fn load(
         instance: &ash::Instance,
         device: &ash::Device,
-        push_descriptor: bool,
+        summary: &DeviceSummary,
         validates: bool,
         #[cfg(feature = "window")] presents: bool,
     ) -> Self {
         Self {
-            push_descriptor: push_descriptor
+            push_descriptor: summary
+                .has(Optional::PushDescriptor)
                 .then(|| khr::push_descriptor::Device::new(instance, device)),
             #[cfg(feature = "window")]
             swapchain: presents.then(|| khr::swapchain::Device::new(instance, device)),
+            #[cfg(feature = "window")]
+            hdr_metadata: (presents && summary.has(Optional::HdrMetadata))
+                .then(|| ext::hdr_metadata::Device::new(instance, device)),
             debug: validates.then(|| ext::debug_utils::Device::new(instance, device)),
         }
     }
@@ -163,7 +169,7 @@ impl Context {
         let extensions = Extensions::load(
             &instance.raw,
             &device.raw,
-            chosen.summary.has(Optional::PushDescriptor),
+            &chosen.summary,
             options.validate,
             #[cfg(feature = "window")]
             surface.is_some(),
@@ -415,6 +421,9 @@ fn create_device(
     }
     if presents {
         extensions.push(khr::swapchain::NAME.as_ptr());
+        if chosen.summary.has(Optional::HdrMetadata) {
+            extensions.push(ext::hdr_metadata::NAME.as_ptr());
+        }
     }
     let core = vk::PhysicalDeviceFeatures::default()
         .geometry_shader(chosen.summary.has(Optional::GeometryShader))

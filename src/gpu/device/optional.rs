@@ -19,11 +19,13 @@ pub enum Optional {
     StoredPictures,
     /// Timestamps of the queue. Fallback: each pass is submitted alone and timed by the clock of the wall.
     Timestamps,
+    /// Extension VK_EXT_hdr_metadata: a window tells an HDR screen how bright it gets. Fallback: the screen assumes it.
+    HdrMetadata,
 }
 
 impl Optional {
     /// All optional features.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::PushDescriptor,
         Self::GeometryShader,
         Self::PipelineStatistics,
@@ -31,6 +33,7 @@ impl Optional {
         Self::FloatBlend,
         Self::StoredPictures,
         Self::Timestamps,
+        Self::HdrMetadata,
     ];
 
     /// Name in the Vulkan specification, with the format it is asked of.
@@ -43,6 +46,7 @@ impl Optional {
             Self::FloatBlend => "blending of R32G32B32A32_SFLOAT",
             Self::StoredPictures => "storing of R16G16B16A16_SFLOAT, R8G8B8A8_UNORM and R32_UINT",
             Self::Timestamps => "timestamps",
+            Self::HdrMetadata => "VK_EXT_hdr_metadata",
         }
     }
 
@@ -59,7 +63,10 @@ impl Optional {
             Self::StoredPictures => {
                 Some("no storing of the pictures' formats; fragment shaders run full-screen passes")
             }
-            Self::PushDescriptor | Self::PipelineStatistics | Self::Timestamps => None,
+            Self::PushDescriptor
+            | Self::PipelineStatistics
+            | Self::Timestamps
+            | Self::HdrMetadata => None,
         }
     }
 }
@@ -111,7 +118,9 @@ impl Offered<'_> {
         let filter = vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR;
         let blend = vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
         let present = |optional: Optional| match optional {
-            Optional::PushDescriptor => self.extensions.iter().any(|e| e == optional.name()),
+            Optional::PushDescriptor | Optional::HdrMetadata => {
+                self.extensions.iter().any(|e| e == optional.name())
+            }
             Optional::GeometryShader => core.geometry_shader == vk::TRUE,
             Optional::PipelineStatistics => core.pipeline_statistics_query == vk::TRUE,
             Optional::FloatFilter => floats.contains(filter) && filters_well(self.driver),

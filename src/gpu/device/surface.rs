@@ -105,7 +105,7 @@ impl RawSurface {
 
 impl Drop for RawSurface {
     fn drop(&mut self) {
-        // SAFETY: the swapchain, declared before it in the same struct, is destroyed already.
+        // SAFETY: the swapchain, declared before it in the same struct, is destroyed already; null is ignored.
         unsafe { self.loader.destroy_surface(self.handle, None) };
     }
 }
@@ -127,6 +127,11 @@ impl Surface {
 
     pub(in crate::gpu) fn handle(&self) -> vk::SurfaceKHR {
         self.surface.handle
+    }
+
+    /// Leaves the surface to the end of the process, with the swapchain of a device that hangs.
+    pub(in crate::gpu) fn leave(&mut self) {
+        self.surface.handle = vk::SurfaceKHR::null();
     }
 
     /// Recreates a lost surface. Its swapchain must have been destroyed.

@@ -50,6 +50,37 @@ impl Output {
     }
 }
 
+/// What the pictures of an HDR window hold at most, for the screen to fit them to itself (SMPTE ST 2086, CTA-861.3).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Content {
+    /// Chromaticities (x, y) of red, green and blue: no colour lies outside.
+    pub primaries: [[f64; 2]; 3],
+    /// Chromaticity of white.
+    pub white: [f64; 2],
+    /// Luminance of the brightest pixel, cd/m².
+    pub peak: f64,
+}
+
+impl Content {
+    /// As Vulkan takes it. The mean luminance of a picture is not known ahead: 0 says so.
+    pub(in crate::gpu) fn metadata(&self) -> vk::HdrMetadataEXT<'static> {
+        let chromaticity = |[x, y]: [f64; 2]| vk::XYColorEXT {
+            x: x as f32,
+            y: y as f32,
+        };
+        let [red, green, blue] = self.primaries.map(chromaticity);
+        vk::HdrMetadataEXT::default()
+            .display_primary_red(red)
+            .display_primary_green(green)
+            .display_primary_blue(blue)
+            .white_point(chromaticity(self.white))
+            .max_luminance(self.peak as f32)
+            .min_luminance(0.0)
+            .max_content_light_level(self.peak as f32)
+            .max_frame_average_light_level(0.0)
+    }
+}
+
 /// What the program can draw to, best first. Of HDR signals HDR10 comes first: its values are luminances, whatever the system.
 const KNOWN: [(Encoding, &[Format]); 4] = [
     (

@@ -5,7 +5,7 @@ use ash::vk;
 use crate::gpu::device::surface::Surface;
 use crate::gpu::error::{GpuError, Result};
 use crate::gpu::memory::image::Image;
-use crate::gpu::present::output::{Output, choose, listed};
+use crate::gpu::present::output::{Content, Output, choose, listed};
 use crate::gpu::present::swapchain::{Semaphore, Swapchain};
 use crate::gpu::record::access::ImageAccess;
 use crate::gpu::record::recorder::Recorder;
@@ -72,6 +72,11 @@ impl Presenter {
     /// Sets what the window is drawn in from the next frame on: one of [`Presenter::output_for`].
     pub fn set_output(&mut self, output: Output) {
         self.swapchain.set_output(output);
+    }
+
+    /// Sets what the pictures hold at most, which an HDR screen is told where the device can ([`crate::gpu::Optional::HdrMetadata`]).
+    pub fn set_content(&mut self, content: Content) {
+        self.swapchain.set_content(content);
     }
 
     /// Sets the window size, pixels; 0 when minimised.

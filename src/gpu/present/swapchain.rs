@@ -9,7 +9,7 @@ use crate::gpu::device::fault::Call;
 use crate::gpu::device::surface::Surface;
 use crate::gpu::error::{During, GpuError, Result};
 use crate::gpu::memory::image::Image;
-use crate::gpu::present::output::Output;
+use crate::gpu::present::output::{Content, Output};
 use crate::gpu::record::access::ImageAccess;
 
 /// A semaphore destroyed on drop.
@@ -36,8 +36,10 @@ impl Semaphore {
 
 impl Drop for Semaphore {
     fn drop(&mut self) {
-        // SAFETY: the swapchain waits for the device before it releases its semaphores.
-        unsafe { self.context.raw().destroy_semaphore(self.raw, None) };
+        if let Some(raw) = self.context.freeing() {
+            // SAFETY: the swapchain waits for the device before it releases its semaphores.
+            unsafe { raw.destroy_semaphore(self.raw, None) };
+        }
     }
 }
 
@@ -54,6 +56,7 @@ pub(in crate::gpu) struct Swapchain {
     raw: vk::SwapchainKHR,
     loader: khr::swapchain::Device,
     output: Output,
+    content: Option<Content>,
     wanted: [u32; 2],
     is_stale: bool,
     surface: Surface,
@@ -80,6 +83,7 @@ impl Swapchain {
             raw: vk::SwapchainKHR::null(),
             loader,
             output,
+            content: None,
             wanted: size,
             is_stale: true,
             surface,
@@ -98,6 +102,25 @@ impl Swapchain {
     pub(in crate::gpu) fn set_output(&mut self, output: Output) {
         self.is_stale |= output != self.output;
         self.output = output;
+    }
+
+    /// Sets what the pictures hold at most, for an HDR screen.
+    pub(in crate::gpu) fn set_content(&mut self, content: Content) {
+        if self.content != Some(content) {
+            self.content = Some(content);
+            self.tell_screen();
+        }
+    }
+
+    fn tell_screen(&self) {
+        let extensions = &self.context().extensions;
+        let (Some(loader), Some(content)) = (&extensions.hdr_metadata, &self.content) else {
+            return;
+        };
+        if self.raw != vk::SwapchainKHR::null() && self.output.encoding.is_hdr() {
+            // SAFETY: the swapchain is alive and belongs to this device.
+            unsafe { loader.set_hdr_metadata(&[self.raw], &[content.metadata()]) };
+        }
     }
 
     pub(in crate::gpu) fn image(&self, index: u32) -> &Image {
@@ -200,6 +223,7 @@ impl Swapchain {
         // SAFETY: the device is idle, so no image of the old swapchain is in use; null is ignored.
         unsafe { self.loader.destroy_swapchain(old, None) };
         self.raw = made?;
+        self.tell_screen();
         self.targets = self.make_targets([extent.width, extent.height])?;
         self.is_stale = false;
         Ok(true)
@@ -261,8 +285,12 @@ impl Swapchain {
         let idle = self.context().wait_idle();
         self.targets.clear();
         let old = std::mem::replace(&mut self.raw, vk::SwapchainKHR::null());
-        // SAFETY: the device is idle or lost; null is ignored.
-        unsafe { self.loader.destroy_swapchain(old, None) };
+        if self.context().freeing().is_some() {
+            // SAFETY: the device is idle or lost; null is ignored.
+            unsafe { self.loader.destroy_swapchain(old, None) };
+        } else {
+            self.surface.leave();
+        }
         idle
     }
 }

@@ -184,3 +184,29 @@ fn frames_go_on_while_another_thread_makes_passes_that_then_show_what_new_ones_d
         );
     }
 }
+
+#[test]
+fn passes_that_are_made_again_have_the_pipelines_of_before() {
+    let mut device = Device::new();
+    let (scene, view) = (scene(), camera([4.0, 2.5, 5.0], [0.0, 0.7, 0.0]));
+    let day = clear_day(150.0, 40.0);
+    let [single, .., dome] = ways();
+    let first = device.frame(&scene, single, &day, &view);
+    let expected = device.read(first.display());
+    drop(device.frame(&scene, dome, &day, &view));
+    let made = device.context.pipelines().len();
+    // Both the ones in use and those that nothing used any more.
+    let again = [single, dome].map(|set| {
+        let mut larger = set;
+        larger.size *= 2;
+        drop(device.frame(&scene, larger, &day, &view));
+        device.frame(&scene, set, &day, &view)
+    });
+    assert_eq!(device.context.pipelines().len(), made);
+    assert!(device.read(again[0].display()) == expected);
+    // Other constants are other pipelines.
+    let mut other = single;
+    other.lighting.fresnel = true;
+    drop(device.frame(&scene, other, &day, &view));
+    assert!(device.context.pipelines().len() > made);
+}

@@ -165,7 +165,7 @@ fn nth_size(n: u32) -> (u32, u32) {
 }
 
 /// Number of resizes until memory settles, number of resizes after that, and allowed growth in the latter (relative). Resident memory
-/// fluctuates by some per cent, and with lavapipe it grows by 0.3 to 0.45 MB a resize, as the code that it compiled does. The images of a frame,
+/// fluctuates by some per cent, and with lavapipe it grows by 0.2 MB a resize. The images of a frame,
 /// left behind, would be several times as much.
 fn resizes() -> (u32, u32, f64) {
     if is_soaking() {
@@ -255,7 +255,8 @@ fn dragging_keeps_going() {
     let (mut frames, mut last) = (0, d.picture(window, part));
     let started = Instant::now();
     let mut step = 0;
-    while started.elapsed() < Duration::from_secs(4) {
+    // A busy machine may take long for the first frame.
+    while started.elapsed() < Duration::from_secs(if frames == 0 { 60 } else { 4 }) {
         step += 1;
         d.point(700 + step % 300, 400 + step % 50);
         sleep(Duration::from_millis(8));
@@ -268,7 +269,7 @@ fn dragging_keeps_going() {
     d.release(1);
     println!(
         "camera drag at 1280x720: {:.1} frames/s",
-        f64::from(frames) / 4.0
+        f64::from(frames) / started.elapsed().as_secs_f64()
     );
     assert!(frames > 0, "nothing moved");
     running.close_well();

@@ -21,6 +21,7 @@ use crate::gpu::device::validation::{Log, Messenger};
 use crate::gpu::error::{During, GpuError, Result};
 use crate::gpu::memory::image::{Sampler, create_samplers};
 use crate::gpu::pipeline::cache::{CacheState, Key, PipelineCache};
+use crate::gpu::pipeline::kept::Kept;
 use crate::gpu::pipeline::route::DeviceRoute;
 use crate::gpu::record::screen::Route;
 
@@ -94,6 +95,7 @@ pub struct Context {
     allocator: ManuallyDrop<Arc<Mutex<Allocator>>>,
     samplers: [vk::Sampler; Sampler::COUNT],
     cache: PipelineCache,
+    pub(in crate::gpu) kept: Kept,
     pub(in crate::gpu) route: DeviceRoute,
     pub(in crate::gpu) faults: Faults,
     /// Whether the device has not answered in time: nothing waits for it any more.
@@ -186,6 +188,7 @@ impl Context {
             allocator: ManuallyDrop::new(Arc::new(Mutex::new(allocator))),
             samplers,
             cache,
+            kept: Kept::default(),
             route,
             faults,
             is_hung: AtomicBool::new(false),
@@ -373,6 +376,7 @@ impl Context {
 impl Drop for Context {
     fn drop(&mut self) {
         self.settle();
+        self.kept.destroy(&self.device.raw);
         // SAFETY: no resource is alive (each holds an Arc of the context); the allocator is dropped once, before the device.
         unsafe {
             self.cache.save_and_destroy(&self.device.raw);

@@ -59,6 +59,7 @@ impl Context {
             .filter(|s| old.get(s.name).map_or(s.words, |w| w) != &*stages[s.name]);
         let changed = changed.count();
         *old = stages;
+        self.kept.forget();
         Ok(changed)
     }
 }

@@ -3,6 +3,7 @@
 pub(in crate::gpu) mod cache;
 #[cfg(feature = "hot-reload")]
 pub(in crate::gpu) mod hot_reload;
+pub(in crate::gpu) mod kept;
 pub(in crate::gpu) mod layout;
 #[cfg(test)]
 mod limits_tests;
@@ -100,9 +101,16 @@ pub(in crate::gpu) struct Slot {
     stages: vk::ShaderStageFlags,
 }
 
-/// A pipeline with its layout and interface.
+/// A pipeline with its layout and interface. Pipelines of one description share what the driver made: see [`kept::Kept`].
 pub struct Pipeline {
-    context: Arc<Context>,
+    pub(in crate::gpu) made: Arc<Made>,
+    name: String,
+    /// Keeps the device open, which owns what was made.
+    _context: Arc<Context>,
+}
+
+/// What the driver makes of a description, and its interface. The context owns the handles.
+pub(in crate::gpu) struct Made {
     raw: vk::Pipeline,
     layout: vk::PipelineLayout,
     set_layout: vk::DescriptorSetLayout,
@@ -116,7 +124,6 @@ pub struct Pipeline {
     pub(in crate::gpu) culls: bool,
     /// Work group size of a compute pipeline.
     pub(in crate::gpu) local_size: Option<[u32; 3]>,
-    name: String,
 }
 
 /// Size of a push constant block, bytes.
@@ -169,8 +176,34 @@ fn merge_push(stages: &[&'static Shader]) -> Option<(&'static [Field], vk::Shade
     merged
 }
 
+/// What fails, for messages.
+const COMPILE: &str = "compile a pipeline";
+
+/// Compares a description with the interfaces of its stages.
+fn check(desc: &PipelineDesc<'_>) {
+    for (name, _) in desc.constants {
+        let declared = desc
+            .stages
+            .iter()
+            .any(|s| s.constants.iter().any(|c| c.0 == *name));
+        assert!(
+            declared,
+            "{}: no stage declares the constant {name}",
+            desc.name
+        );
+    }
+    for shader in desc.stages.iter().filter(|s| s.stage == Stage::Fragment) {
+        let (outputs, targets) = (shader.outputs, desc.colors.len());
+        assert_eq!(
+            outputs, targets,
+            "{}: outputs of {}",
+            desc.name, shader.name
+        );
+    }
+}
+
 impl Pipeline {
-    /// Creates a pipeline.
+    /// Creates a pipeline, or takes one of the same description that was made before.
     ///
     /// # Errors
     /// When the driver cannot create it.
@@ -179,53 +212,101 @@ impl Pipeline {
     /// When the interfaces of the stages conflict, a constant is not declared by any stage, or the outputs of the fragment
     /// shader do not match the colour attachments. These are bugs in the program.
     pub fn new(context: &Arc<Context>, desc: &PipelineDesc<'_>) -> Result<Self> {
-        let start = Instant::now();
-        let slots = merge_slots(desc.stages);
-        let push = merge_push(desc.stages);
-        for (name, _) in desc.constants {
-            let declared = desc
-                .stages
-                .iter()
-                .any(|s| s.constants.iter().any(|c| c.0 == *name));
-            assert!(
-                declared,
-                "{}: no stage declares the constant {name}",
-                desc.name
-            );
+        check(desc);
+        context.faults.at(Call::Pipeline).during(COMPILE)?;
+        let make = || {
+            let start = Instant::now();
+            let made = Made::new(context, desc)?;
+            context.name(made.raw, desc.name);
+            context.startup.pipeline(desc.name, start);
+            Ok(made)
+        };
+        Ok(Self {
+            made: context.kept.find_or(context.freeing(), desc, make)?,
+            name: desc.name.to_owned(),
+            _context: context.clone(),
+        })
+    }
+
+    /// Whether the other pipeline can be used in the same pass with the same bindings.
+    pub(in crate::gpu) fn is_variant_of(&self, other: &Self) -> bool {
+        let slots = self.made.slots.iter().map(|s| s.binding);
+        slots.eq(other.made.slots.iter().map(|s| s.binding))
+            && self.made.push == other.made.push
+            && self.made.colors == other.made.colors
+            && self.made.depth == other.made.depth
+            && self.made.streams == other.made.streams
+    }
+
+    /// The name of the pipeline.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    pub(in crate::gpu) fn bind_point(&self) -> vk::PipelineBindPoint {
+        match self.made.local_size {
+            Some(_) => vk::PipelineBindPoint::COMPUTE,
+            None => vk::PipelineBindPoint::GRAPHICS,
         }
-        for shader in desc.stages.iter().filter(|s| s.stage == Stage::Fragment) {
-            let (outputs, targets) = (shader.outputs, desc.colors.len());
-            assert_eq!(
-                outputs, targets,
-                "{}: outputs of {}",
-                desc.name, shader.name
-            );
-        }
-        let mut pipeline = Self {
-            context: context.clone(),
+    }
+
+    pub(in crate::gpu) fn raw(&self) -> vk::Pipeline {
+        self.made.raw
+    }
+
+    pub(in crate::gpu) fn layout(&self) -> vk::PipelineLayout {
+        self.made.layout
+    }
+
+    pub(in crate::gpu) fn set_layout(&self) -> vk::DescriptorSetLayout {
+        self.made.set_layout
+    }
+}
+
+impl Made {
+    /// Makes a pipeline of a description.
+    fn new(context: &Arc<Context>, desc: &PipelineDesc<'_>) -> Result<Self> {
+        let mut made = Self {
             raw: vk::Pipeline::null(),
             layout: vk::PipelineLayout::null(),
             set_layout: vk::DescriptorSetLayout::null(),
-            slots,
-            push,
+            slots: merge_slots(desc.stages),
+            push: merge_push(desc.stages),
             colors: desc.colors.to_vec(),
             depth: desc.depth.format(),
             streams: desc.vertex.len(),
             writes_depth: desc.depth.is_written(),
             culls: desc.culls(),
             local_size: desc.stages.iter().find_map(|s| s.local_size),
-            name: desc.name.to_owned(),
         };
-        pipeline.set_layout = pipeline.create_set_layout()?;
-        pipeline.layout = pipeline.create_layout()?;
-        let modules = Modules::new(context, desc.stages)?;
-        pipeline.raw = pipeline.create(desc, &modules)?;
-        context.name(pipeline.raw, desc.name);
-        context.startup.pipeline(desc.name, start);
-        Ok(pipeline)
+        match made.fill(context, desc) {
+            Ok(()) => Ok(made),
+            Err(error) => {
+                made.destroy(context.raw());
+                Err(error)
+            }
+        }
     }
 
-    fn create_set_layout(&self) -> Result<vk::DescriptorSetLayout> {
+    fn fill(&mut self, context: &Arc<Context>, desc: &PipelineDesc<'_>) -> Result<()> {
+        self.set_layout = self.create_set_layout(context)?;
+        self.layout = self.create_layout(context)?;
+        let modules = Modules::new(context, desc.stages)?;
+        self.raw = self.create(context, desc, &modules)?;
+        Ok(())
+    }
+
+    /// Destroys the handles, which nothing may use any more.
+    fn destroy(&self, device: &ash::Device) {
+        // SAFETY: the caller promises it; null handles are ignored.
+        unsafe {
+            device.destroy_pipeline(self.raw, None);
+            device.destroy_pipeline_layout(self.layout, None);
+            device.destroy_descriptor_set_layout(self.set_layout, None);
+        }
+    }
+
+    fn create_set_layout(&self, context: &Context) -> Result<vk::DescriptorSetLayout> {
         let bindings: Vec<_> = self
             .slots
             .iter()
@@ -237,7 +318,7 @@ impl Pipeline {
                     .stage_flags(slot.stages)
             })
             .collect();
-        let flags = if self.context.extensions.push_descriptor.is_some() {
+        let flags = if context.extensions.push_descriptor.is_some() {
             vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR
         } else {
             vk::DescriptorSetLayoutCreateFlags::empty()
@@ -246,11 +327,11 @@ impl Pipeline {
             .flags(flags)
             .bindings(&bindings);
         // SAFETY: `bindings` outlives the call.
-        unsafe { self.context.raw().create_descriptor_set_layout(&info, None) }
+        unsafe { context.raw().create_descriptor_set_layout(&info, None) }
             .during("create a descriptor set layout")
     }
 
-    fn create_layout(&self) -> Result<vk::PipelineLayout> {
+    fn create_layout(&self, context: &Context) -> Result<vk::PipelineLayout> {
         let ranges: Vec<_> = self
             .push
             .iter()
@@ -265,14 +346,17 @@ impl Pipeline {
             .set_layouts(&sets)
             .push_constant_ranges(&ranges);
         // SAFETY: the arrays outlive the call.
-        unsafe { self.context.raw().create_pipeline_layout(&info, None) }
+        unsafe { context.raw().create_pipeline_layout(&info, None) }
             .during("create a pipeline layout")
     }
 
-    fn create(&self, desc: &PipelineDesc<'_>, modules: &Modules) -> Result<vk::Pipeline> {
-        let what = "compile a pipeline";
-        self.context.faults.at(Call::Pipeline).during(what)?;
-        let values = [desc.constants, &self.context.constants()].concat();
+    fn create(
+        &self,
+        context: &Context,
+        desc: &PipelineDesc<'_>,
+        modules: &Modules,
+    ) -> Result<vk::Pipeline> {
+        let values = [desc.constants, &context.constants()].concat();
         let constants: Vec<Constants> = desc
             .stages
             .iter()
@@ -293,57 +377,9 @@ impl Pipeline {
             })
             .collect();
         let created = match (stages.as_slice(), self.local_size) {
-            ([stage], Some(_)) => state::compute(&self.context, self.layout, *stage),
-            _ => state::graphics(&self.context, self.layout, &stages, desc),
+            ([stage], Some(_)) => state::compute(context, self.layout, *stage),
+            _ => state::graphics(context, self.layout, &stages, desc),
         };
-        created.during(what)
-    }
-
-    /// Whether the other pipeline can be used in the same pass with the same bindings.
-    pub(in crate::gpu) fn is_variant_of(&self, other: &Self) -> bool {
-        let slots = self.slots.iter().map(|s| s.binding);
-        slots.eq(other.slots.iter().map(|s| s.binding))
-            && self.push == other.push
-            && self.colors == other.colors
-            && self.depth == other.depth
-            && self.streams == other.streams
-    }
-
-    /// The name of the pipeline.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    pub(in crate::gpu) fn bind_point(&self) -> vk::PipelineBindPoint {
-        match self.local_size {
-            Some(_) => vk::PipelineBindPoint::COMPUTE,
-            None => vk::PipelineBindPoint::GRAPHICS,
-        }
-    }
-
-    pub(in crate::gpu) fn raw(&self) -> vk::Pipeline {
-        self.raw
-    }
-
-    pub(in crate::gpu) fn layout(&self) -> vk::PipelineLayout {
-        self.layout
-    }
-
-    pub(in crate::gpu) fn set_layout(&self) -> vk::DescriptorSetLayout {
-        self.set_layout
-    }
-}
-
-impl Drop for Pipeline {
-    fn drop(&mut self) {
-        let Some(raw) = self.context.freeing() else {
-            return;
-        };
-        // SAFETY: recorders wait for their work before pipelines are dropped; null handles are ignored.
-        unsafe {
-            raw.destroy_pipeline(self.raw, None);
-            raw.destroy_pipeline_layout(self.layout, None);
-            raw.destroy_descriptor_set_layout(self.set_layout, None);
-        }
+        created.during(COMPILE)
     }
 }

@@ -42,7 +42,7 @@ impl<'r> Pass<'r> {
     /// # Panics
     /// When the pipeline is not a compute pipeline. This is a bug in the program.
     pub fn dispatch_over(mut self, extent: [u32; 3]) {
-        let Some(group) = self.pipeline.local_size else {
+        let Some(group) = self.pipeline.made.local_size else {
             panic!("pass {}: not a compute pipeline", self.name)
         };
         let groups: [u32; 3] = std::array::from_fn(|i| extent[i].div_ceil(group[i]));

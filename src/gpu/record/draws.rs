@@ -94,7 +94,7 @@ impl<'r> Draws<'_, 'r> {
     pub fn geometry(&mut self, streams: &[&Buffer], indices: &Buffer) {
         assert_eq!(
             streams.len(),
-            self.pass.pipeline.streams,
+            self.pass.pipeline.made.streams,
             "pass {}",
             self.pass.name
         );
@@ -142,7 +142,7 @@ impl<'r> Draws<'_, 'r> {
     /// # Panics
     /// When the pipeline does not draw geometry; only pipelines that do have these dynamic states.
     pub fn faces(&mut self, faces: Faces) {
-        assert!(self.pass.pipeline.culls, "pass {}", self.pass.name);
+        assert!(self.pass.pipeline.made.culls, "pass {}", self.pass.name);
         if faces == self.pass.faces {
             return;
         }

@@ -269,7 +269,7 @@ impl<'r> Pass<'r> {
             traffic.write(image, *load == Load::Keep);
         }
         match self.depth {
-            Some((image, load)) if self.pipeline.writes_depth => {
+            Some((image, load)) if self.pipeline.made.writes_depth => {
                 traffic.write(image, load == Load::Keep);
             }
             Some((image, _)) => traffic.test(image),
@@ -279,7 +279,7 @@ impl<'r> Pass<'r> {
     }
 
     fn depth_access(&self) -> ImageAccess {
-        if self.pipeline.writes_depth {
+        if self.pipeline.made.writes_depth {
             ImageAccess::DepthAttachment
         } else {
             ImageAccess::SampledDepth
@@ -287,7 +287,12 @@ impl<'r> Pass<'r> {
     }
 
     fn declared(&self, name: &str, kind: BindingKind) -> Binding {
-        let found = self.pipeline.slots.iter().find(|s| s.binding.name == name);
+        let found = self
+            .pipeline
+            .made
+            .slots
+            .iter()
+            .find(|s| s.binding.name == name);
         let Some(slot) = found else {
             panic!(
                 "pass {}: {} declares no {name}",
@@ -345,7 +350,7 @@ impl<'r> Pass<'r> {
             .checked_push
             .is_some_and(|c| std::ptr::eq(c, T::FIELDS));
         if !checked {
-            let Some((fields, _)) = self.pipeline.push else {
+            let Some((fields, _)) = self.pipeline.made.push else {
                 panic!("pass {}: no push constants declared", self.name)
             };
             self.check_block("push", T::FIELDS, fields);
@@ -363,12 +368,12 @@ impl<'r> Pass<'r> {
             self.colors.iter().map(|(i, _)| i.format()).collect();
         assert_eq!(
             formats.as_slice(),
-            self.pipeline.colors,
+            self.pipeline.made.colors,
             "pass {}: colours",
             self.name
         );
         let depth = self.depth.map(|(i, _)| i.format());
-        assert_eq!(depth, self.pipeline.depth, "pass {}: depth", self.name);
+        assert_eq!(depth, self.pipeline.made.depth, "pass {}: depth", self.name);
     }
 
     fn attachment(image: &Image, load: Load, layout: vk::ImageLayout) -> AttachmentInfo {
@@ -413,7 +418,7 @@ impl<'r> Pass<'r> {
             .collect();
         let depth = self.depth.map(|(image, load)| {
             let info = Self::attachment(image, load, access::layout(self.depth_access()));
-            let written = self.pipeline.writes_depth;
+            let written = self.pipeline.made.writes_depth;
             // A store operation counts as a write, which a read-only layout forbids.
             if written {
                 info
@@ -454,7 +459,7 @@ impl<'r> Pass<'r> {
                 self.pipeline.raw(),
             );
         }
-        if self.pipeline.culls {
+        if self.pipeline.made.culls {
             self.set_faces();
         }
     }
@@ -474,7 +479,7 @@ impl<'r> Pass<'r> {
     pub(in crate::gpu) fn flush(&mut self) {
         assert_eq!(
             self.bound.len(),
-            self.pipeline.slots.len(),
+            self.pipeline.made.slots.len(),
             "pass {}: a declared binding was not bound",
             self.name
         );
@@ -482,7 +487,7 @@ impl<'r> Pass<'r> {
             self.flush_descriptors();
         }
         self.changed = false;
-        if let Some((_, stages)) = self.pipeline.push {
+        if let Some((_, stages)) = self.pipeline.made.push {
             assert!(!self.push.0.is_empty(), "pass {}: push", self.name);
             if std::mem::take(&mut self.push.1) {
                 self.flush_push(stages);

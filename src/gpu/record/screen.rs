@@ -22,7 +22,7 @@ impl<'r> Pass<'r> {
     /// Adds a picture that the pass writes: `name` is that of the storage image of the compute shader; outputs of the fragment shader are in
     /// the order of the calls. A compute shader itself writes what `load` clears.
     pub fn output(self, name: &str, image: &'r Image, load: Load) -> Self {
-        if self.pipeline.local_size.is_some() {
+        if self.pipeline.made.local_size.is_some() {
             self.store(name, image)
         } else {
             self.color(image, load)
@@ -31,7 +31,7 @@ impl<'r> Pass<'r> {
 
     /// Sets the depth image that selects the pixels: by the depth test of the pipeline; a compute shader reads it as `depth`.
     pub fn selected_by(self, depth: &'r Image) -> Self {
-        if self.pipeline.local_size.is_some() {
+        if self.pipeline.made.local_size.is_some() {
             self.sample(DEPTH, depth, Sampler::Nearest)
         } else {
             self.depth_test(depth)
@@ -40,7 +40,7 @@ impl<'r> Pass<'r> {
 
     /// Ends the pass: computes all selected pixels of the targets.
     pub fn fill(self) {
-        if self.pipeline.local_size.is_some() {
+        if self.pipeline.made.local_size.is_some() {
             self.dispatch();
         } else {
             self.draw();

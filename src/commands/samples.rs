@@ -83,7 +83,7 @@ pub(super) fn draw(
     let mut samples = 0;
     while samples < rule.most && !interrupt::is_interrupted() || samples == 0 {
         recorder.begin()?;
-        frame.record(recorder, &job.daylight, &job.camera, samples);
+        job.record(frame, recorder, samples);
         recorder.finish()?;
         samples += 1;
         if rule.most > 1 && samples == noise.next_look() {

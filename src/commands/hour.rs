@@ -193,7 +193,8 @@ pub enum NoHour {
     Refused,
     /// The place alone is taken from the file: the options say the rest.
     PlaceAlone,
-    /// An hour is chosen.
+    /// An hour is chosen, for a window.
+    #[cfg(feature = "window")]
     Chosen,
 }
 
@@ -238,6 +239,7 @@ pub fn expand(loaded: &mut Loaded, no_hour: NoHour) -> Result<Option<Arc<Weather
             return Err(fault(what.to_owned()));
         }
         (None, NoHour::PlaceAlone) => vec![place(weather.station.place)],
+        #[cfg(feature = "window")]
         (None, NoHour::Chosen) => near_opening(&weather).ok_or_else(|| no_light(path))?,
     };
     loaded.options.extend(tables_of(pairs));

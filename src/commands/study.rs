@@ -57,7 +57,7 @@ pub fn run(args: &StudyArgs, options: &OptionValues) -> Result<()> {
     }
     let shows_hours = options.alone()?.show == Show::SunHours;
     if shows_hours {
-        options.set("sun-dates", &args.dates[0]);
+        options.set("sun-dates", args.dates[0]);
     }
     let (job, context) = Job::on_device(args.scene.as_deref(), &options)?;
     check_anti_aliasing(&job.settings, false)?;

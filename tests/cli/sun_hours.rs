@@ -97,8 +97,13 @@ fn pictures_have_the_hours_of_the_sensors() {
         }
     }
     let mean = sum / count;
-    println!("{count} pixels: mean error {mean:.3} h, at most {outside:.3} h beside the sensors around, most {most:.3} h");
-    assert!(count > 1000.0 && mean < 0.5 * STEP && outside < STEP, "{mean} {outside}");
+    println!(
+        "{count} pixels: mean error {mean:.3} h, at most {outside:.3} h beside the sensors around, most {most:.3} h"
+    );
+    assert!(
+        count > 1000.0 && mean < 0.5 * STEP && outside < STEP,
+        "{mean} {outside}"
+    );
     // Open ground has the sun all day: 2/15 acos(-tan φ tan δ), with the declination of the solstice.
     let [latitude, declination] = [50.0_f64, 23.44].map(f64::to_radians);
     let day = 2.0 / 15.0 * (-latitude.tan() * declination.tan()).acos().to_degrees();

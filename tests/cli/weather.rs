@@ -130,10 +130,6 @@ fn a_scene_file_may_name_an_hour_of_a_file_beside_it() {
         let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
         report["sensors"].clone()
     };
-    let sensors = |output: &Output| {
-        let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
-        report["sensors"].clone()
-    };
     std::fs::create_dir(folder.path().join("scenes")).expect("a folder");
     write("scenes/a.epw", &two_days());
     write("scenes/m.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 3 2\n");

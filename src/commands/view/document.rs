@@ -1,6 +1,7 @@
 //! The open scene: its options, daylight and camera, and the progress of its image.
 
 mod following;
+mod hours;
 
 use std::any::Any;
 use std::path::PathBuf;
@@ -25,8 +26,8 @@ use super::background::Wake;
 use super::controls::{Controls, FlyKeys};
 use super::desk::{Desk, Grid};
 use super::grid_overlay::GridOverlay;
-use super::interface::{Notes, shift};
-use super::keys::{Action, Shift};
+use super::interface::Notes;
+use super::keys::Action;
 use super::light_ahead::LightAhead;
 use super::passes_ahead::PassesAhead;
 use super::stage::Screen;
@@ -233,24 +234,6 @@ impl Document {
         }
     }
 
-    /// Shifts the moment by a key: by the next hour of the weather file where its hours are shown.
-    fn shift(&mut self, Shift { hours, records }: Shift) {
-        let settings = &mut self.job.settings;
-        match self.year.as_mut().filter(|year| year.is_shown(settings)) {
-            Some(year) => year.step(settings, records),
-            None => shift(&mut settings.sun, hours * 3600.0),
-        }
-    }
-
-    /// Advances the time of day by `seconds` of the sun's time.
-    pub(super) fn pass_time(&mut self, seconds: f64) {
-        let settings = &mut self.job.settings;
-        match self.year.as_mut().filter(|year| year.is_shown(settings)) {
-            Some(year) => year.advance(settings, seconds),
-            None => shift(&mut settings.sun, seconds),
-        }
-    }
-
     /// Moves the camera so that the whole subject is in view.
     pub(super) fn frame_all(&mut self) {
         let size = self.job.settings.size;
@@ -339,39 +322,6 @@ impl Document {
         self.drawn = Some(self.job.camera);
         self.frames += 1;
         true
-    }
-
-    /// The record of the weather file whose hour is shown.
-    pub(super) fn record_shown(&self) -> Option<usize> {
-        self.year.as_ref()?.shown(&self.job.settings)
-    }
-
-    /// Draws the cells of the sensors over the picture, if that or they have changed.
-    fn record_grid(&mut self, recorder: &mut Recorder, is_new: bool) {
-        let record = self.record_shown();
-        let desk = self.desk.as_ref().filter(|desk| desk.is_shown);
-        let inputs = (&self.frame, self.drawn);
-        let map = self.job.settings.colour_map;
-        let drawn = self
-            .overlay
-            .record(recorder, desk, inputs, (record, map), is_new);
-        if let Err(error) = drawn {
-            self.fault = Some(error.to_string());
-            if let Some(desk) = &mut self.desk {
-                desk.is_shown = false;
-            }
-        }
-    }
-
-    /// Takes what other threads have found of the sensors, and lets them go on; whether there is something new.
-    pub(super) fn follow_desk(&mut self) -> bool {
-        let record = self.record_shown();
-        let Some(desk) = &mut self.desk else {
-            return false;
-        };
-        let before = desk.revision();
-        desk.follow(&self.job, record);
-        desk.revision() != before
     }
 
     /// Number of frames drawn since the scene was opened.

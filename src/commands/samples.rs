@@ -86,7 +86,8 @@ pub(super) fn draw(
         job.record(frame, recorder, samples);
         recorder.finish()?;
         samples += 1;
-        if rule.most > 1 && samples == noise.next_look() {
+        // Frames with a sun each differ by what they are to show.
+        if rule.most > 1 && job.suns.is_none() && samples == noise.next_look() {
             noise.look(&read_back(recorder, frame.radiance())?.rgba());
             error = noise.relative_error();
         }

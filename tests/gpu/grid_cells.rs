@@ -52,7 +52,11 @@ fn cells_have_their_colours_where_nothing_is_before_them() {
         });
         device.read(pass.image().expect("a picture"))
     };
-    let after = draw(&mut device, &mut pass, vec![level([0.0, 1.0, 0.0], 2.0, red)]);
+    let after = draw(
+        &mut device,
+        &mut pass,
+        vec![level([0.0, 1.0, 0.0], 2.0, red)],
+    );
     // Pixels of a point at a height.
     let at = |[x, y, z]: [f32; 3]| {
         let clip = view.clip_from_world() * Vec3::new(x, y, z).extend(1.0);
@@ -62,7 +66,11 @@ fn cells_have_their_colours_where_nothing_is_before_them() {
     let shown = after[at([1.8, 1.0, 0.0])];
     assert_eq!(shown[..3], [1.0, 0.0, 0.0], "a cell beside the board");
     for hidden in [at([0.0, 2.0, 0.0]), at([5.0, 0.0, 0.0])] {
-        assert_eq!(after[hidden][..3], before[hidden][..3], "under the board, and beside the cell");
+        assert_eq!(
+            after[hidden][..3],
+            before[hidden][..3],
+            "under the board, and beside the cell"
+        );
     }
     // Without cells it is the picture below.
     let none = draw(&mut device, &mut pass, Vec::new());

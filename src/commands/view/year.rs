@@ -3,6 +3,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use chrono::{Datelike as _, Timelike as _};
+
 use crate::commands::hour::HourLight;
 use crate::daylight::place::Place;
 use crate::daylight::sky::SkyModel;
@@ -65,12 +67,18 @@ impl Year {
                     && settings.dew_point == light.dew_point
             })
         };
-        // Most often the same as before.
+        // Most often the same as before; else the only one at that time.
         let records = &self.weather.records;
         if records.get(self.last).is_some_and(is_of) {
             return Some(self.last);
         }
-        records.iter().position(is_of)
+        let local = when.with_timezone(self.weather.moment(records.first()?).offset());
+        let hour = f64::from(local.num_seconds_from_midnight()) / 3600.0;
+        let is_then = |r: &Record| {
+            (r.month, r.day) == (local.month(), local.day()) && (r.hour - hour).abs() < 1e-3
+        };
+        let at = records.iter().position(is_then)?;
+        is_of(&records[at]).then_some(at)
     }
 
     /// Number of the record that was shown last.

@@ -16,7 +16,7 @@ pub use self::sample::{Filter, Sampling, Visibility};
 pub use self::settings::FrameSettings;
 pub use self::smooth::AntiAliasing;
 
-use glam::{UVec2, Vec2, Vec3};
+use glam::{UVec2, Vec3};
 
 use crate::daylight::sky::Daylight;
 use crate::gpu::{Context, Image, Recorder, Result};
@@ -230,11 +230,7 @@ impl Frame {
         (index, sun): (Option<u32>, Option<Vec3>),
     ) -> View {
         let (geometry, settings) = (&self.geometry, &self.settings);
-        let mut sample = self.smooth.sample(settings, daylight, index);
-        if let Some(sun) = sun {
-            // A quantity has the values of the pixels' centres.
-            (sample.sun_direction, sample.jitter) = (sun, Vec2::ZERO);
-        }
+        let sample = self.smooth.sample(settings, daylight, index).under(sun);
         let view = sample.view(camera, settings.size, self.tiling.tile);
         let (Lit { shadow, lighting }, resolve) = self.average.frame(&mut self.preview, index);
         shadow.fit(geometry, &view, sample.sun_direction, sample.texel);

@@ -2,6 +2,7 @@
 
 mod args;
 mod series;
+mod view;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -14,6 +15,7 @@ pub use args::{
     Sweep, Texels, WeatherArgs,
 };
 pub use series::{Expose, MergeArgs, SequenceArgs, StudyArgs};
+pub use view::ViewArgs;
 
 use crate::options::{OptionValues, Optional, SeveralPictures, choice, decides_light, one_line};
 
@@ -68,14 +70,9 @@ pub enum Command {
     },
     /// Open a window on a scene; press ? in it for the keys.
     View {
-        /// Scene file (.toml), model (.obj, .gltf, .glb), or bundled scene (island, the default; colonnade).
-        scene: Option<PathBuf>,
-        /// Start with the options and the camera that this scene was last closed with.
-        #[arg(long)]
-        resume: bool,
-        /// An hour of a weather file.
+        /// Arguments of its own.
         #[command(flatten)]
-        at: HourArgs,
+        args: ViewArgs,
         /// Options of the picture; --samples is the number of frames averaged at rest, by default 64.
         #[command(flatten)]
         options: OptionValues,

@@ -16,7 +16,7 @@ pub use self::sample::{Filter, Sampling, Visibility};
 pub use self::settings::FrameSettings;
 pub use self::smooth::AntiAliasing;
 
-use glam::UVec2;
+use glam::{UVec2, Vec3};
 
 use crate::daylight::sky::Daylight;
 use crate::gpu::{Context, Image, Recorder, Result};
@@ -174,12 +174,24 @@ impl Frame {
 
     /// Records frame number `index` of an average; 0 starts a new one.
     pub fn record(&mut self, rec: &mut Recorder, daylight: &Daylight, camera: &Camera, index: u32) {
-        self.draw(rec, daylight, camera, Some(index));
+        self.draw(rec, daylight, camera, (Some(index), None));
+    }
+
+    /// The same, with the shadows of another sun than that of the daylight: a unit vector toward it.
+    pub fn record_under(
+        &mut self,
+        rec: &mut Recorder,
+        daylight: &Daylight,
+        sun: Vec3,
+        camera: &Camera,
+        index: u32,
+    ) {
+        self.draw(rec, daylight, camera, (Some(index), Some(sun)));
     }
 
     /// Records a frame outside of any average, for a moving view or light.
     pub fn preview(&mut self, rec: &mut Recorder, daylight: &Daylight, camera: &Camera) {
-        self.draw(rec, daylight, camera, None);
+        self.draw(rec, daylight, camera, (None, None));
     }
 
     /// Records a frame.
@@ -188,13 +200,13 @@ impl Frame {
         rec: &mut Recorder,
         daylight: &Daylight,
         camera: &Camera,
-        index: Option<u32>,
+        (index, sun): (Option<u32>, Option<Vec3>),
     ) {
         if index.is_none() {
             self.gbuffer.turn();
             self.smooth.keep(rec, self.tone_map.image());
         }
-        let view = self.light_up(rec, daylight, camera, index);
+        let view = self.light_up(rec, daylight, camera, (index, sun));
         self.drawn = Some(Drawn { index, view });
         self.expose(rec);
         let drawn = smooth::Drawn {
@@ -215,10 +227,10 @@ impl Frame {
         rec: &mut Recorder,
         daylight: &Daylight,
         camera: &Camera,
-        index: Option<u32>,
+        (index, sun): (Option<u32>, Option<Vec3>),
     ) -> View {
         let (geometry, settings) = (&self.geometry, &self.settings);
-        let sample = self.smooth.sample(settings, daylight, index);
+        let sample = self.smooth.sample(settings, daylight, index).under(sun);
         let view = sample.view(camera, settings.size, self.tiling.tile);
         let (Lit { shadow, lighting }, resolve) = self.average.frame(&mut self.preview, index);
         shadow.fit(geometry, &view, sample.sun_direction, sample.texel);
@@ -374,6 +386,11 @@ impl Frame {
     /// The picture in display values, anti-aliased.
     pub fn display(&self) -> &Image {
         self.smooth.image().unwrap_or(self.tone_map.image())
+    }
+
+    /// Depth of the surfaces in the newest picture, or in its newest sample: reversed, 0 without a surface.
+    pub fn depth(&self) -> &Image {
+        &self.gbuffer.surfaces().depth
     }
 
     /// The log-average luminance of the newest picture, kcd/m², as one texel.

@@ -28,6 +28,7 @@ use clap::{ArgAction, Args, Command, value_parser};
 
 pub use crate::daylight::false_colour::{ColourMap, Quantity, Range};
 pub use crate::daylight::metrics::Blinds;
+pub use crate::daylight::sun_hours::SunDates;
 pub use crate::daylight::{IrradianceMethod, SkyModel, SunPositionMethod, ToneCurve};
 pub use crate::frame::{AntiAliasing, Filter, Visibility};
 pub use crate::gpu::Optional;
@@ -236,8 +237,16 @@ options! {
             seed: u32,
             /// What to show: the picture, or one quantity of the equation. With --false-colour illuminance the default is irradiance.
             #[arg(value_name = "WHAT", value_parser = choice::<Show>(), default_value_t,
-                  default_value_if("false_colour", name(Quantity::Illuminance), name(Show::Irradiance)))]
+                  default_value_ifs([("false_colour", name(Quantity::Illuminance), name(Show::Irradiance)),
+                                     ("false_colour", name(Quantity::SunHours), name(Show::SunHours))]))]
             show: Show,
+            /// Dates of --show sun-hours, whose hours are summed up, separated by commas: 3-21, 2026-3-21, or year. Without a year they are of
+            /// that of --when.
+            #[arg(value_name = "LIST", value_parser = values::sun_dates, default_value_t)]
+            sun_dates: SunDates,
+            /// Minutes from one sun of --show sun-hours to the next, 1 to 60, of which a day has a whole number; each takes a frame.
+            #[arg(value_name = "MINUTES", value_parser = values::sun_step, default_value_t = 10)]
+            sun_step: u32,
             /// Write every addend (sun, sky, bounces, emission ..), V, A, normal, depth and albedo as named layers (render to .exr only).
             layers: bool,
             /// Defaults of the lecture: its sun, sky, sampling and scale, ambient occlusion, no bounces; other options override them.
@@ -297,10 +306,12 @@ options! {
         }
 
         "Tone" [] {
-            /// False colours with a legend instead of the picture: luminance in cd/m², illuminance of the surfaces in lux.
-            #[arg(value_name = "QUANTITY", value_parser = choice::<Quantity>())]
+            /// False colours with a legend instead of the picture: luminance in cd/m², illuminance of the surfaces in lux, hours of sun.
+            #[arg(value_name = "QUANTITY", value_parser = choice::<Quantity>(),
+                  default_value_if("show", name(Show::SunHours), name(Quantity::SunHours)))]
             false_colour: Option<Quantity>,
-            /// Values of the first and the last false colour; by default from the picture, in the window those of a sunny day.
+            /// Values of the first and the last false colour; from 0 the scale is linear, else logarithmic. By default from the picture, in the
+            /// window those of a sunny day.
             #[arg(value_name = "MIN,MAX", value_parser = values::colour_range, allow_hyphen_values = true)]
             false_colour_range: Option<Range>,
             /// Colours of false-colour pictures.
@@ -454,6 +465,16 @@ impl Options {
             _ => true,
         });
         OptionValues::from(list)
+    }
+
+    /// Turns on the false colours of a quantity that is shown in no other way, and off where they belong to another.
+    pub fn show_in_colours(&mut self) {
+        if self.show == Show::SunHours {
+            self.false_colour = Some(Quantity::SunHours);
+            self.false_colour_range = None;
+        } else if self.false_colour == Some(Quantity::SunHours) {
+            self.false_colour = None;
+        }
     }
 
     /// Whether the sky is one whose air can be drawn.

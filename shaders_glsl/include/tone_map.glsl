@@ -26,6 +26,8 @@ layout(constant_id = 10) const bool DITHER = false;
 // Show false colours of the luminance instead of exposure and curve.
 layout(constant_id = 9) const bool FALSE_COLOUR = false;
 layout(constant_id = 12) const int COLOUR_MAP = TURBO;
+// On a linear scale from 0 instead of a logarithmic one.
+layout(constant_id = 14) const bool EVEN = false;
 // Up to the peak of an HDR screen instead of a tone curve.
 layout(constant_id = 13) const bool HDR = false;
 
@@ -51,8 +53,10 @@ vec4 shown(vec2 at) {
     vec3 c = textureLod(radiance, at / vec2(textureSize(radiance, 0)), 0.0).rgb;
     if (FALSE_COLOUR) {
         float l = luminance(c);
-        float share = clamp(log2(max(l, 1e-30)) * push.exposure + push.offset, 0.0, 1.0);
-        vec3 colour = l > 0.0 ? mapped_colour(COLOUR_MAP, share) : vec3(0.0);
+        float value = EVEN ? l : log2(max(l, 1e-30));
+        float share = clamp(value * push.exposure + push.offset, 0.0, 1.0);
+        bool is_on_scale = EVEN ? l >= 0.0 : l > 0.0;
+        vec3 colour = is_on_scale ? mapped_colour(COLOUR_MAP, share) : vec3(0.0);
         return vec4(SRGB ? srgb_from_linear(colour) : colour, 1.0);
     }
     float exposure = push.exposure;

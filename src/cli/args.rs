@@ -194,10 +194,11 @@ fn ends_in(path: PathBuf, extensions: &[&str]) -> Result<PathBuf, String> {
 #[derive(Debug, Clone, Default, PartialEq, Args)]
 pub struct HourArgs {
     /// Weather file (.epw, .wea) that gives place, sun and sky of --hour: --sky perez with its irradiances and dew point.
-    #[arg(long, value_name = "FILE", requires = "hour")]
+    #[arg(long, value_name = "FILE")]
     pub weather: Option<PathBuf>,
-    /// Hour of the weather file: that which holds this time of its clock, local standard time without daylight saving.
-    #[arg(long, value_name = "M-DThh", requires = "weather")]
+    /// Hour of the weather file, or of that of the scene file: the one that holds this time of its clock, local standard time without
+    /// daylight saving.
+    #[arg(long, value_name = "M-DThh")]
     pub hour: Option<YearHour>,
 }
 
@@ -249,8 +250,9 @@ pub struct DaylightArgs {
     /// Weather file (.epw, .wea): measures its year, every hour with its own sun and Perez' sky; with --hour one moment of it.
     #[arg(long, value_name = "FILE")]
     pub weather: Option<PathBuf>,
-    /// A moment instead of the year: the hour of the weather file that holds this time of its clock, local standard time.
-    #[arg(long, value_name = "M-DThh", requires = "weather")]
+    /// A moment instead of the year: the hour of the weather file, or of that of the scene file, that holds this time of its clock, local standard
+    /// time.
+    #[arg(long, value_name = "M-DThh")]
     pub hour: Option<YearHour>,
     /// What to measure instead of a moment, separated by commas; da,cda,udi,sda,ase by default for a year. All but df, vsc and sunhours
     /// need --weather.

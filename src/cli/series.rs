@@ -64,7 +64,8 @@ pub struct StudyArgs {
         default_value = "3-21,6-21,12-21"
     )]
     pub dates: Vec<SunDate>,
-    /// Hours, separated by commas, a column for each: 9, or 9:30; local time of --place with daylight saving.
+    /// Hours, separated by commas, a column for each: 9, or 9:30; local time of --place with daylight saving. With --show sun-hours there is one
+    /// picture for each day.
     #[arg(
         long,
         value_name = "LIST",

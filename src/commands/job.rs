@@ -7,23 +7,26 @@ use std::thread;
 
 use glam::UVec2;
 
+use super::hour::{NoHour, expand};
 use super::light::{conditions, sun_position};
+use super::sun_series::SunSeries;
 use super::{check_strict, tell};
 use crate::daylight::colour::luminance;
 use crate::daylight::exposure::{KEY, automatic, factor_from_ev100, least_average};
-use crate::daylight::false_colour::Colours;
+use crate::daylight::false_colour::{Colours, Quantity};
 use crate::daylight::sample_count::ErrorEstimate;
 use crate::daylight::sky::Daylight;
 use crate::daylight::spectrum::LUMINOUS_EFFICACY;
 use crate::daylight::sun_position::SunPosition;
 use crate::daylight::sunlight::LIMB_DARKENING;
 use crate::error::Result;
-use crate::frame::{FrameSettings, Sampling};
-use crate::gpu::{Context, ContextOptions, GpuError};
+use crate::frame::{Frame, FrameSettings, Sampling, Visibility};
+use crate::gpu::{Context, ContextOptions, GpuError, Recorder};
 use crate::options::{Fresnel, Mirrors, OptionValues, Options, Penumbra, Phong, Preset};
 use crate::output::{LATITUDE, LONGITUDE, MOMENT, WHITE_LUMINANCE};
+use crate::passes::bounces::cells::Bounces;
 use crate::passes::dome::gather::DomeSettings;
-use crate::passes::light::lighting::{Precision, Show};
+use crate::passes::light::lighting::{Ambient, Precision, Show};
 use crate::passes::occlusion::ssao::SsaoSettings;
 use crate::passes::picture::tone_map::{Scale, is_light};
 use crate::passes::route::settle_route;
@@ -80,7 +83,7 @@ pub struct Job {
     /// The options of the image.
     pub settings: Options,
     /// Geometry and materials.
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     /// What of the scene the default view shows.
     pub subject: Subject,
     /// The camera.
@@ -89,6 +92,8 @@ pub struct Job {
     pub sun: SunPosition,
     /// Sun and sky.
     pub daylight: Daylight,
+    /// The suns whose hours are shown, if they are.
+    pub suns: Option<SunSeries>,
     /// Name of the scene, for metadata.
     pub name: String,
     /// Path of the scene; `None` for the default bundled scene.
@@ -105,6 +110,18 @@ pub(super) fn scene_of(loaded: &mut Loaded, settings: &Options) -> Scene {
         scene.use_phong();
     }
     scene
+}
+
+/// Settings whose frames have the visibility of one sun each, and nothing else to compute.
+fn of_suns(mut set: FrameSettings, suns: &SunSeries) -> FrameSettings {
+    set.samples = suns.frames(set.samples);
+    set.sampling.visibility = Visibility::Ssao;
+    set.lighting.ambient = Ambient::Ssao;
+    set.bounces = Bounces::UpTo(0);
+    set.lighting.air = false;
+    set.lighting.precision = Precision::Float;
+    set.tone.hours = suns.hours;
+    set
 }
 
 /// Illuminance by the sky below which radiance is kept in 32-bit floats: that of a sky of 1 cd/m².
@@ -127,9 +144,18 @@ impl Job {
     /// # Errors
     /// Invalid options.
     pub fn of(path: Option<&Path>, mut loaded: Loaded, user: &OptionValues) -> Result<Self> {
+        let moments = ["when", "solar", "sun", "moment"];
+        let says_moment = moments.iter().any(|name| user.get(name).is_some());
+        let no_hour = if says_moment {
+            NoHour::PlaceAlone
+        } else {
+            NoHour::Refused
+        };
+        expand(&mut loaded, no_hour)?;
         let settings = Options::resolve(user, &loaded)?;
         let sun = sun_position(&settings)?;
         let daylight = Daylight::new(&conditions(&settings, &sun));
+        let suns = SunSeries::of(&settings, None)?;
         let mut scene = scene_of(&mut loaded, &settings);
         let mut subject = Subject::of(&scene);
         if settings.eye.is_none() && settings.target.is_none() {
@@ -139,11 +165,12 @@ impl Job {
         let name = path.map_or("bundled".to_owned(), |p| p.display().to_string());
         Ok(Self {
             settings,
-            scene,
+            scene: Arc::new(scene),
             subject,
             camera,
             sun,
             daylight,
+            suns,
             name,
             path: path.map(Path::to_owned),
             loaded,
@@ -179,11 +206,13 @@ impl Job {
     /// Invalid options, or a warning with `--strict`.
     pub fn turn_to(&mut self, user: &OptionValues) -> Result<()> {
         let settings = Options::resolve(user, &self.loaded)?;
+        self.suns = SunSeries::of(&settings, self.suns.take())?;
         let told = std::mem::take(&mut self.daylight.warnings);
         self.relight(&settings)?;
         let is_unseen = settings.eye.is_none() && settings.target.is_none();
         if is_unseen && self.subject.inside.is_none() {
-            self.subject = self.subject.entered(&mut self.scene);
+            let scene = Arc::make_mut(&mut self.scene);
+            self.subject = self.subject.entered(scene);
         }
         self.camera = settings.camera(&self.subject, self.scene.origin);
         self.settings = settings;
@@ -260,16 +289,52 @@ impl Job {
         set.tone.scale = self.scale();
         set.tone.gamma = s.gamma;
         set.tone.depth_scale = f64::from(self.scene.bounds.diagonal()).max(1e-3);
-        let colours = s.false_colour.filter(|quantity| show.holds(*quantity));
-        set.tone.false_colour = colours.map(|quantity| Colours {
-            range: s.false_colour_range.unwrap_or(quantity.daytime()),
-            map: s.colour_map,
-        });
+        set.tone.false_colour = self.colours(show).map(|(_, colours)| colours);
+        if let Some(suns) = self.suns.as_ref().filter(|_| show == Show::SunHours) {
+            set = of_suns(set, suns);
+        }
         set.showing(show).with_occlusion(SsaoSettings {
             radius: s.ao_radius as f32,
             downscale: s.ao_resolution.downscale(s.size.height),
             ..SsaoSettings::default()
         })
+    }
+
+    /// Quantity and colours of false colours for `show`, if they are asked for; their range is that of the options, or usual.
+    pub fn colours(&self, show: Show) -> Option<(Quantity, Colours)> {
+        let s = &self.settings;
+        let quantity = s.false_colour.filter(|quantity| show.holds(*quantity))?;
+        let of_suns = self.suns.as_ref().map(SunSeries::range);
+        let usual = match quantity {
+            Quantity::SunHours => of_suns.unwrap_or(quantity.daytime()),
+            _ => quantity.daytime(),
+        };
+        let colours = Colours {
+            range: s.false_colour_range.unwrap_or(usual),
+            map: s.colour_map,
+        };
+        Some((quantity, colours))
+    }
+
+    /// Records frame number `index` of an average: of hours of sun, with the sun of that number.
+    pub fn record(&self, frame: &mut Frame, rec: &mut Recorder, index: u32) {
+        let (daylight, camera) = (&self.daylight, &self.camera);
+        match self
+            .suns
+            .as_ref()
+            .filter(|_| frame.settings().lighting.show == Show::SunHours)
+        {
+            Some(suns) => frame.record_under(rec, daylight, suns.direction(index), camera, index),
+            None => frame.record(rec, daylight, camera, index),
+        }
+    }
+
+    /// What a value of a picture of `show` is multiplied with for a file: cd/m², lux, hours.
+    pub fn file_unit(&self, show: Show) -> f32 {
+        match &self.suns {
+            Some(suns) if show == Show::SunHours => suns.hours as f32,
+            _ => show.file_unit(),
+        }
     }
 
     fn sampling(&self) -> Sampling {

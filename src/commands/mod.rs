@@ -4,6 +4,7 @@ mod bake;
 mod bench;
 mod compare;
 mod daylight;
+mod hour;
 mod info;
 mod interrupt;
 mod job;
@@ -26,6 +27,7 @@ mod sky_report;
 mod sky_table;
 mod startup;
 mod study;
+mod sun_series;
 mod tiled;
 mod validate;
 #[cfg(feature = "window")]
@@ -51,26 +53,26 @@ pub fn run(command: Command) -> Result<()> {
             at,
             mut options,
         } => {
-            options.first = weather::applied(&at, options.first)?;
+            options.first = hour::applied(&at, scene.as_deref(), options.first)?;
             render::run(scene.as_deref(), &output, &options)
         }
         Command::Sequence { args, options } => sequence::run(&args, &options),
         Command::Study { args, options } => study::run(&args, &options),
         Command::Merge { args } => merge::run(&args),
         #[cfg(feature = "window")]
-        Command::View {
-            scene,
-            resume,
-            at,
-            options,
-        } => view::run(scene.as_deref(), resume, weather::applied(&at, options)?),
+        Command::View { args, options } => view::run(&args, options),
         #[cfg(not(feature = "window"))]
         Command::View { .. } => Err(crate::error::Error::NoWindow),
-        Command::Bench { args, options } => bench::run(&args, weather::applied(&args.at, options)?),
-        Command::Sky { args, options } => sky::run(&args, weather::applied(&args.at, options)?),
+        Command::Bench { args, options } => {
+            let options = hour::applied(&args.at, args.scene.as_deref(), options)?;
+            bench::run(&args, options)
+        }
+        Command::Sky { args, options } => sky::run(&args, hour::applied(&args.at, None, options)?),
         Command::Daylight { args, options } => daylight::run(&args, &options),
         Command::Weather { args, options } => weather::run(&args, &options),
-        Command::Bake { args, options } => bake::run(&args, weather::applied(&args.at, options)?),
+        Command::Bake { args, options } => {
+            bake::run(&args, hour::applied(&args.at, None, options)?)
+        }
         Command::Compare { args } => compare::run(&args),
         Command::Validate {
             device,

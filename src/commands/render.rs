@@ -54,7 +54,12 @@ pub fn run(scene: Option<&Path>, output: &Path, options: &SeveralPictures) -> Re
 
 /// Fails if there is nowhere to put layers.
 pub(super) fn check_layers(options: &OptionValues, exr: bool) -> Result<()> {
-    if options.alone()?.layers && !exr {
+    let settings = options.alone()?;
+    if settings.layers && settings.show == Show::SunHours {
+        let what = "--show sun-hours has no layers: each sun is a frame; leave out --layers";
+        return Err(OptionsError(what.to_owned()).into());
+    }
+    if settings.layers && !exr {
         let what = "--layers needs an .exr file; choose one with -o";
         return Err(OptionsError(what.to_owned()).into());
     }

@@ -201,8 +201,8 @@ impl Renderer {
             return Ok(None);
         };
         let map = settings.colour_map;
-        if let Some(range) = settings.false_colour_range {
-            return Ok(Some((quantity, Colours { range, map })));
+        if settings.false_colour_range.is_some() || quantity == Quantity::SunHours {
+            return Ok(job.colours(settings.show));
         }
         let texels = read_back(&mut self.recorder, self.frame.radiance())?.rgba();
         let luminance = |t: &[f32; 4]| luminance(glam::Vec3::from_slice(t).as_dvec3()) * 1e3;
@@ -276,11 +276,15 @@ impl Renderer {
     ) -> Result<(Layer, Drawn)> {
         let drawn = self.draw(job, rule)?;
         let mut texels = read_back(&mut self.recorder, self.frame.radiance())?.rgba();
-        let unit = show.file_unit();
+        let unit = job.file_unit(show);
         if unit != 1.0 {
             for texel in &mut texels {
                 *texel = texel.map(|v| v * unit);
             }
+        }
+        if show == Show::SunHours {
+            // Without a surface there is no sun.
+            texels.iter_mut().for_each(|t| *t = t.map(|v| v.max(0.0)));
         }
         let layer = Layer {
             name,

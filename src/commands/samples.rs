@@ -83,10 +83,11 @@ pub(super) fn draw(
     let mut samples = 0;
     while samples < rule.most && !interrupt::is_interrupted() || samples == 0 {
         recorder.begin()?;
-        frame.record(recorder, &job.daylight, &job.camera, samples);
+        job.record(frame, recorder, samples);
         recorder.finish()?;
         samples += 1;
-        if rule.most > 1 && samples == noise.next_look() {
+        // Frames with a sun each differ by what they are to show.
+        if rule.most > 1 && job.suns.is_none() && samples == noise.next_look() {
             noise.look(&read_back(recorder, frame.radiance())?.rgba());
             error = noise.relative_error();
         }

@@ -13,10 +13,11 @@ use super::renderer::{Picture, Renderer};
 use super::tiled::check_whole;
 use crate::cli::StudyArgs;
 use crate::daylight::place::Place;
+use crate::daylight::steps::DayTime;
 use crate::daylight::sun_hours::SunDate;
 use crate::error::{Error, Result};
 use crate::gpu::Context;
-use crate::options::{OptionValues, Options, OptionsError};
+use crate::options::{OptionValues, Options, OptionsError, Show};
 use crate::output::{
     Cell, Effort, Encoding, Metadata, SheetLayout, check_writable, compose, print, write_png,
 };
@@ -54,11 +55,21 @@ pub fn run(args: &StudyArgs, options: &OptionValues) -> Result<()> {
         // A plan is seen from so far that its air would show.
         options.set_default("aerial", "off");
     }
+    let shows_hours = options.alone()?.show == Show::SunHours;
+    if shows_hours {
+        options.set("sun-dates", args.dates[0]);
+    }
     let (job, context) = Job::on_device(args.scene.as_deref(), &options)?;
     check_anti_aliasing(&job.settings, false)?;
     check_whole(&job, &context)?;
-    let moments = moments(args, &job.settings).map_err(wrong)?;
-    let layout = layout(args, &job.settings).map_err(wrong)?;
+    // Hours of sun are those of a day.
+    let hours = if shows_hours {
+        &args.hours[..1]
+    } else {
+        &args.hours[..]
+    };
+    let moments = moments(args, hours, &job.settings).map_err(wrong)?;
+    let layout = layout(args, hours, &job.settings).map_err(wrong)?;
     let study = Study {
         args,
         options,
@@ -105,8 +116,12 @@ impl Study<'_> {
         moment: DateTime<FixedOffset>,
         renderer: &mut Option<Renderer>,
     ) -> Result<Picture> {
-        let job = &mut self.job;
         self.options.set("when", moment.to_rfc3339());
+        if self.job.suns.is_some() {
+            let day = moment.format("%Y-%-m-%-d");
+            self.options.set("sun-dates", day);
+        }
+        let job = &mut self.job;
         job.turn_to(&self.options)?;
         if let Some(width) = self.args.plan {
             job.camera = plan(job, width, self.layout.aspect());
@@ -150,6 +165,7 @@ fn plan(job: &Job, width: f64, aspect: f32) -> Camera {
 /// Every hour of every day, by the clock of the place.
 fn moments(
     args: &StudyArgs,
+    hours: &[DayTime],
     settings: &Options,
 ) -> std::result::Result<Vec<DateTime<FixedOffset>>, String> {
     let place = settings.sun.place();
@@ -166,7 +182,7 @@ fn moments(
         let year = year.unwrap_or(when.year());
         let date = NaiveDate::from_ymd_opt(year, month, day);
         let date = date.ok_or_else(|| format!("--dates: {year} has no {month}-{day}"))?;
-        for hour in &args.hours {
+        for hour in hours {
             let moment = place.zone().moment(date.and_time(hour.0));
             all.push(moment.map_err(|what| format!("--hours: {what}"))?);
         }
@@ -174,17 +190,21 @@ fn moments(
     Ok(all)
 }
 
-fn layout(args: &StudyArgs, settings: &Options) -> std::result::Result<SheetLayout, String> {
+fn layout(
+    args: &StudyArgs,
+    hours: &[DayTime],
+    settings: &Options,
+) -> std::result::Result<SheetLayout, String> {
     let [title_lines, caption_lines] = LINES;
     let layout = SheetLayout {
         picture: [settings.size.width, settings.size.height],
-        columns: args.hours.len() as u32,
+        columns: hours.len() as u32,
         rows: args.dates.len() as u32,
         title_lines,
         caption_lines,
     };
     let pixels = |[width, height]: [u32; 2]| u64::from(width) * u64::from(height);
-    let picture = pixels(layout.picture) * args.hours.len() as u64 * args.dates.len() as u64;
+    let picture = pixels(layout.picture) * hours.len() as u64 * args.dates.len() as u64;
     if picture.max(pixels(layout.size())) > MOST_PIXELS {
         return Err(format!(
             "the sheet would have more than {} million pixels; choose a smaller --size, or fewer --dates or --hours",
@@ -197,10 +217,16 @@ fn layout(args: &StudyArgs, settings: &Options) -> std::result::Result<SheetLayo
 /// A picture with date, hour, and where the sun stands.
 fn cell(job: &Job, moment: DateTime<FixedOffset>, picture: Picture) -> Cell {
     let (elevation, azimuth) = (job.sun.apparent_elevation_deg, job.sun.azimuth_deg);
-    let mut caption = vec![
-        moment.format("%Y-%m-%d  %H:%M %:z").to_string(),
-        format!("sun at {elevation:.1}°, azimuth {azimuth:.1}°"),
-    ];
+    let mut caption = match &job.suns {
+        Some(suns) => vec![
+            moment.format("%Y-%m-%d").to_string(),
+            format!("the sun is up for {:.1} h", suns.hours),
+        ],
+        None => vec![
+            moment.format("%Y-%m-%d  %H:%M %:z").to_string(),
+            format!("sun at {elevation:.1}°, azimuth {azimuth:.1}°"),
+        ],
+    };
     caption.extend(picture.ev100.map(|ev100| format!("EV100 {ev100:.1}")));
     Cell {
         rgba: picture.rgba,

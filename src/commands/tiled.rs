@@ -68,6 +68,10 @@ impl<'j> Tiled<'j> {
         let Some(plan) = plan(job, context) else {
             return Ok(None);
         };
+        if job.suns.is_some() {
+            let what = "--show sun-hours is drawn in one piece, not in tiles; choose a smaller --size, and leave out --tile";
+            return Err(OptionsError(what.to_owned()).into());
+        }
         if job.settings.noise.is_some() {
             let what = "--noise is judged on whole pictures, not in tiles; say how many --samples, or choose a smaller --size";
             return Err(OptionsError(what.to_owned()).into());

@@ -6,12 +6,12 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::tell;
-use crate::cli::{HourArgs, WeatherArgs};
+use crate::cli::WeatherArgs;
 use crate::daylight::weather::clock::ClockCheck;
 use crate::daylight::weather::summary::{Sums, months, year};
 use crate::daylight::weather::{Station, Weather};
 use crate::error::{Error, Result};
-use crate::options::{OptionValues, OptionsError};
+use crate::options::OptionValues;
 use crate::output::print;
 
 /// Largest weather file, bytes: a year by the minute has 90 MB.
@@ -71,63 +71,6 @@ pub fn read_weather(path: &Path) -> Result<Weather> {
         .extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("wea"));
     Weather::parse(&String::from_utf8_lossy(&bytes), is_wea).map_err(failed)
-}
-
-/// What `--weather` gives; none of it can be given besides.
-const GIVEN: [&str; 8] = [
-    "place",
-    "when",
-    "solar",
-    "sun",
-    "sky",
-    "dni",
-    "dhi",
-    "dew-point",
-];
-
-/// Fails with the first option that a weather file gives, too.
-///
-/// # Errors
-/// See above.
-pub(super) fn check_given(options: &OptionValues) -> Result<()> {
-    match GIVEN.iter().find(|name| options.get(name).is_some()) {
-        None => Ok(()),
-        Some(name) => Err(Error::from(OptionsError(format!(
-            "--weather gives place, sun and sky; leave out --{name}"
-        )))),
-    }
-}
-
-/// The options with place, moment and sky of an hour of a weather file, if one is given. Tells what is odd about the file.
-///
-/// # Errors
-/// A file that cannot be used, an hour that it lacks, options that it gives too, or a warning with `--strict`.
-pub fn applied(at: &HourArgs, mut options: OptionValues) -> Result<OptionValues> {
-    let (Some(file), Some(hour)) = (&at.weather, at.hour) else {
-        return Ok(options);
-    };
-    let wrong = |what: String| Error::from(OptionsError(what));
-    check_given(&options)?;
-    let weather = read_weather(file)?;
-    let shown = file.display();
-    let record = weather.at(hour);
-    let record = record.ok_or_else(|| wrong(format!("{shown} has no hour {hour}")))?;
-    let (Some(dni), Some(dhi)) = (record.direct_normal_w, record.diffuse_w) else {
-        return Err(wrong(format!("{shown} has no irradiances at {hour}")));
-    };
-    let place = weather.station.place;
-    options.set("place", format!("{},{}", place.latitude, place.longitude));
-    options.set("when", weather.moment(record).to_rfc3339());
-    options.set("sky", "perez");
-    // An hour without light of the sky is dark.
-    options.set("dni", if dhi > 0.0 { dni } else { 0.0 });
-    options.set("dhi", dhi);
-    if let Some(dew_point) = record.dew_point_c {
-        options.set("dew-point", dew_point);
-    }
-    let warnings = warnings(&weather, ClockCheck::of(&weather).as_ref());
-    tell(&options.alone()?, warnings.iter())?;
-    Ok(options)
 }
 
 /// What is odd about a file and its clock.

@@ -18,6 +18,8 @@ pub enum Quantity {
     Luminance,
     /// Illuminance of the surface in the pixel, lux.
     Illuminance,
+    /// Hours in which the sun shines on the surface in the pixel.
+    SunHours,
 }
 
 impl Quantity {
@@ -26,6 +28,7 @@ impl Quantity {
         match self {
             Self::Luminance => "cd/m²",
             Self::Illuminance => "lux",
+            Self::SunHours => "h",
         }
     }
 
@@ -40,14 +43,18 @@ impl Quantity {
                 min: 100.0,
                 max: 1e5,
             },
+            Self::SunHours => Range {
+                min: 0.0,
+                max: 12.0,
+            },
         }
     }
 }
 
-/// The values of the first and last colours.
+/// The values of the first and last colours. The scale between them is logarithmic, from 0 on linear.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
-    /// Value of the first colour, positive, in the quantity's unit.
+    /// Value of the first colour, positive or 0, in the quantity's unit.
     pub min: f64,
     /// Value of the last colour, greater than `min`.
     pub max: f64,
@@ -55,7 +62,12 @@ pub struct Range {
 
 impl std::fmt::Display for Range {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} to {}", label(self.min), label(self.max))
+        let least = if self.is_linear() {
+            "0".to_owned()
+        } else {
+            label(self.min)
+        };
+        write!(f, "{least} to {}", label(self.max))
     }
 }
 
@@ -69,9 +81,9 @@ pub struct Colours {
 }
 
 impl Colours {
-    /// The linear BT.709 colour of `value`, 0..1; black for what is not positive.
+    /// The linear BT.709 colour of `value`, 0..1; black for what is not on the scale: negative, or 0 on a logarithmic one.
     pub fn colour(&self, value: f64) -> DVec3 {
-        if value > 0.0 {
+        if value > 0.0 || (value == 0.0 && self.range.is_linear()) {
             self.map.colour(self.range.share(value))
         } else {
             DVec3::ZERO
@@ -111,20 +123,31 @@ impl Range {
         })
     }
 
+    /// Whether the scale is linear.
+    pub fn is_linear(&self) -> bool {
+        self.min <= 0.0
+    }
+
     /// Position of `value` on the scale, clamped to 0..=1.
     pub fn share(&self, value: f64) -> f64 {
+        if self.is_linear() {
+            return (value / self.max).clamp(0.0, 1.0);
+        }
         let (scale, offset) = self.log2_scale();
         (value.log2() * scale + offset).clamp(0.0, 1.0)
     }
 
-    /// (a, b) in position = a log₂(value) + b, for a shader.
+    /// (a, b) in position = a log₂(value) + b, for a shader, of a logarithmic scale.
     pub fn log2_scale(&self) -> (f64, f64) {
         let scale = 1.0 / (self.max.log2() - self.min.log2());
         (scale, -self.min.log2() * scale)
     }
 
-    /// The values 1, 2 and 5 of every decade within the range; its ends if those are fewer than two.
+    /// The values 1, 2 and 5 of every decade within the range; its ends if those are fewer than two. Of a linear scale, multiples of such a value.
     pub fn ticks(&self) -> Vec<Tick> {
+        if self.is_linear() {
+            return self.even_ticks();
+        }
         let decades = self.min.log10().floor() as i32..=self.max.log10().ceil() as i32;
         let round = decades.flat_map(|decade| [1, 2, 5].map(|digit| (digit, decade)));
         let round = round.map(|(digit, decade)| decimal(digit, decade));
@@ -142,6 +165,27 @@ impl Range {
             label: label(value),
         };
         values.into_iter().map(tick).collect()
+    }
+}
+
+impl Range {
+    /// Four to ten multiples of 1, 2 or 5 of a decade.
+    fn even_ticks(&self) -> Vec<Tick> {
+        let decade = (0.1 * self.max).log10().floor() as i32;
+        let steps = [decade, decade + 1].into_iter();
+        let steps = steps.flat_map(|decade| [1, 2, 5].map(|digit| decimal(digit, decade)));
+        let fits = |step: &f64| self.max / step < 10.5;
+        let step = steps.into_iter().find(fits).unwrap_or(self.max);
+        let count = (self.max / step * (1.0 + 1e-9)).floor() as u32;
+        let tick = |k: u32| {
+            let value = f64::from(k) * step;
+            Tick {
+                value,
+                share: self.share(value),
+                label: if k == 0 { "0".to_owned() } else { label(value) },
+            }
+        };
+        (0..=count).map(tick).collect()
     }
 }
 

@@ -54,18 +54,47 @@ impl std::str::FromStr for SunDate {
     }
 }
 
+/// Dates of which hours of sun are summed up.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SunDates(pub Vec<SunDate>);
+
+impl Default for SunDates {
+    /// An equinox.
+    fn default() -> Self {
+        Self(vec![SunDate::Day(None, 3, 21)])
+    }
+}
+
+impl std::fmt::Display for SunDates {
+    /// As they are read.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let dates: Vec<String> = self.0.iter().map(SunDate::to_string).collect();
+        f.write_str(&dates.join(","))
+    }
+}
+
+impl std::str::FromStr for SunDates {
+    type Err = String;
+
+    /// Dates, separated by commas.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let dates: Result<Vec<SunDate>, String> = text.split(',').map(str::parse).collect();
+        dates.map(Self)
+    }
+}
+
 impl SunDate {
     /// The days, with `year` where the date has none; `None` if that year lacks the day.
-    fn days(self, year: i32) -> Option<(String, Vec<NaiveDate>, i64)> {
+    fn days(self, year: i32) -> Option<(String, Vec<NaiveDate>)> {
         match self {
             Self::Year => {
                 let first = NaiveDate::from_yo_opt(year, 1)?;
                 let days = first.iter_days().take(365).collect();
-                Some(("year".to_owned(), days, MINUTES_OF_YEAR))
+                Some(("year".to_owned(), days))
             }
             Self::Day(own, month, day) => {
                 let date = NaiveDate::from_ymd_opt(own.unwrap_or(year), month, day)?;
-                Some((date.to_string(), vec![date], MINUTES))
+                Some((date.to_string(), vec![date]))
             }
         }
     }
@@ -103,7 +132,24 @@ impl Site {
         date: SunDate,
         above_deg: f64,
     ) -> Result<Option<DatedSuns>, SunPositionError> {
-        let Some((name, days, step)) = date.days(self.year) else {
+        let step = match date {
+            SunDate::Year => MINUTES_OF_YEAR,
+            SunDate::Day(..) => MINUTES,
+        };
+        self.suns_every(date, above_deg, step)
+    }
+
+    /// The same, every so many minutes, which divide a day.
+    ///
+    /// # Errors
+    /// See there.
+    pub fn suns_every(
+        &self,
+        date: SunDate,
+        above_deg: f64,
+        step: i64,
+    ) -> Result<Option<DatedSuns>, SunPositionError> {
+        let Some((name, days)) = date.days(self.year) else {
             return Ok(None);
         };
         let least = above_deg.max(0.0);

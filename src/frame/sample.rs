@@ -92,6 +92,15 @@ impl Sample {
         sample
     }
 
+    /// The same under another sun, if there is one, at the centres of the pixels: so its visibility is that of points.
+    pub fn under(self, sun: Option<Vec3>) -> Self {
+        sun.map_or(self, |sun_direction| Self {
+            sun_direction,
+            jitter: Vec2::ZERO,
+            ..self
+        })
+    }
+
     /// The camera's view for this sample; `size` is that of the picture or, with `tile`, of the tile, pixels.
     pub fn view(&self, camera: &Camera, size: UVec2, tile: Option<Window>) -> View {
         View {

@@ -178,6 +178,7 @@ choices! {
     Quantity {
         Luminance = "luminance": "Of the light toward the eye, cd/m²",
         Illuminance = "illuminance": "Of the surface under the pixel, lux",
+        SunHours = "sun-hours": "In which the sun shines on the surface under the pixel, of --sun-dates",
     }
     DomeBy {
         Auto = "auto": "What costs less, by the numbers of triangles and pixels",
@@ -205,6 +206,7 @@ choices! {
         Normal = "normal": "World normal on the viewer's side, -1..1",
         Depth = "depth": "Distance along the view axis, metres; 0 is background",
         Luminance = "luminance": "Luminance of the whole picture, cd/m², as grey",
+        SunHours = "sun-hours": "Hours of --sun-dates in which the sun shines on the surface, clouds apart, in false colours",
     }
     SkyModel {
         Atmosphere = "atmosphere": "Clear sky of all orders of scattering in air, aerosol and ozone on the sphere, from noon to night: --aod, --ozone, --altitude ..",
@@ -267,6 +269,6 @@ mod tests {
         check::<ToneCurve>();
         check::<IrradianceMethod>();
         assert_eq!(name(Visibility::Progressive), "dome");
-        assert_eq!(Show::VALUES.len(), 16);
+        assert_eq!(Show::VALUES.len(), 17);
     }
 }

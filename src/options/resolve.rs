@@ -4,8 +4,8 @@ use clap::parser::ValueSource;
 use glam::{DVec3, Vec3};
 
 use super::{
-    Ambient, DomeBy, OptionValues, Options, OptionsError, Preset, Reflections, SkyModel, Switch,
-    Visibility, all_tables, long, name, tables,
+    Ambient, DomeBy, OptionValues, Options, OptionsError, Preset, Reflections, Show, SkyModel,
+    Switch, Visibility, all_tables, long, name, tables,
 };
 use crate::daylight::atmosphere::air::Air;
 use crate::daylight::sky::Conditions;
@@ -137,6 +137,10 @@ impl Options {
         if self.reflections == Reflections::Hidden && self.visibility == Visibility::Ssao {
             let what =
                 "--reflections hidden needs --visibility dome; give it, or --samples 16 or more";
+            return Err(OptionsError(what.to_owned()));
+        }
+        if self.show == Show::SunHours && self.noise.is_some() {
+            let what = "--show sun-hours has no noise: each sun is a frame; leave out --noise";
             return Err(OptionsError(what.to_owned()));
         }
         match self.false_colour {
@@ -271,9 +275,14 @@ fn check_keys(pairs: &[(String, String)], table: &str, place: &str) -> Result<()
     };
     let known = all_tables().filter(|(_, list)| list.contains(&table));
     let mut known: Vec<String> = known.map(|(field, _)| long(field)).collect();
-    if ["camera", "moment"].contains(&table) {
-        known.push("name".to_owned());
-    }
+    // Those that no option holds: a name, and what stands for place, sun and sky.
+    let others: &[&str] = match table {
+        "camera" => &["name"],
+        "moment" => &["name", "hour"],
+        "sky" => &["weather", "hour"],
+        _ => &[],
+    };
+    known.extend(others.iter().map(ToString::to_string));
     Err(OptionsError(format!(
         "unknown key \"{key}\" in {place}; known are {}",
         known.join(", ")

@@ -11,7 +11,7 @@ use crate::daylight::sampling::rnd;
 use crate::scene::{Bounds, Camera, Loaded, NamedOptions, Scene};
 
 /// Texts of which each parser accepts at least one. The first is also the name of a camera and of a moment of [`scene`].
-const TEXTS: [&str; 17] = [
+const TEXTS: [&str; 18] = [
     "7",
     "-7.25",
     "0.5",
@@ -29,6 +29,7 @@ const TEXTS: [&str; 17] = [
     "2026-02-01T12:00:00+00:00",
     "1999-12-31T23:59:59.25-05:45",
     "-a 'quoted' $name",
+    "2-3,year",
 ];
 
 fn pairs(list: &[(&str, &str)]) -> Vec<(String, String)> {

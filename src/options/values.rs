@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use super::{Bounces, Choice, choice_enum};
+use super::{Bounces, Choice, SunDates, choice_enum};
 use crate::daylight::atmosphere::air::{
     ALTITUDE_RANGE_M, AOD_RANGE, Aerosol, Air, OZONE_RANGE_DU, VISIBILITY_RANGE_KM,
 };
@@ -269,7 +269,7 @@ macro_rules! written_as_displayed {
     };
 }
 
-written_as_displayed! { u32 f64 String Size Direction SolarTime Bounces AerosolInput }
+written_as_displayed! { u32 f64 String Size Direction SolarTime Bounces AerosolInput SunDates }
 
 /// A finite number.
 pub(super) fn number(text: &str) -> Result<f64, String> {
@@ -379,12 +379,29 @@ pub(super) fn aerosol(text: &str) -> Result<AerosolInput, String> {
 pub(super) fn colour_range(text: &str) -> Result<Range, String> {
     let [min, max] = list(text, "MIN,MAX, for instance 100,10000")?;
     for value in [min, max] {
-        within("a value of the range", "", 1e-9..=1e12, value)?;
+        within("a value of the range", "", 0.0..=1e12, value)?;
+    }
+    if max < 1e-9 || (min > 0.0 && min < 1e-9) {
+        return Err("a value of the range must be 0 or at least 1e-9".to_owned());
     }
     if min >= max {
         return Err("the first value of the range must be less than the second".to_owned());
     }
     Ok(Range { min, max })
+}
+
+/// `3-21,12-21`, or `year`.
+pub(super) fn sun_dates(text: &str) -> Result<SunDates, String> {
+    text.parse()
+}
+
+/// Minutes, of which a day has a whole number.
+pub(super) fn sun_step(text: &str) -> Result<u32, String> {
+    let minutes = text.trim().parse().ok();
+    let minutes = minutes.filter(|m| (1..=60).contains(m) && 1440 % m == 0);
+    minutes.ok_or_else(|| {
+        "write minutes of which a day has a whole number, for instance 1, 5, 10 or 30".to_owned()
+    })
 }
 
 /// `AZIMUTH,ELEVATION`, degrees.
@@ -499,7 +516,7 @@ mod tests {
             })
         );
         for text in [
-            "10", "0,10", "-1,10", "10,10", "20,10", "1,inf", "a,b", "1,2,3",
+            "10", "0,0", "-1,10", "10,10", "20,10", "1,inf", "a,b", "1,2,3",
         ] {
             assert!(colour_range(text).is_err(), "{text}");
         }

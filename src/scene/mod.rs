@@ -59,7 +59,7 @@ pub use microfacet::Microfacet;
 pub use placement::{Unit, Up};
 pub use progress::Progress;
 pub use reflectance::{Mean, Reflectances};
-pub use scene_file::{NamedCamera, NamedMoment, NamedOptions};
+pub use scene_file::{NamedCamera, NamedMoment, NamedOptions, weather_of};
 pub use subject::Subject;
 pub use texture::{Encoding, Texture, Wrap};
 

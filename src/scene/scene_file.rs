@@ -70,6 +70,10 @@ pub(super) fn append_scene(
     let camera = camera.or_else(|| cameras.first().map(|c| c.options.clone()));
     options.extend(camera.map(camera_table));
     let folder = path.parent().unwrap_or(Path::new(""));
+    let sky = options.iter_mut().filter(|table| table.name == "sky");
+    for (_, file) in sky.flat_map(|table| &mut table.options).filter(is_weather) {
+        *file = beside(folder, file);
+    }
     let whole = builder.progress;
     for (i, mesh) in meshes.iter().enumerate() {
         builder.progress = whole.part(i, meshes.len());
@@ -82,6 +86,27 @@ pub(super) fn append_scene(
         cameras,
         moments,
     })
+}
+
+/// Whether a key names a weather file.
+fn is_weather((key, _): &&mut (String, String)) -> bool {
+    key == "weather"
+}
+
+/// A file whose name is relative to a folder.
+fn beside(folder: &Path, file: &str) -> String {
+    folder.join(file).to_string_lossy().into_owned()
+}
+
+/// The weather file that a scene file names: `weather` in `[sky]`.
+pub fn weather_of(scene_file: &Path) -> Option<PathBuf> {
+    let extension = scene_file.extension()?;
+    let is_scene_file = extension.eq_ignore_ascii_case("toml");
+    let text = is_scene_file.then(|| std::fs::read_to_string(scene_file));
+    let table = parse(&text?.ok()?).ok()?;
+    let file = table.get("sky")?.get("weather")?.as_str()?;
+    let folder = scene_file.parent().unwrap_or(Path::new(""));
+    Some(beside(folder, file).into())
 }
 
 fn parse(text: &str) -> Result<Table, String> {

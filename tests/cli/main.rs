@@ -24,6 +24,7 @@ mod series;
 mod shards;
 mod sky;
 mod streams;
+mod sun_hours;
 mod tiles;
 mod town;
 mod validate;

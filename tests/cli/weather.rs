@@ -108,3 +108,83 @@ fn files_that_cannot_be_used_are_one_line() {
         assert!(line.contains(words[0]) && line.contains(what), "{line}");
     }
 }
+
+/// Measures open ground with `skylight daylight` in a folder.
+fn measured(folder: &Path, words: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_skylight"))
+        .current_dir(folder)
+        .arg("daylight")
+        .args(words.split(' '))
+        .args(["--grid", "g.csv", "--json", "--no-warnings"])
+        .output()
+        .expect("it runs")
+}
+
+#[test]
+fn a_scene_file_may_name_an_hour_of_a_file_beside_it() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let write = |name: &str, text: &str| {
+        std::fs::write(folder.path().join(name), text).expect("written");
+    };
+    let sensors = |output: &Output| {
+        let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        report["sensors"].clone()
+    };
+    std::fs::create_dir(folder.path().join("scenes")).expect("a folder");
+    write("scenes/a.epw", &two_days());
+    write("scenes/m.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 3 2\n");
+    write("g.csv", "5 1 5\n");
+    let scene = |name: &str, sky: &str, rest: &str| {
+        let mesh = "[[mesh]]\nfile = \"m.obj\"\n";
+        write(name, &format!("{mesh}[sky]\n{sky}\n{rest}"));
+    };
+    let moment = "[[moment]]\nname = \"late\"\nhour = \"6-20T18\"\n";
+    scene(
+        "scenes/s.toml",
+        "weather = \"a.epw\"\nhour = \"6-20T11\"\nground-albedo = 0.3",
+        moment,
+    );
+    let by_hand = |hour: &str| {
+        let words =
+            format!("scenes/m.obj --ground-albedo 0.3 --weather scenes/a.epw --hour {hour}");
+        sensors(&measured(folder.path(), &words))
+    };
+    for (words, hour) in [
+        ("scenes/s.toml", "6-20T11"),
+        ("scenes/s.toml --moment late", "6-20T18"),
+        ("scenes/s.toml --hour 6-20T9", "6-20T9"),
+    ] {
+        let output = measured(folder.path(), words);
+        assert!(output.status.success(), "{words}: {output:?}");
+        assert_eq!(sensors(&output), by_hand(hour), "{words}");
+    }
+    assert_ne!(by_hand("6-20T11"), by_hand("6-20T18"));
+    for (sky, rest, what) in [
+        ("weather = \"a.epw\"", "", "no hour; add hour = \"3-21T12\""),
+        ("hour = \"6-20T11\"", "", "add weather = \"FILE.epw\""),
+        (
+            "weather = \"a.epw\"\nhour = \"6-20T11\"\ndni = 3",
+            "",
+            "leave out dni",
+        ),
+        ("weather = \"b.epw\"\nhour = \"6-20T11\"", "", "b.epw"),
+        (
+            "weather = \"a.epw\"\nhour = \"7-1T11\"",
+            "",
+            "no hour 7-1T11:00",
+        ),
+        (
+            "weather = \"a.epw\"\nhour = \"noon\"",
+            "",
+            "hour: write month",
+        ),
+        ("wether = \"a.epw\"", "", "weather, hour"),
+    ] {
+        scene("scenes/t.toml", sky, rest);
+        let output = measured(folder.path(), "scenes/t.toml");
+        let line = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success(), "{sky}");
+        assert_eq!(line.lines().count(), 1, "{line}");
+        assert!(line.contains(what), "{line} for {what}");
+    }
+}

@@ -22,6 +22,8 @@ mod emission;
 mod furnace;
 mod glass;
 mod golden;
+#[cfg(feature = "window")]
+mod grid_cells;
 mod irradiance;
 mod lighting;
 mod lobes;

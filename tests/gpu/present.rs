@@ -42,6 +42,7 @@ fn settings(peak: Option<f64>) -> ToneSettings {
         gamma: None,
         depth_scale: 1.0,
         false_colour: None,
+        hours: 1.0,
         peak: peak.map(|peak| peak / PAPER_WHITE),
     }
 }

@@ -129,6 +129,7 @@ fn false_colours_are_those_of_the_cpu(map: ColourMap) {
         gamma: Some(2.2),
         depth_scale: 1.0,
         false_colour: Some(colours),
+        hours: 1.0,
         peak: None,
     };
     let tone_map = ToneMap::new(&device.context, size, settings).expect("a pass");
@@ -164,6 +165,7 @@ fn exposed(factor: f64, gamma: Option<f64>) -> ToneSettings {
         gamma,
         depth_scale: 1.0,
         false_colour: None,
+        hours: 1.0,
         peak: None,
     }
 }

@@ -9,6 +9,7 @@ mod running;
 #[path = "../common/x.rs"]
 mod x;
 
+mod desk;
 mod devices;
 mod faults;
 mod hdr;

@@ -26,7 +26,7 @@ impl Ground {
     /// The scene to draw; borrowed when it is the given one.
     pub fn scene<'j>(&self, job: &'j Job) -> Cow<'j, Scene> {
         match *self {
-            Self::Given | Self::Finer(1) => Cow::Borrowed(&job.scene),
+            Self::Given | Self::Finer(1) => Cow::Borrowed(&*job.scene),
             Self::Finer(pieces) => Cow::Owned(subdivided(&job.scene, pieces)),
             Self::Hills(triangles) => Cow::Owned(hills(triangles)),
         }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Numbers that are written as their bytes (base64, little endian): they come back as they are, infinite ones too.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Exact(pub Vec<f64>);
+pub(in crate::commands) struct Exact(pub Vec<f64>);
 
 impl Exact {
     /// The only number; 0 without one.

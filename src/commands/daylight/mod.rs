@@ -17,7 +17,17 @@ mod year;
 use std::path::Path;
 
 pub(super) use self::shards::merge;
-use super::weather;
+/// What the window shares with the command.
+#[cfg(feature = "window")]
+pub(super) use self::{
+    drawings::{Scale, is_share},
+    exact::Exact,
+    report::{LEED_EXPOSED, LEED_PERCENT},
+    summary::{Asked, LEVELS, Summary},
+    table::{Column, csv, place},
+    verdict::Verdict,
+};
+use super::hour;
 use crate::cli::DaylightArgs;
 use crate::daylight::metrics::Blinds;
 use crate::error::Result;
@@ -38,7 +48,10 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
     if args.asks_for_metrics() {
         return year::run(args, options);
     }
-    moment::run(args, &weather::applied(&args.at(), options.clone())?)
+    moment::run(
+        args,
+        &hour::applied(&args.at(), Some(&args.scene), options.clone())?,
+    )
 }
 
 /// The sensors of the file, or those that are made.

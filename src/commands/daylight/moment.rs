@@ -68,7 +68,7 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
         numbers,
     };
     if args.shard.is_some() {
-        let given = (&job.scene, &sensors[..]);
+        let given = (&*job.scene, &sensors[..]);
         let key = shards::key(Kind::Moment, args, &job.settings, given, String::new());
         let count = report.numbers.len();
         return shards::write(args, (&key, shard), &report, [count, count]);

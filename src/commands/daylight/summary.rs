@@ -12,7 +12,7 @@ use crate::daylight::metrics::{EN_17037_LUX, EXPOSED_HOURS, Passing, SPATIAL_PER
 
 /// Figures of the whole grid that are asked for.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Asked {
+pub(in crate::commands) struct Asked {
     /// Spatial daylight autonomy.
     pub sda: bool,
     /// Whether it is with blinds, as LM-83 wants.
@@ -24,7 +24,7 @@ pub(super) struct Asked {
 }
 
 /// Figures of the whole grid; those that were not asked for are `None`.
-pub(super) struct Summary {
+pub(in crate::commands) struct Summary {
     /// Share of the sensors.
     pub sda: Option<Passing>,
     /// Whether it is with blinds, as LM-83 wants.
@@ -36,7 +36,7 @@ pub(super) struct Summary {
 }
 
 /// Daylight provision of EN 17037: shares of the sensors at each of [`EN_17037_LUX`].
-pub(super) struct Provision {
+pub(in crate::commands) struct Provision {
     /// Hours of method 2.
     hours: f64,
     /// What the daylight factors are derived from.
@@ -50,7 +50,7 @@ pub(super) struct Provision {
 }
 
 /// A level of EN 17037, table A.1.
-pub(super) struct Level {
+pub(in crate::commands) struct Level {
     /// Its name.
     pub name: &'static str,
     /// Number of its target in [`EN_17037_LUX`], for half of the plane.
@@ -60,7 +60,7 @@ pub(super) struct Level {
 }
 
 /// The levels, the lowest first.
-pub(super) const LEVELS: [Level; 3] = [
+pub(in crate::commands) const LEVELS: [Level; 3] = [
     Level {
         name: "minimum",
         target: 1,

@@ -12,7 +12,7 @@ use crate::sensors::Sensor;
 
 /// A quantity at every sensor.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub(super) struct Column {
+pub(in crate::commands) struct Column {
     /// Its key in JSON and CSV.
     pub name: String,
     /// Its unit, for the eye.
@@ -48,7 +48,7 @@ impl Column {
 pub(super) const PLACE: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 
 /// Position and normal of a sensor in the model's axes.
-pub(super) fn place(sensor: &Sensor, origin: DVec3) -> [f64; 6] {
+pub(in crate::commands) fn place(sensor: &Sensor, origin: DVec3) -> [f64; 6] {
     let [x, y, z] = in_world(sensor.position, origin);
     let [nx, ny, nz] = sensor.normal.to_array().map(shortest);
     [x, y, z, nx, ny, nz]
@@ -72,7 +72,7 @@ pub(super) fn objects(places: &[[f64; 6]], columns: &[Column]) -> Value {
 }
 
 /// A line for each sensor, under one of names.
-pub(super) fn csv(places: &[[f64; 6]], columns: &[Column]) -> String {
+pub(in crate::commands) fn csv(places: &[[f64; 6]], columns: &[Column]) -> String {
     let mut text = PLACE.join(",");
     for column in columns {
         let _ = write!(text, ",{0},{0}_se", column.name);

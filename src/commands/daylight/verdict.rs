@@ -7,7 +7,7 @@ const SURE: f64 = 1.96;
 
 /// What a standard says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub(in crate::commands) enum Verdict {
     Met,
     NotMet,
     /// The standard error spans the limit.

@@ -3,9 +3,10 @@
 use glam::DVec3;
 use serde_json::{Value, json};
 
+use super::super::hour::{NoHour, check_given, expand};
 use super::super::job::{load_options, scene_of};
 use super::super::merge::Kind;
-use super::super::weather::{check_given, read_weather, warnings};
+use super::super::weather::{read_weather, warnings};
 use super::super::{interrupt, progress, tell, tell_no_device};
 use super::exact::Exact;
 use super::outcome::{Common, Form, Outcome};
@@ -43,6 +44,7 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
         &load_options(&options.alone()?),
         &|_, _| (),
     )?;
+    expand(&mut loaded, NoHour::PlaceAlone)?;
     let settings = Options::resolve(options, &loaded)?;
     let scene = scene_of(&mut loaded, &settings);
     tell_no_device("daylight", &settings);

@@ -9,10 +9,10 @@ use winit::window::{Fullscreen, Window};
 
 use crate::error::{Error, Result};
 use crate::gpu::FRAMES;
-use crate::options::{Hdr, OptionValues, Options, Size};
+use crate::options::{Hdr, Options, Size};
 
 use super::capture;
-use super::document::Document;
+use super::document::{Asked, Document};
 use super::input::Input;
 use super::interface::{Interface, UiRequest};
 use super::keys::Action;
@@ -28,8 +28,8 @@ pub(super) const RETRY: Duration = Duration::from_millis(100);
 
 /// Application state.
 pub(super) struct App {
-    /// Options from the command line.
-    pub(super) user: OptionValues,
+    /// What the command line asks for.
+    pub(super) user: Asked,
     /// The command-line options over the defaults, without those of a scene.
     pub(super) options: Options,
     pub(super) loader: Loader,
@@ -64,7 +64,7 @@ impl App {
     pub(super) fn new(
         proxy: EventLoopProxy<Message>,
         scene: Option<PathBuf>,
-        user: OptionValues,
+        user: Asked,
         options: Options,
     ) -> Self {
         let mut loader = Loader::new(proxy);
@@ -121,7 +121,7 @@ impl App {
     pub(super) fn open_file(&mut self, path: PathBuf) {
         self.interface.loading(Some((0.0, "opening")));
         // These options refer to the scene of the command line.
-        self.user.remove(&["camera", "eye", "target"]);
+        self.user.options.remove(&["camera", "eye", "target"]);
         self.loader.start(Some(path), &self.options);
         self.request_redraw();
     }
@@ -212,6 +212,13 @@ impl App {
                 && let Err(error) = document.follow()
             {
                 tell(interface, &error);
+            }
+            if document.follow_desk() {
+                // The interface was laid out before.
+                stage.window.request_redraw();
+            }
+            if let Some(fault) = document.fault.take() {
+                interface.complain(&fault);
             }
         }
         let rested = document.as_deref().is_none_or(Document::is_at_rest);

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use crate::error::Result;
 use crate::gpu::{Pixels, read_back};
-use crate::output::{Channels, Effort, Encoding, Layer, Metadata, write_exr, write_png};
+use crate::output::{
+    Channels, Effort, Encoding, Layer, Metadata, write_exr, write_png, write_text,
+};
 
 use super::document::Document;
 use super::stage::Stage;
@@ -19,7 +21,17 @@ pub(super) fn save(stage: &mut Stage, document: &mut Document) -> Result<String>
     let metadata = metadata(stage, document)?;
     save_png(stage, document, &png, &metadata)?;
     save_exr(stage, document, &exr, &metadata)?;
-    Ok(format!("wrote {} and .exr", png.display()))
+    let desk = document.desk.as_ref().filter(|desk| desk.is_shown);
+    let record = document.record_shown();
+    let values = desk.and_then(|desk| desk.csv(&document.job, record));
+    let also = match values {
+        Some(values) => {
+            write_text(&stem.with_extension("csv"), &values)?;
+            ", .exr, and .csv with the values of the sensors"
+        }
+        None => " and .exr",
+    };
+    Ok(format!("wrote {}{also}", png.display()))
 }
 
 /// First unused name of the form `skylight-SCENE-N`.
@@ -29,8 +41,8 @@ fn free_name(document: &Document) -> PathBuf {
     let mut number = 1;
     loop {
         let stem = format!("skylight-{scene}-{number}");
-        let taken = |extension| Path::new(&format!("{stem}.{extension}")).exists();
-        if !taken("png") && !taken("exr") {
+        let taken = |extension: &&str| Path::new(&format!("{stem}.{extension}")).exists();
+        if !["png", "exr", "csv"].iter().any(taken) {
             return stem.into();
         }
         number += 1;
@@ -41,6 +53,10 @@ fn metadata(stage: &mut Stage, document: &Document) -> Result<Metadata> {
     let mut metadata = document.job.metadata();
     let (averaged, _) = document.progress();
     metadata.push(("samples drawn".into(), averaged.max(1).to_string()));
+    // The command among the parameters gives the model's own surfaces.
+    for (name, value) in document.surfaces.changes() {
+        metadata.push((format!("changed surface {name}"), value.to_string()));
+    }
     if document.job.settings.ev100.is_none() {
         let average = read_back(stage.idle()?, document.frame().average_luminance())?.floats()[0];
         let ev100 = document.job.automatic_ev100(f64::from(average) * 1e3);
@@ -86,7 +102,7 @@ fn save_exr(
     metadata: &Metadata,
 ) -> Result<()> {
     let pixels = read_back(stage.idle()?, document.frame().radiance())?;
-    let unit = document.job.settings.show.file_unit();
+    let unit = document.job.file_unit(document.job.settings.show);
     let texels = pixels.rgba().into_iter().map(|t| t.map(|v| v * unit));
     let layer = Layer {
         name: "",

@@ -1,15 +1,19 @@
 //! The open scene: its options, daylight and camera, and the progress of its image.
 
 mod following;
+mod hours;
 
+use std::any::Any;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use crate::commands::hour::{NoHour, expand};
 use crate::commands::job::Job;
 use crate::daylight::hdr::PAPER_WHITE;
 use crate::daylight::sun_position::azimuth_elevation;
+use crate::daylight::weather::Weather;
 use crate::error::Result;
-use crate::frame::{Frame, FrameSettings, Replacement};
+use crate::frame::{Frame, FrameSettings};
 use crate::gpu::{Context, Image, Recorder, Timing};
 use crate::options::{AntiAliasing, OptionValues, Options, Size, SunInput, Visibility, name};
 use crate::passes::light::lighting::Precision;
@@ -20,12 +24,16 @@ use crate::scene::{Camera, Loaded};
 use super::adaptation::Adaptation;
 use super::background::Wake;
 use super::controls::{Controls, FlyKeys};
-use super::interface::{Notes, shift};
+use super::desk::{Desk, Grid};
+use super::grid_overlay::GridOverlay;
+use super::interface::Notes;
 use super::keys::Action;
 use super::light_ahead::LightAhead;
 use super::passes_ahead::PassesAhead;
 use super::stage::Screen;
+use super::surfaces::Surfaces;
 use super::viewpoints::{Viewpoint, Viewpoints};
+use super::year::Year;
 
 /// Default of `--samples` in the window: number of frames averaged at rest.
 pub(super) const REST_SAMPLES: u32 = 64;
@@ -41,13 +49,22 @@ pub(super) struct Document {
     pub(super) controls: Controls,
     /// Viewpoints: named and saved cameras.
     pub(super) viewpoints: Viewpoints,
+    /// The hours of a weather file, if there is one.
+    pub(super) year: Option<Year>,
+    /// Sensors, if a grid was asked for.
+    pub(super) desk: Option<Desk>,
+    /// Reflectances that are changed.
+    pub(super) surfaces: Surfaces,
+    /// What went wrong beside, to be told once.
+    pub(super) fault: Option<String>,
+    overlay: GridOverlay,
     frame: Frame,
     /// Options that the frame was last updated to.
     followed: Options,
     light: LightAhead,
     passes: PassesAhead,
     /// Passes whose place others took; frames in flight may still use them.
-    replaced: Vec<Replacement>,
+    replaced: Vec<Box<dyn Any + Send>>,
     /// Camera of the newest frame; `None` restarts the average.
     drawn: Option<Camera>,
     /// Number of frames in the average.
@@ -65,8 +82,19 @@ pub(super) struct Aside {
     job: Job,
     controls: Controls,
     viewpoints: Viewpoints,
+    year: Option<Year>,
+    desk: Option<Desk>,
+    fault: Option<String>,
     light: LightAhead,
     frames: u64,
+}
+
+/// What a user asks for: options, the weather file of the command line, a grid of sensors.
+#[derive(Clone)]
+pub(super) struct Asked {
+    pub(super) options: OptionValues,
+    pub(super) weather: Option<Arc<Weather>>,
+    pub(super) grid: Option<Grid>,
 }
 
 /// The device of a window, and how its event loop is woken.
@@ -87,6 +115,8 @@ impl Aside {
             Err(_) => recorder.abandon()?,
         }
         Ok(Document {
+            surfaces: Surfaces::new(context, wake, &self.job.scene),
+            overlay: GridOverlay::new(context),
             frame: frame?,
             passes: PassesAhead::new(wake, recorder),
             replaced: Vec::new(),
@@ -95,6 +125,9 @@ impl Aside {
             job: self.job,
             controls: self.controls,
             viewpoints: self.viewpoints,
+            year: self.year,
+            desk: self.desk,
+            fault: self.fault,
             light: self.light,
             frames: self.frames,
             drawn: None,
@@ -114,16 +147,30 @@ impl Document {
     pub(super) fn open(
         device: Device<'_>,
         path: Option<PathBuf>,
-        loaded: Loaded,
-        user: &OptionValues,
+        mut loaded: Loaded,
+        asked: Asked,
         (size, screen): (Size, Screen),
     ) -> Result<Self> {
-        let user = at_rest(user, size);
+        let user = at_rest(asked.options, size);
+        let of_scene = expand(&mut loaded, NoHour::Chosen)?;
         let job = Job::of(path.as_deref(), loaded, &user)?;
+        let weather = asked.weather.or(of_scene);
+        // A grid that cannot be made is told of; the scene is shown without.
+        let desk = asked
+            .grid
+            .map(|grid| Desk::new(&grid, &job, weather.clone(), device.1));
+        let (desk, fault) = match desk.transpose() {
+            Ok(desk) => (desk, None),
+            Err(error) => (None, Some(error.to_string())),
+        };
+        let year = weather.map(|weather| Year::new(weather, &job.settings));
         let viewpoints = named_cameras(&job, &user);
         let aside = Aside {
             controls: Controls::new(&job.camera, &job.scene.bounds),
             viewpoints,
+            year,
+            desk,
+            fault,
             light: LightAhead::new(&job.settings, device.1),
             frames: 0,
             job,
@@ -137,6 +184,9 @@ impl Document {
             job: self.job,
             controls: self.controls,
             viewpoints: self.viewpoints,
+            year: self.year,
+            desk: self.desk,
+            fault: self.fault,
             light: self.light,
             frames: self.frames,
         }
@@ -166,7 +216,7 @@ impl Document {
                     self.controls.go_to(&viewpoint.camera);
                 }
             }
-            Action::ShiftHours(hours) => shift(&mut self.job.settings.sun, hours * 3600.0),
+            Action::Shift(steps) => self.shift(steps),
             Action::LightFromView => {
                 let behind = -self.controls.camera().forward().as_dvec3();
                 let (azimuth_deg, elevation_deg) = azimuth_elevation(behind);
@@ -177,6 +227,7 @@ impl Document {
             }
             Action::Show(show) => {
                 self.job.settings.show = show;
+                self.job.settings.show_in_colours();
                 notes.say(crate::options::name(show));
             }
             _ => {}
@@ -215,7 +266,7 @@ impl Document {
 
     /// Whether the average is complete.
     fn is_averaged(&self) -> bool {
-        !self.has_moved() && self.averaged >= self.followed.samples
+        !self.has_moved() && self.averaged >= self.samples()
     }
 
     fn has_moved(&self) -> bool {
@@ -224,7 +275,12 @@ impl Document {
 
     /// Number of frames in the average, and its target.
     pub(super) fn progress(&self) -> (u32, u32) {
-        (self.averaged, self.followed.samples)
+        (self.averaged, self.samples())
+    }
+
+    /// Number of frames of an average.
+    fn samples(&self) -> u32 {
+        self.frame.settings().samples
     }
 
     /// Records the next frame: a preview while the camera moves or the irradiance is being refined, then the samples of the
@@ -233,8 +289,14 @@ impl Document {
         for passes in self.replaced.drain(..) {
             recorder.keep(passes);
         }
+        let is_new = self.record_picture(recorder);
+        self.record_grid(recorder, is_new);
+    }
+
+    /// As [`Document::record`], without the grid; whether there is another picture.
+    fn record_picture(&mut self, recorder: &mut Recorder) -> bool {
         if self.is_at_rest() {
-            return;
+            return false;
         }
         let (daylight, camera) = (&self.job.daylight, &self.job.camera);
         let is_preview = self.has_moved() || !self.frame.is_refined();
@@ -244,21 +306,22 @@ impl Document {
         if !matches!(self.frame.settings().tone.scale, Scale::Average { .. }) {
             self.adaptation.cut();
         }
-        let is_last = !is_preview && self.averaged + 1 >= self.followed.samples;
+        let is_last = !is_preview && self.averaged + 1 >= self.samples();
         self.frame.set_adaptation(self.adaptation.share(is_last));
         if self.is_averaged() {
             self.frame.expose(recorder);
-            return;
+            return true;
         }
         if is_preview {
             self.frame.preview(recorder, daylight, camera);
             self.averaged = 0;
         } else {
-            self.frame.record(recorder, daylight, camera, self.averaged);
+            self.job.record(&mut self.frame, recorder, self.averaged);
             self.averaged += 1;
         }
         self.drawn = Some(self.job.camera);
         self.frames += 1;
+        true
     }
 
     /// Number of frames drawn since the scene was opened.
@@ -268,7 +331,7 @@ impl Document {
 
     /// The image in display values.
     pub(super) fn display(&self) -> &Image {
-        self.frame.display()
+        self.overlay.image().unwrap_or(self.frame.display())
     }
 
     /// The frame, for reading back its images.
@@ -317,8 +380,7 @@ impl Document {
 
 /// The user's options with the window's size and defaults: enough samples at rest for the true visibility of the sky (except with
 /// the lecture preset), fewer directions per frame than for a file, which keeps frames short when motion resumes, and anti-aliasing.
-fn at_rest(user: &OptionValues, size: Size) -> OptionValues {
-    let mut options = user.clone();
+fn at_rest(mut options: OptionValues, size: Size) -> OptionValues {
     options.set("size", size);
     if options.get("preset").is_some() {
         options.set_default("visibility", Visibility::Ssao);

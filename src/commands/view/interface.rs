@@ -4,6 +4,8 @@
 mod air;
 mod boxes;
 mod clock;
+mod desk;
+mod heat;
 mod help;
 mod legend;
 mod light;
@@ -14,7 +16,9 @@ mod probe;
 mod sky_dome;
 mod status;
 mod sun;
+mod surfaces;
 mod timings;
+mod year;
 
 pub(super) use clock::shift;
 pub(super) use notes::Notes;
@@ -33,6 +37,7 @@ use super::style;
 
 use boxes::{corner, read_out};
 use clock::Clock;
+use heat::HeatMap;
 use probe::Probe;
 use sky_dome::SkyDome;
 use sun::PlaceField;
@@ -62,6 +67,7 @@ pub(super) struct Interface {
     place: PlaceField,
     probe: Probe,
     sky_dome: SkyDome,
+    heat: HeatMap,
     timings: TimingChart,
     light: light::Readout,
     /// What the panel leaves of the window, points.
@@ -80,6 +86,7 @@ impl Interface {
             place: PlaceField::default(),
             probe: Probe::default(),
             sky_dome: SkyDome::default(),
+            heat: HeatMap::default(),
             timings: TimingChart::default(),
             light: light::Readout::default(),
             free: Rect::EVERYTHING,
@@ -125,7 +132,9 @@ impl Interface {
 
     /// Advances the time of day by `seconds` of real time.
     pub(super) fn play(&mut self, document: &mut Document, seconds: f64) {
-        self.clock.advance(&mut document.job.settings.sun, seconds);
+        if self.is_playing(document) {
+            document.pass_time(seconds * self.clock.speed);
+        }
     }
 
     /// Whether the time of day is advancing.
@@ -195,6 +204,10 @@ impl Interface {
                     }
                     Err(error) => self.complain(&error.to_string()),
                 }
+                if document.surfaces.changes().next().is_some() {
+                    self.notes
+                        .warn("the command has the surfaces of the model, not the changed ones");
+                }
             }
             other => document.perform(other, &mut self.notes),
         }
@@ -214,7 +227,9 @@ impl Interface {
                 self.panel(ui, document, &mut requests);
                 self.probe.show(ui, document);
                 self.timings.show(ui, document);
-                legend::show(ui, &document.job.settings);
+                legend::show(ui, &document.job);
+                desk::legend(ui, document);
+                self.heat.show(ui, document, &self.probe);
             }
             help::show(ui, &mut self.help);
         }
@@ -241,10 +256,14 @@ impl Interface {
             sun::show(ui, document, &mut self.place, &mut self.clock);
             self.sky_dome.switches(ui);
         });
+        if document.desk.is_some() {
+            section(ui, "Sensors", true, |ui| desk::show(ui, document));
+        }
         section(ui, "Air and ground", true, |ui| air::show(ui, document));
         section(ui, "Picture", true, |ui| {
             picture::show(ui, document, requests);
         });
+        section(ui, "Surfaces", false, |ui| surfaces::show(ui, document));
         section(ui, "Light", false, |ui| {
             self.light.show(ui, document);
         });

@@ -19,8 +19,8 @@ pub(super) enum Action {
     SaveViewpoint,
     /// Go to the next viewpoint.
     NextViewpoint,
-    /// Shift the time by this many hours.
-    ShiftHours(f64),
+    /// Shift the moment.
+    Shift(Shift),
     /// Start or stop the clock.
     Play,
     /// Put the sun behind the camera.
@@ -41,6 +41,24 @@ pub(super) enum Action {
     FullScreen,
     /// Close the help and all messages.
     Dismiss,
+}
+
+/// A step in time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Shift {
+    /// Hours of the clock.
+    pub(super) hours: f64,
+    /// Steps of a weather file instead, where its hours are shown.
+    pub(super) records: Steps,
+}
+
+/// Steps through the hours of a weather file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Steps {
+    /// To the next hour, or the one before.
+    Hours(i64),
+    /// To the same hour of another day.
+    Days(i64),
 }
 
 /// One line in the help.
@@ -67,7 +85,11 @@ pub(super) const BINDINGS: &[Binding] = &[
         "frame what is worth seeing: a house, not its whole ground",
     ),
     binding("O, Shift + O", "save this viewpoint; go to the next one"),
-    binding("H, Shift + H", "half an hour later; earlier"),
+    binding(
+        "H, Shift + H",
+        "half an hour later, earlier; of a weather file the next hour, the one before",
+    ),
+    binding("J, Shift + J", "a day later, earlier"),
     binding("Space", "start or stop the clock"),
     binding("L", "put the sun behind the camera"),
     binding(
@@ -152,7 +174,8 @@ fn character_action(character: char, shift: bool) -> Option<Action> {
         'f' => Action::FrameAll,
         'o' if shift => Action::NextViewpoint,
         'o' => Action::SaveViewpoint,
-        'h' => Action::ShiftHours(if shift { -0.5 } else { 0.5 }),
+        'h' => later(0.5, Steps::Hours(1), shift),
+        'j' => later(24.0, Steps::Days(1), shift),
         'l' => Action::LightFromView,
         'x' => Action::ToggleSunPath,
         't' => Action::ToggleTimings,
@@ -166,6 +189,18 @@ fn character_action(character: char, shift: bool) -> Option<Action> {
     Some(action)
 }
 
+/// A step in time, back with Shift.
+fn later(hours: f64, records: Steps, is_back: bool) -> Action {
+    let (sign, count) = if is_back { (-1.0, -1) } else { (1.0, 1) };
+    Action::Shift(Shift {
+        hours: sign * hours,
+        records: match records {
+            Steps::Hours(n) => Steps::Hours(count * n),
+            Steps::Days(n) => Steps::Days(count * n),
+        },
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -176,8 +211,10 @@ mod tests {
 
     #[test]
     fn the_frameworks_keys_do_what_they_did() {
-        assert_eq!(typed("h", false), Some(Action::ShiftHours(0.5)));
-        assert_eq!(typed("H", true), Some(Action::ShiftHours(-0.5)));
+        let half = |hours, records| Some(Action::Shift(Shift { hours, records }));
+        assert_eq!(typed("h", false), half(0.5, Steps::Hours(1)));
+        assert_eq!(typed("H", true), half(-0.5, Steps::Hours(-1)));
+        assert_eq!(typed("J", true), half(-24.0, Steps::Days(-1)));
         assert_eq!(typed("l", false), Some(Action::LightFromView));
         assert_eq!(typed("r", false), Some(Action::ReloadShaders));
         assert_eq!(typed("1", false), Some(Action::Show(Show::Beauty)));

@@ -6,15 +6,17 @@
 //! - `keys`, `input` and `touch`: keyboard, mouse and touch screen. `interface`: the user interface, panel by panel.
 //! - `trouble`: what is done about errors, a lost device among them.
 //! - `background`: work of other threads. `loader` and `opening`: scenes are read, and prepared for the device. `light_ahead` and `passes_ahead`: daylight and passes of changed options,
-//!   made while the window goes on. `capture`: screenshots. `pace`: measures frames. `resume`: settings of the last session.
+//!   made while the window goes on. `year`: the hours of a weather file. `desk`: sensors of a grid, drawn by `grid_overlay`. `surfaces`: changed reflectances. `capture`: screenshots. `pace`: measures frames. `resume`: settings of the last session.
 
 mod adaptation;
 mod app;
 mod background;
 mod capture;
 pub mod controls;
+mod desk;
 mod document;
 mod events;
+mod grid_overlay;
 mod input;
 mod interface;
 mod keys;
@@ -26,33 +28,40 @@ mod passes_ahead;
 mod resume;
 mod stage;
 mod style;
+mod surfaces;
 mod touch;
 mod trouble;
 pub mod viewpoints;
+mod year;
 
 use std::path::Path;
 
 use winit::event_loop::EventLoop;
 
+use crate::cli::ViewArgs;
+use crate::commands::hour::window;
 use crate::error::{Error, Result};
 use crate::options::OptionValues;
 use crate::scene::bundled_name;
 
 use app::App;
+use desk::Grid;
+use document::Asked;
 
 /// The scene without one on the command line, if no file of that name is in the way.
 const OPENING: &str = "island";
 
-/// Opens the window on `scene`, or on a bundled scene, and returns when it is closed. `resumes` restores the settings of
-/// the last session with this scene.
+/// Opens the window on a scene, or on a bundled one, and returns when it is closed.
 ///
 /// # Errors
 /// No display, no device that can present to it, a window that another program destroyed, or a device that was lost twice. A
 /// scene that fails to load is reported in the window.
-pub fn run(scene: Option<&Path>, resumes: bool, user: OptionValues) -> Result<()> {
+pub fn run(args: &ViewArgs, user: OptionValues) -> Result<()> {
+    let scene = args.scene.as_deref();
+    let (user, weather) = window(&args.at, scene, user)?;
     let opening = Path::new(OPENING);
     let scene = scene.or_else(|| bundled_name(opening).map(|_| opening));
-    let user = if resumes {
+    let user = if args.resume {
         resume::recall(scene, user)?
     } else {
         user
@@ -64,7 +73,11 @@ pub fn run(scene: Option<&Path>, resumes: bool, user: OptionValues) -> Result<()
     let mut app = App::new(
         event_loop.create_proxy(),
         scene.map(Path::to_owned),
-        user,
+        Asked {
+            options: user,
+            weather,
+            grid: Grid::asked(args),
+        },
         options,
     );
     event_loop

@@ -37,7 +37,7 @@ impl App {
         let open = {
             let wake = wake.clone();
             move || {
-                let opened = Document::open((&context, &wake), of, loaded, &user, window)?;
+                let opened = Document::open((&context, &wake), of, loaded, user, window)?;
                 opened.job.check_strict()?;
                 Ok(opened)
             }

@@ -47,6 +47,8 @@ fn content(show: Show) -> (bool, f32) {
         Show::Beauty | Show::Luminance | Show::Background => (true, 0.0),
         // The sky itself is never occluded.
         Show::Visibility | Show::Occlusion => (false, 1.0),
+        // Surfaces without sun have 0.
+        Show::SunHours => (false, -1.0),
         _ => (false, 0.0),
     }
 }

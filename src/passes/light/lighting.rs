@@ -82,6 +82,8 @@ pub enum Show {
     Depth,
     /// Luminance of the whole picture, cd/m², in grey.
     Luminance,
+    /// V of frames with different suns, whose mean is the share of the hours of sun, 0..1; −1 without a surface.
+    SunHours,
 }
 
 impl Show {
@@ -110,7 +112,12 @@ impl Show {
     /// Conversion factor from device to file units: kcd/m² to cd/m², klx to lux.
     pub fn file_unit(self) -> f32 {
         match self {
-            Self::Visibility | Self::Occlusion | Self::Albedo | Self::Normal | Self::Depth => 1.0,
+            Self::Visibility
+            | Self::Occlusion
+            | Self::Albedo
+            | Self::Normal
+            | Self::Depth
+            | Self::SunHours => 1.0,
             _ => 1000.0,
         }
     }
@@ -128,6 +135,7 @@ impl Show {
         match quantity {
             Quantity::Luminance => self.file_unit() != 1.0 && self != Self::Irradiance,
             Quantity::Illuminance => self == Self::Irradiance,
+            Quantity::SunHours => self == Self::SunHours,
         }
     }
 
@@ -154,7 +162,7 @@ impl Show {
                 u32::from(specular) & addend(Self::SkySpecular),
             ),
             ("INSCATTER", addend(Self::Air)),
-            ("SHOW_VISIBILITY", on(Self::Visibility)),
+            ("SHOW_VISIBILITY", on(Self::Visibility) | on(Self::SunHours)),
             ("SHOW_OCCLUSION", on(Self::Occlusion)),
             ("SHOW_IRRADIANCE", on(Self::Irradiance)),
             ("SHOW_ALBEDO", on(Self::Albedo)),

@@ -69,6 +69,8 @@ pub struct ToneSettings {
     /// False colours, with their range in cd/m² (lux for irradiance). They replace exposure and tone curve and are always
     /// sRGB-encoded.
     pub false_colour: Option<Colours>,
+    /// What a value of 1 of [`Show::SunHours`] stands for, hours.
+    pub hours: f64,
     /// Highest display value of an HDR screen: the display values are linear then, without tone curve, gamma and dither. `None`: encoded, 0..=1.
     pub peak: Option<f64>,
 }
@@ -87,6 +89,7 @@ impl Default for ToneSettings {
             gamma: None,
             depth_scale: 1.0,
             false_colour: None,
+            hours: 1.0,
             peak: None,
         }
     }
@@ -122,10 +125,24 @@ fn colour_map(colours: Option<Colours>) -> u32 {
     }
 }
 
-/// Scale and offset from log2 of kcd/m² (klx) to the position 0..1 in a range.
-fn kilo_range(range: Range) -> (f64, f64) {
-    let (scale, offset) = range.log2_scale();
-    (scale, offset + scale * 1e3f64.log2())
+impl ToneSettings {
+    /// Whether false colours are on a linear scale.
+    fn is_even(&self) -> bool {
+        self.false_colour.is_some_and(|c| c.range.is_linear())
+    }
+
+    /// Scale and offset to the position 0..1 in a range: of what the device has, or of its log2.
+    fn on_scale(&self, range: Range) -> (f64, f64) {
+        let unit = match self.show {
+            Show::SunHours => self.hours,
+            shown => f64::from(shown.file_unit()),
+        };
+        if range.is_linear() {
+            return (unit / range.max, 0.0);
+        }
+        let (scale, offset) = range.log2_scale();
+        (scale, offset + scale * unit.log2())
+    }
 }
 
 impl ToneMap {
@@ -192,6 +209,7 @@ impl ToneMap {
                 ("AUTO", average.into()),
                 ("GREY", (settings.show == Show::Luminance).into()),
                 ("FALSE_COLOUR", false_colour.into()),
+                ("EVEN", settings.is_even().into()),
                 ("COLOUR_MAP", colour_map(settings.false_colour)),
                 ("DITHER", (light && !hdr).into()),
                 ("HDR", (light && hdr).into()),
@@ -229,7 +247,7 @@ impl ToneMap {
         let s = &self.settings;
         let (exposure, offset) = s
             .false_colour
-            .map_or_else(|| self.exposure(), |colours| kilo_range(colours.range));
+            .map_or_else(|| self.exposure(), |colours| s.on_scale(colours.range));
         Push {
             exposure: exposure as f32,
             offset: offset as f32,
@@ -250,7 +268,7 @@ impl ToneMap {
         match s.show {
             Show::Normal => (0.5, 0.5),
             Show::Depth => (0.5 / s.depth_scale, 0.0),
-            Show::Visibility | Show::Occlusion | Show::Albedo => (1.0, 0.0),
+            Show::Visibility | Show::Occlusion | Show::Albedo | Show::SunHours => (1.0, 0.0),
             shown => {
                 // Irradiance is shown as the radiance of a white diffuser.
                 let paper = if shown == Show::Irradiance {

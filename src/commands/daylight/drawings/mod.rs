@@ -9,4 +9,8 @@ mod words;
 
 pub(super) use self::heat::{Heat, hours};
 pub(super) use self::plan::Plan;
+#[cfg(feature = "window")]
+pub(in crate::commands) use self::scale::Scale;
+#[cfg(feature = "window")]
+pub(in crate::commands) use self::words::is_share;
 pub(super) use self::words::{heading, limit};

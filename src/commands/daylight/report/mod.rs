@@ -7,6 +7,8 @@ use std::path::Path;
 
 use self::assumptions::{assumptions, materials};
 use self::verdicts::verdicts;
+#[cfg(feature = "window")]
+pub(in crate::commands) use self::verdicts::{LEED_EXPOSED, LEED_PERCENT};
 use super::drawings::heading;
 use super::results::Results;
 use super::table::rounded;

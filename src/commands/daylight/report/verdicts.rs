@@ -9,10 +9,10 @@ use crate::daylight::metrics::{Blinds, EN_17037_LUX, Passing};
 use crate::output::escaped;
 
 /// LEED v4.1, EQ credit Daylight, option 1: percent of the area for 1, 2, 3 points.
-const LEED_PERCENT: [f64; 3] = [40.0, 55.0, 75.0];
+pub(in crate::commands) const LEED_PERCENT: [f64; 3] = [40.0, 55.0, 75.0];
 
 /// Annual sunlight exposure above which LEED v4.1 asks how glare is dealt with, percent.
-const LEED_EXPOSED: f64 = 10.0;
+pub(in crate::commands) const LEED_EXPOSED: f64 = 10.0;
 
 /// Tables of verdicts, or a line that none was asked for.
 pub fn verdicts(results: &Results) -> String {

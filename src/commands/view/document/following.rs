@@ -2,6 +2,7 @@
 
 use super::super::passes_ahead::Wanted;
 use super::{Document, frame_settings};
+use crate::commands::sun_series::SunSeries;
 use crate::error::Result;
 use crate::frame::Change;
 #[cfg(feature = "hot-reload")]
@@ -16,6 +17,7 @@ impl Document {
             || self.screen.is_hdr != self.is_hdr
             || self.light.is_solving()
             || self.passes.is_making()
+            || self.surfaces.is_behind()
     }
 
     /// Updates daylight and frame to the options, as far as other threads have prepared that, and lets them prepare the rest: a new air,
@@ -27,7 +29,8 @@ impl Document {
         let followed = self.try_follow();
         if followed.is_err() {
             self.job.settings = self.followed.clone();
-            // Succeeds: it did before, with the same options.
+            // Both succeed: they did before, with the same options.
+            self.job.suns = SunSeries::of(&self.job.settings, None)?;
             self.light.go_back(&mut self.job)?;
             self.start_over();
         }
@@ -35,6 +38,7 @@ impl Document {
     }
 
     fn try_follow(&mut self) -> Result<()> {
+        self.job.suns = SunSeries::of(&self.job.settings, self.job.suns.take())?;
         if self.light.follow(&mut self.job)? {
             self.start_over();
         }
@@ -43,18 +47,31 @@ impl Document {
             // Changes that were taken back need no passes.
             if !self.change().1.is_none() {
                 self.frame.swap(&mut passes);
-                self.replaced.push(passes);
+                self.replaced.push(Box::new(passes));
                 self.followed_to(wanted);
             }
         }
         if self.passes.is_making() {
             return Ok(());
         }
+        self.follow_surfaces()?;
         let (wanted, change) = self.change();
         if !change.is_none() {
             self.passes.start(change, wanted);
         } else if wanted.options != self.followed || wanted.is_hdr != self.is_hdr {
             self.followed_to(wanted);
+        }
+        Ok(())
+    }
+
+    /// Takes the scene with changed reflectances, if another thread has made it, or lets it do so.
+    fn follow_surfaces(&mut self) -> Result<()> {
+        let settings = *self.frame.settings();
+        if let Some((scene, frame)) = self.surfaces.follow(&self.job.scene, settings)? {
+            self.replaced
+                .push(Box::new(std::mem::replace(&mut self.frame, frame)));
+            self.job.scene = scene;
+            self.start_over();
         }
         Ok(())
     }

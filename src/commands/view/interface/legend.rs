@@ -3,8 +3,8 @@
 use egui::{Align2, Color32, FontId, Mesh, Rect, Sense, Ui, pos2, vec2};
 
 use super::corner;
+use crate::commands::job::Job;
 use crate::daylight::false_colour::ColourMap;
-use crate::options::Options;
 
 /// Size of the bar, points.
 const BAR: [f32; 2] = [18.0, 220.0];
@@ -12,28 +12,49 @@ const BAR: [f32; 2] = [18.0, 220.0];
 const STEPS: u32 = 48;
 
 /// Shows the legend if false colours are on.
-pub(super) fn show(ui: &Ui, settings: &Options) {
-    let Some(quantity) = settings.false_colour.filter(|q| settings.show.holds(*q)) else {
+pub(super) fn show(ui: &Ui, job: &Job) {
+    let Some((quantity, colours)) = job.colours(job.settings.show) else {
         return;
     };
-    let range = settings.false_colour_range.unwrap_or(quantity.daytime());
-    corner(ui, "legend", Align2::RIGHT_CENTER, [-12.0, 0.0], |ui| {
-        ui.strong(quantity.unit());
-        ui.add_space(8.0);
-        let (rect, _) = ui.allocate_exact_size(vec2(BAR[0] + 62.0, BAR[1]), Sense::hover());
-        let bar = Rect::from_min_size(rect.min, BAR.into());
-        ui.painter().add(colours(bar, settings.colour_map));
-        for tick in range.ticks() {
-            let y = at(bar, tick.share);
-            let text = pos2(bar.right() + 8.0, y);
-            let font = FontId::proportional(12.0);
-            ui.painter()
-                .hline(bar.right()..=bar.right() + 5.0, y, (1.0, Color32::WHITE));
-            ui.painter()
-                .text(text, Align2::LEFT_CENTER, &tick.label, font, Color32::WHITE);
-        }
-        ui.add_space(8.0);
-    });
+    let ticks = colours.range.ticks().into_iter();
+    let ticks = ticks.map(|tick| (tick.share, tick.label)).collect();
+    let bar = Bar {
+        unit: quantity.unit(),
+        ticks,
+        map: colours.map,
+    };
+    bar.show(ui, "legend", 0.0);
+}
+
+/// A bar of colours with labels at places 0..1.
+pub(super) struct Bar<'a> {
+    pub(super) unit: &'a str,
+    pub(super) ticks: Vec<(f64, String)>,
+    pub(super) map: ColourMap,
+}
+
+impl Bar<'_> {
+    /// Shows it at the right edge of the picture, so many points further left.
+    pub(super) fn show(&self, ui: &Ui, id: &str, left: f32) {
+        let offset = [-12.0 - left, 0.0];
+        corner(ui, id, Align2::RIGHT_CENTER, offset, |ui| {
+            ui.strong(self.unit);
+            ui.add_space(8.0);
+            let (rect, _) = ui.allocate_exact_size(vec2(BAR[0] + 62.0, BAR[1]), Sense::hover());
+            let bar = Rect::from_min_size(rect.min, BAR.into());
+            ui.painter().add(colours(bar, self.map));
+            for (share, label) in &self.ticks {
+                let y = at(bar, *share);
+                let text = pos2(bar.right() + 8.0, y);
+                let font = FontId::proportional(12.0);
+                ui.painter()
+                    .hline(bar.right()..=bar.right() + 5.0, y, (1.0, Color32::WHITE));
+                ui.painter()
+                    .text(text, Align2::LEFT_CENTER, label, font, Color32::WHITE);
+            }
+            ui.add_space(8.0);
+        });
+    }
 }
 
 /// Window y coordinate of a fraction of the range. The largest value is at the top.

@@ -9,6 +9,7 @@ use super::{UiRequest, choice};
 use crate::commands::view::document::Document;
 use crate::commands::view::keys::Action;
 use crate::daylight::hdr::PQ_PEAK;
+use crate::daylight::sun_hours::{SunDate, SunDates};
 use crate::options::{Choice, Options, Quantity, Range, Show};
 
 /// Range of the exposure slider, EV100: from starlight to sunlit snow.
@@ -21,8 +22,13 @@ const MOONLIT_EV100: f64 = -2.0;
 pub(super) fn show(ui: &mut Ui, document: &mut Document, requests: &mut Vec<UiRequest>) {
     let screen = document.screen();
     let settings = &mut document.job.settings;
-    choice(ui, "show", &mut settings.show);
+    if choice(ui, "show", &mut settings.show) {
+        settings.show_in_colours();
+    }
     false_colours(ui, settings);
+    if settings.show == Show::SunHours {
+        sun_hours(ui, settings);
+    }
     choice(ui, "edges in motion", &mut settings.aa);
     ui.add_enabled_ui(!screen.is_hdr, |ui| {
         choice(ui, "tone curve", &mut settings.tonemap)
@@ -67,6 +73,7 @@ fn false_colours(ui: &mut Ui, settings: &mut Options) {
         // Each kind of false colour implies the displayed quantity.
         settings.show = match settings.false_colour {
             Some(Quantity::Illuminance) => Show::Irradiance,
+            Some(Quantity::SunHours) => Show::SunHours,
             _ => Show::Beauty,
         };
     }
@@ -76,8 +83,49 @@ fn false_colours(ui: &mut Ui, settings: &mut Options) {
     }
 }
 
+/// A date of which the hours of sun are shown, and the step.
+fn sun_hours(ui: &mut Ui, settings: &mut Options) {
+    let mut of_year = settings.sun_dates.0 == [SunDate::Year];
+    ui.horizontal(|ui| {
+        let (month, day) = match settings.sun_dates.0.first() {
+            Some(SunDate::Day(_, month, day)) => (*month, *day),
+            _ => (3, 21),
+        };
+        let (mut new_month, mut new_day) = (month, day);
+        ui.add_enabled(!of_year, field(&mut new_day).range(1..=31));
+        ui.add_enabled(
+            !of_year,
+            field(&mut new_month).range(1..=12).prefix("month "),
+        );
+        let changed = ui.checkbox(&mut of_year, "whole year").changed();
+        // The last of a month follows the month.
+        let date = format!(
+            "{new_month}-{}",
+            new_day.min(LONGEST[new_month as usize - 1])
+        );
+        if of_year && changed {
+            settings.sun_dates = SunDates(vec![SunDate::Year]);
+        } else if !of_year && (changed || (new_month, new_day) != (month, day)) {
+            settings.sun_dates = SunDates(date.parse().into_iter().collect());
+        }
+    });
+    ComboBox::new("sun step", "minutes from sun to sun")
+        .selected_text(settings.sun_step.to_string())
+        .show_ui(ui, |ui| {
+            for minutes in [1, 5, 10, 15, 30, 60] {
+                ui.selectable_value(&mut settings.sun_step, minutes, minutes.to_string());
+            }
+        });
+}
+
+/// Days of each month, without leap days.
+const LONGEST: [u32; 12] = [31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31];
+
 /// Edits the ends of a range as powers of ten.
 fn range(ui: &mut Ui, range: &mut Option<Range>, quantity: Quantity) {
+    if quantity == Quantity::SunHours {
+        return;
+    }
     let shown = range.unwrap_or(quantity.daytime());
     let (mut min, mut max) = (shown.min.log10(), shown.max.log10());
     ui.horizontal(|ui| {

@@ -43,6 +43,15 @@ impl Probe {
         self.point
     }
 
+    /// The point a metre along the view axis under the pointer, and the distance of the surface there, if the pointer is on the picture.
+    pub(super) fn ahead(&self, document: &Document) -> Option<(Vec3, f32)> {
+        let [x, y] = self.pixel?;
+        let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+        let surface = self.reading.and_then(|reading| reading.surface);
+        let far = surface.map_or(f32::INFINITY, |surface| surface.distance);
+        Some((view(document).point(at, 1.0), far))
+    }
+
     pub(super) fn show(&self, ui: &Ui, document: &Document) {
         let Some(reading) = &self.reading else { return };
         read_out(ui, "probe", Align2::RIGHT_BOTTOM, [-12.0, -12.0], |ui| {
@@ -104,15 +113,17 @@ fn about(ui: &mut Ui, surface: &SurfaceReading, scene: &Scene) {
 /// Surface position of a reading, metres.
 fn point(document: &Document, reading: Reading) -> Option<DVec3> {
     let surface = reading.surface?;
-    let size = document.frame().settings().size;
-    let view = View {
+    let [x, y] = reading.pixel;
+    let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+    Some(view(document).point(at, surface.distance).as_dvec3())
+}
+
+fn view(document: &Document) -> View {
+    View {
         camera: document.job.camera,
-        size,
+        size: document.frame().settings().size,
         jitter: Vec2::ZERO,
         sharpen: 0.0,
         window: None,
-    };
-    let [x, y] = reading.pixel;
-    let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-    Some(view.point(at, surface.distance).as_dvec3())
+    }
 }

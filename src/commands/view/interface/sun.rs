@@ -5,6 +5,7 @@ use egui::{Color32, Key, Response, TextEdit, Ui, pos2, vec2};
 
 use super::clock::{Clock, SPEEDS};
 use super::numbers::{field, slider};
+use super::year;
 use crate::commands::view::document::Document;
 use crate::commands::view::style;
 use crate::daylight::cities;
@@ -36,6 +37,12 @@ pub(super) fn show(
 ) {
     let sun = document.job.sun;
     let settings = &mut document.job.settings;
+    let year = document.year.as_mut();
+    if year.is_some_and(|year| year::show(ui, year, settings)) {
+        clock_buttons(ui, clock);
+        position(ui, &sun);
+        return;
+    }
     kind(ui, settings, &sun);
     match &mut settings.sun {
         SunInput::Place {
@@ -78,6 +85,11 @@ pub(super) fn show(
             );
         }
     }
+    position(ui, &sun);
+}
+
+/// Where the sun stands.
+fn position(ui: &mut Ui, sun: &SunPosition) {
     ui.label(format!(
         "azimuth {:.1}°, elevation {:.1}°",
         sun.azimuth_deg, sun.apparent_elevation_deg

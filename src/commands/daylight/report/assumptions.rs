@@ -41,7 +41,10 @@ pub fn assumptions(results: &Results) -> String {
     lines.push(("blinds", of_blinds(results)));
     lines.push(("bounces", results.settings.bounces.to_string()));
     lines.push(("seed", results.settings.seed.to_string()));
-    lines.push(("paths of a sensor", results.outcome.paths().to_string()));
+    lines.push((
+        "paths of a sensor, mean",
+        results.outcome.paths().to_string(),
+    ));
     lines.push(("error", format!(
         "asked {}, reached {:.4}: largest root mean square over the sensors of a metric's standard error; 0.01 is one point of a percentage",
         results.args.error, results.year.error

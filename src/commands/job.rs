@@ -17,10 +17,12 @@ use crate::daylight::sky::Daylight;
 use crate::daylight::spectrum::LUMINOUS_EFFICACY;
 use crate::daylight::sun_position::SunPosition;
 use crate::daylight::sunlight::LIMB_DARKENING;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::frame::{FrameSettings, Sampling};
 use crate::gpu::{Context, ContextOptions, GpuError};
-use crate::options::{Fresnel, Mirrors, OptionValues, Options, Penumbra, Phong, Preset};
+use crate::options::{
+    ByMaterial, Fresnel, Mirrors, OptionValues, Options, OptionsError, Penumbra, Phong, Preset,
+};
 use crate::output::{LATITUDE, LONGITUDE, MOMENT, WHITE_LUMINANCE};
 use crate::passes::dome::gather::DomeSettings;
 use crate::passes::light::lighting::{Precision, Show};
@@ -98,13 +100,25 @@ pub struct Job {
 }
 
 /// Takes the scene out of what was loaded, as the options want it.
-pub(super) fn scene_of(loaded: &mut Loaded, settings: &Options) -> Scene {
+///
+/// # Errors
+/// `--glass` or `--reflectance` of what the model lacks.
+pub(super) fn scene_of(loaded: &mut Loaded, settings: &Options) -> Result<Scene> {
+    let wrong = |option: &'static str| {
+        move |what: String| Error::from(OptionsError(format!("--{option}: {what}")))
+    };
     let mut scene = std::mem::take(&mut loaded.scene);
     scene.scale_emission(settings.emission_scale as f32);
     if settings.phong != Phong::ByFormat {
         scene.use_phong();
     }
-    scene
+    if let Some(ByMaterial(list)) = &settings.reflectance {
+        scene.set_reflectance(list).map_err(wrong("reflectance"))?;
+    }
+    if let Some(ByMaterial(list)) = &settings.glass {
+        scene.set_glass(list).map_err(wrong("glass"))?;
+    }
+    Ok(scene)
 }
 
 /// Illuminance by the sky below which radiance is kept in 32-bit floats: that of a sky of 1 cd/m².
@@ -116,10 +130,18 @@ impl Job {
     /// # Errors
     /// A scene that cannot be read, invalid options, or a warning with `--strict`.
     pub fn new(path: Option<&Path>, user: &OptionValues) -> Result<Self> {
-        let loaded = scene::load_with_progress(path, &load_options(&user.alone()?), &|_, _| ())?;
-        let job = Self::of(path, loaded, user)?;
+        let job = Self::untold(path, user)?;
         tell(&job.settings, job.warnings())?;
         Ok(job)
+    }
+
+    /// Like [`Job::new`], without telling its warnings.
+    ///
+    /// # Errors
+    /// A scene that cannot be read, or invalid options.
+    pub fn untold(path: Option<&Path>, user: &OptionValues) -> Result<Self> {
+        let loaded = scene::load_with_progress(path, &load_options(&user.alone()?), &|_, _| ())?;
+        Self::of(path, loaded, user)
     }
 
     /// Resolves the user's options over those of a loaded scene.
@@ -130,7 +152,7 @@ impl Job {
         let settings = Options::resolve(user, &loaded)?;
         let sun = sun_position(&settings)?;
         let daylight = Daylight::new(&conditions(&settings, &sun));
-        let mut scene = scene_of(&mut loaded, &settings);
+        let mut scene = scene_of(&mut loaded, &settings)?;
         let mut subject = Subject::of(&scene);
         if settings.eye.is_none() && settings.target.is_none() {
             subject = subject.entered(&mut scene);

@@ -68,7 +68,11 @@ pub fn run(command: Command) -> Result<()> {
         Command::View { .. } => Err(crate::error::Error::NoWindow),
         Command::Bench { args, options } => bench::run(&args, weather::applied(&args.at, options)?),
         Command::Sky { args, options } => sky::run(&args, weather::applied(&args.at, options)?),
-        Command::Daylight { args, options } => daylight::run(&args, &options),
+        Command::Daylight {
+            args,
+            options,
+            variants,
+        } => daylight::run(&args, &options, &variants),
         Command::Weather { args, options } => weather::run(&args, &options),
         Command::Bake { args, options } => bake::run(&args, weather::applied(&args.at, options)?),
         Command::Compare { args } => compare::run(&args),

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::exact::Exact;
 use super::summary::{Asked, Summary};
-use super::table::{Column, csv, objects, overview};
+use super::table::{Column, Figure, csv, objects, overview};
 use crate::cli::DaylightArgs;
 
 /// The form of the result.
@@ -117,9 +117,17 @@ impl Outcome {
         Summary::of(&self.common.asked, &self.columns)
     }
 
-    /// Paths of a sensor.
+    /// Means of the columns, and figures of the whole grid.
+    pub fn figures(&self) -> Vec<Figure> {
+        let means = self.columns.iter();
+        let means = means.map(|column| Figure::new(&column.name, column.figures()[0]));
+        means.chain(self.summary().figures()).collect()
+    }
+
+    /// Paths of a sensor, in the mean.
     pub fn paths(&self) -> u32 {
-        self.paths.first().copied().unwrap_or_default()
+        let sum: u64 = self.paths.iter().map(|n| u64::from(*n)).sum();
+        (sum / self.paths.len().max(1) as u64) as u32
     }
 
     /// What `--json` prints.
@@ -142,7 +150,8 @@ impl Outcome {
         })
     }
 
-    fn head(&self) -> String {
+    /// Place, hours and bounces, for the eye.
+    pub fn head(&self) -> String {
         let common = &self.common;
         let mut text = String::new();
         if let Some(name) = &common.place {

@@ -39,6 +39,9 @@ const RAYS: u32 = 8;
 /// Most of a later one: their points are kept while the sunlight on them is found.
 const MOST_ROUND: u32 = 1024;
 
+/// Sensors whose errors tell together how many paths one of them needs, itself among them.
+const NEIGHBOURS: usize = 5;
+
 /// How many times more paths a sensor gets at once: its error after few is a guess.
 const MOST_TIMES: f64 = 16.0;
 
@@ -194,6 +197,7 @@ impl<'a> Block<'a> {
     fn aims(&self, errors: &[Vec<f64>], most: u32) -> Vec<u32> {
         let worst = |own: &Vec<f64>| own.iter().copied().fold(0.0, f64::max);
         let worst: Vec<f64> = errors.iter().map(worst).collect();
+        let worst = self.with_neighbours(&worst);
         let squares: f64 = worst.iter().map(|error| error * error).sum();
         // The error of every sensor at which the mean square that counts is that which is asked for.
         let mean = (squares / worst.len() as f64).sqrt();
@@ -211,6 +215,25 @@ impl<'a> Block<'a> {
             aims = self.traced.iter().map(more).collect();
         }
         aims
+    }
+
+    /// Errors as root mean squares with those of the nearest sensors, which err alike: an error by eight replicates is a guess, and sensors that
+    /// are thought to be right too early would stay wrong.
+    fn with_neighbours(&self, errors: &[f64]) -> Vec<f64> {
+        let of = |sensor: &Sensor| {
+            let distance = |other: &Sensor| sensor.position.distance_squared(other.position);
+            let mut near: Vec<(f32, f64)> = self
+                .sensors
+                .iter()
+                .map(distance)
+                .zip(errors.iter().copied())
+                .collect();
+            let count = NEIGHBOURS.min(near.len());
+            near.select_nth_unstable_by(count - 1, |a, b| a.0.total_cmp(&b.0));
+            let squares = near[..count].iter().map(|(_, error)| error * error);
+            (squares.sum::<f64>() / count as f64).sqrt()
+        };
+        self.sensors.par_iter().map(of).collect()
     }
 
     /// One more round of paths toward these aims; false if stopped in the first.
@@ -329,7 +352,7 @@ impl<'a> Block<'a> {
             // The last column is that of the overcast sky.
             let (hours, factor) = lux.split_at(direct.len());
             let total: Vec<f32> = hours.iter().zip(direct).map(|(e, sun)| e + sun).collect();
-            let mut values = run.measures.values(&total);
+            let mut values = run.measures.values(&total, self.first + at);
             values.push(f64::from(factor[0]));
             values
         });

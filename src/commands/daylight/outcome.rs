@@ -39,7 +39,7 @@ pub(super) struct Common {
     pub form: Form,
     /// Figures of the whole grid that are wanted.
     pub asked: Asked,
-    /// The rule of the blinds, and the hours in which they are closed.
+    /// The rule of the blinds, and the hours in which they are closed in each room.
     pub blinds: String,
     pub blinds_closed_hours: Exact,
     /// What is said of blinds.
@@ -140,7 +140,8 @@ impl Outcome {
             "ase": summary.ase,
             "en17037": summary.en17037_json(),
             "blinds": common.blinds,
-            "blinds_closed_hours": common.blinds_closed_hours.one(),
+            "blinds_closed_hours": common.blinds_closed_hours.mean(),
+            "blinds_closed_hours_of_rooms": common.blinds_closed_hours.0,
             "schedule": common.schedule,
             "occupied_hours": common.occupied_hours.one(),
             "bounces": common.bounces,

@@ -24,7 +24,7 @@ use crate::options::{OptionValues, Options, OptionsError, name};
 use crate::output::check_writable;
 use crate::scene::{self, Scene};
 use crate::sensors::{
-    Accuracy, BLOCK, Sensor, Shard, TracedScene, Year, YearLight, YearRun, closed_hours,
+    Accuracy, BLOCK, Sensor, Shard, TracedScene, Year, YearLight, YearRun, close_blinds,
     measure_year,
 };
 
@@ -120,7 +120,7 @@ impl Given {
         check_pictures(args, &measures, all.len())?;
         let traced = TracedScene::new(&self.scene);
         if args.blinds == Blinds::Lm83 {
-            measures.close_blinds(closed_hours(all, &traced, &light));
+            measures.close_blinds(close_blinds(all, &traced, &light));
         }
         let year = measured(args, settings, &traced, &light, &measures, all);
         let sensors: Vec<(usize, Sensor)> = year.numbers.iter().map(|n| (*n, all[*n])).collect();
@@ -210,7 +210,7 @@ fn common(
             en17037: asks(Metric::En17037).then(hours),
         },
         blinds: name(args.blinds).to_owned(),
-        blinds_closed_hours: measures.closed_hours().into(),
+        blinds_closed_hours: measures.closed_hours().into_iter().collect(),
         blinds_said: blinds(args).to_owned(),
         schedule: args.schedule.to_string(),
         occupied_hours: measures.occupied_hours().into(),

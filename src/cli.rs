@@ -246,9 +246,10 @@ pub fn parse(words: impl IntoIterator<Item = OsString>) -> Result<Command, CliEx
         names.any(|text| text.split('=').next() == Some(name))
     };
     let mut all = None;
-    for (values, own) in vary::variants(&asked, is_given).map_err(usage)? {
+    for chosen in vary::variants(&asked, is_given).map_err(usage)? {
         // After the program and the command: what follows may end with `--` and a name.
-        let own: Vec<OsString> = own.into_iter().map(OsString::from).collect();
+        let own = chosen.words.into_iter().map(OsString::from);
+        let own: Vec<OsString> = own.collect();
         let mut command = read(&[&words[..2], &own, &words[2..]].concat())?;
         let Command::Daylight {
             args,
@@ -260,7 +261,7 @@ pub fn parse(words: impl IntoIterator<Item = OsString>) -> Result<Command, CliEx
         };
         vary::check(&asked, args).map_err(usage)?;
         variants.push(Variant {
-            values,
+            values: chosen.values,
             args: (**args).clone(),
             options: options.clone(),
         });

@@ -88,6 +88,14 @@ const OF_A_MOMENT: [&str; 3] = ["hour", "moment", "emission-scale"];
 /// Options of sun and sky that decide nothing at sensors.
 const OF_PICTURES: [&str; 3] = ["irradiance", "irradiance-samples", "stars"];
 
+/// A variant.
+pub(super) struct Chosen {
+    /// Its values, in the order of the options.
+    pub values: Vec<String>,
+    /// The words that it has besides.
+    pub words: Vec<String>,
+}
+
 /// What `--vary` of the words of `skylight daylight` asks for, in their order. What is no such option and list is left to clap.
 pub(super) fn asked(words: &[OsString]) -> Vec<Vary> {
     let texts: Vec<&str> = words.iter().filter_map(|word| word.to_str()).collect();
@@ -140,7 +148,7 @@ pub(super) fn check(list: &[Vary], args: &DaylightArgs) -> Result<(), String> {
 pub(super) fn variants(
     list: &[Vary],
     is_given: impl Fn(&str) -> bool,
-) -> Result<Vec<(Vec<String>, Vec<String>)>, String> {
+) -> Result<Vec<Chosen>, String> {
     for (at, vary) in list.iter().enumerate() {
         let option = vary.option();
         if is_given(option) {
@@ -166,13 +174,13 @@ pub(super) fn variants(
     for vary in list {
         let with = |chosen: &Vec<String>| {
             let (chosen, values) = (chosen.clone(), vary.values.iter());
-            values.map(move |value| [&chosen[..], &[value.clone()]].concat())
+            values.map(move |value| [&chosen[..], std::slice::from_ref(value)].concat())
         };
         all = all.iter().flat_map(with).collect();
     }
-    let with_words = |values: Vec<String>| {
-        let words = words(list, &values);
-        (values, words)
+    let with_words = |values: Vec<String>| Chosen {
+        words: words(list, &values),
+        values,
     };
     Ok(all.into_iter().map(with_words).collect())
 }
@@ -199,8 +207,11 @@ mod tests {
     use super::super::{CliExit, Command, parse};
     use super::*;
 
-    /// The arguments of each variant of a line.
-    fn read(line: &str) -> Result<Vec<(Vec<String>, DaylightArgs, String)>, String> {
+    /// Values, arguments, options.
+    type Read = (Vec<String>, DaylightArgs, String);
+
+    /// Each variant of a line.
+    fn read(line: &str) -> Result<Vec<Read>, String> {
         let words = format!("skylight daylight m.obj --plane 0.8 {line}");
         match parse(words.split_whitespace().map(Into::into)) {
             Ok(Command::Daylight { variants, .. }) => Ok(variants

@@ -20,7 +20,7 @@ use crate::sensors::Shard;
 #[derive(Debug, Clone, Serialize, Deserialize)]
 enum Found {
     /// A year, or what needs no hours.
-    Year(Outcome),
+    Year(Box<Outcome>),
     /// A moment.
     Moment(MomentReport),
 }
@@ -127,7 +127,7 @@ impl Found {
         if args.asks_for_metrics() {
             let given = year::Given::new(&args, &variant.options)?;
             let outcome = given.measured(&args, |results| Ok(results.outcome.clone()))?;
-            return Ok(Self::Year(outcome));
+            return Ok(Self::Year(Box::new(outcome)));
         }
         let given = moment::Given::new(&args, &applied(variant)?)?;
         Ok(Self::Moment(given.measured(&args).1))

@@ -12,6 +12,7 @@ use super::{check_strict, tell};
 use crate::daylight::colour::luminance;
 use crate::daylight::exposure::{KEY, automatic, factor_from_ev100, least_average};
 use crate::daylight::false_colour::Colours;
+use crate::daylight::glass::tinted;
 use crate::daylight::sample_count::ErrorEstimate;
 use crate::daylight::sky::Daylight;
 use crate::daylight::spectrum::LUMINOUS_EFFICACY;
@@ -116,7 +117,7 @@ pub(super) fn scene_of(loaded: &mut Loaded, settings: &Options) -> Result<Scene>
         scene.set_reflectance(list).map_err(wrong("reflectance"))?;
     }
     if let Some(ByMaterial(list)) = &settings.glass {
-        scene.set_glass(list).map_err(wrong("glass"))?;
+        scene.set_glass(list, tinted).map_err(wrong("glass"))?;
     }
     Ok(scene)
 }

@@ -1,16 +1,18 @@
 //! Other panes and surfaces in a model than its file has.
 
-use crate::daylight::colour::luminance;
-use crate::daylight::glass::clearest;
 use crate::scene::{Material, Scene};
 
 impl Scene {
-    /// Gives panes of glass these transmittances at normal incidence, 0.01..=[`clearest`], by the names of their materials; an empty name is
-    /// every pane. Their tint stays.
+    /// Gives panes of glass these transmittances at normal incidence, by the names of their materials; an empty name is every pane.
+    /// `tinted` gives glass of the tint of a pane with a transmittance, if there is such glass.
     ///
     /// # Errors
     /// A name that no material has, a material that is no pane, or a tint too deep for that much light.
-    pub fn set_glass(&mut self, asked: &[(String, f64)]) -> Result<(), String> {
+    pub fn set_glass(
+        &mut self,
+        asked: &[(String, f64)],
+        tinted: impl Fn([f32; 3], f64) -> Option<[f32; 3]>,
+    ) -> Result<(), String> {
         for (name, transmittance) in asked {
             let mut is_found = false;
             for material in self.named(name)? {
@@ -84,18 +86,15 @@ impl Scene {
     }
 }
 
-/// Glass of this tint that lets so much light through; `None` if a colour would need more than clear glass has.
-fn tinted(glass: [f32; 3], transmittance: f64) -> Option<[f32; 3]> {
-    let luminance = luminance(glass.map(f64::from).into());
-    let tinted = glass.map(|v| f64::from(v) * transmittance / luminance);
-    // A grey pane may have the transmittance of the clearest glass, rounded.
-    let is_glass = luminance > 0.0 && tinted.iter().all(|v| *v <= clearest() + 1e-6);
-    is_glass.then(|| tinted.map(|v| v as f32))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Glass whose green is the transmittance; none has more than 0.9 of a colour.
+    fn tinted(glass: [f32; 3], transmittance: f64) -> Option<[f32; 3]> {
+        let tinted = glass.map(|v| v * transmittance as f32 / glass[1]);
+        tinted.iter().all(|v| *v <= 0.9).then_some(tinted)
+    }
 
     fn scene() -> Scene {
         let material = |name: &str, glass| Material {
@@ -118,7 +117,7 @@ mod tests {
     fn panes_let_through_what_is_asked_and_keep_their_tint() {
         let mut scene = scene();
         let asked = [(String::new(), 0.4), ("blue".to_owned(), 0.3)];
-        scene.set_glass(&asked).expect("panes");
+        scene.set_glass(&asked, tinted).expect("panes");
         let [floor, clear, blue] = &scene.materials[..] else {
             panic!("three");
         };
@@ -129,7 +128,7 @@ mod tests {
                 .is_some_and(|g| g.iter().all(|v| (v - 0.4).abs() < 1e-6))
         );
         let glass = blue.glass.expect("a pane");
-        assert!((luminance(glass.map(f64::from).into()) - 0.3).abs() < 1e-6);
+        assert!((glass[1] - 0.3).abs() < 1e-6);
         assert!((glass[2] / glass[0] - 4.0).abs() < 1e-5);
     }
 
@@ -145,13 +144,13 @@ mod tests {
 
     #[test]
     fn what_the_model_lacks_is_named() {
-        let glass = |name: &str, value| scene().set_glass(&[(name.to_owned(), value)]);
+        let glass = |name: &str, value| scene().set_glass(&[(name.to_owned(), value)], tinted);
         for (error, part) in [
             (glass("flor", 0.5), "the model has floor, clear, blue"),
             (glass("floor", 0.5), "\"floor\" is no pane of glass"),
             (glass("blue", 0.9), "the tint of \"blue\" is too deep"),
             (
-                Scene::default().set_glass(&[(String::new(), 0.5)]),
+                Scene::default().set_glass(&[(String::new(), 0.5)], tinted),
                 "no panes",
             ),
             (

@@ -2,6 +2,7 @@
 
 mod args;
 mod series;
+mod vary;
 mod view;
 
 use std::ffi::OsString;
@@ -15,6 +16,7 @@ pub use args::{
     Sweep, Texels, WeatherArgs,
 };
 pub use series::{Expose, MergeArgs, SequenceArgs, StudyArgs};
+pub use vary::Vary;
 pub use view::ViewArgs;
 
 use crate::options::{OptionValues, Optional, SeveralPictures, choice, decides_light, one_line};
@@ -111,6 +113,9 @@ pub enum Command {
         /// Options of the daylight.
         #[command(flatten)]
         options: OptionValues,
+        /// The commands that --vary asks for.
+        #[arg(skip)]
+        variants: Vec<Variant>,
     },
     /// Print what a weather file holds: place, clock, irradiation and light of its months. Needs no device.
     ///
@@ -174,6 +179,17 @@ pub enum Command {
     },
 }
 
+/// The command with one choice of the values of --vary.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variant {
+    /// The values, in the order of the options.
+    pub values: Vec<String>,
+    /// Arguments of its own.
+    pub args: DaylightArgs,
+    /// Options of the daylight.
+    pub options: OptionValues,
+}
+
 /// Why the program ends without running a command.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum CliExit {
@@ -215,9 +231,50 @@ pub fn definition() -> clap::Command {
 /// Help that was asked for, or one line about what is wrong.
 pub fn parse(words: impl IntoIterator<Item = OsString>) -> Result<Command, CliExit> {
     let words: Vec<OsString> = words.into_iter().collect();
-    Cli::try_parse_from(&words)
+    let asked = vary::asked(&words);
+    if asked.is_empty() {
+        return read(&words);
+    }
+    // Each variant by itself: what one option needs another may vary.
+    let usage = |what: String| CliExit::Usage(format!("{what} (see skylight daylight --help)"));
+    let is_given = |name: &str| {
+        let texts = words.iter().filter_map(|word| word.to_str());
+        let mut names = texts.filter_map(|text| text.strip_prefix("--"));
+        names.any(|text| text.split('=').next() == Some(name))
+    };
+    let mut all = None;
+    for chosen in vary::variants(&asked, is_given).map_err(usage)? {
+        // After the program and the command: what follows may end with `--` and a name.
+        let own = chosen.words.into_iter().map(OsString::from);
+        let own: Vec<OsString> = own.collect();
+        let mut command = read(&[&words[..2], &own, &words[2..]].concat())?;
+        let Command::Daylight {
+            args,
+            options,
+            variants,
+        } = &mut command
+        else {
+            return Ok(command);
+        };
+        vary::check(&asked, args).map_err(usage)?;
+        variants.push(Variant {
+            values: chosen.values,
+            args: (**args).clone(),
+            options: options.clone(),
+        });
+        match &mut all {
+            None => all = Some(command),
+            Some(Command::Daylight { variants: list, .. }) => list.append(variants),
+            Some(_) => {}
+        }
+    }
+    all.map_or_else(|| read(&words), Ok)
+}
+
+fn read(words: &[OsString]) -> Result<Command, CliExit> {
+    Cli::try_parse_from(words)
         .map(|cli| cli.command)
-        .map_err(|error| exit(&error, &words))
+        .map_err(|error| exit(&error, words))
 }
 
 fn exit(error: &clap::Error, words: &[OsString]) -> CliExit {
@@ -262,9 +319,10 @@ fn hidden_if_of_pictures(arg: Arg) -> Arg {
     arg.hide(hidden)
 }
 
-/// As [`hidden_if_of_pictures`], with the bounces.
+/// As [`hidden_if_of_pictures`], with what else decides the light at sensors.
 fn of_sensors(arg: Arg) -> Arg {
-    if arg.get_long() == Some("bounces") {
+    let name = arg.get_long().unwrap_or_default();
+    if ["bounces", "glass", "reflectance", "seed"].contains(&name) {
         return arg;
     }
     hidden_if_of_pictures(arg)

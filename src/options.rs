@@ -16,6 +16,7 @@
 mod choices;
 mod command_line;
 mod given;
+mod materials;
 mod resolve;
 mod several;
 mod sun_input;
@@ -40,6 +41,7 @@ use choices::VisibilityParser;
 pub use choices::{Choice, name};
 pub(crate) use choices::{choice, choice_enum, choices};
 pub use given::OptionValues;
+pub use materials::ByMaterial;
 pub use resolve::ResolveError;
 pub(crate) use resolve::{in_world, shortest};
 pub use several::SeveralPictures;
@@ -404,6 +406,13 @@ options! {
             /// file, the keys `up` and `unit` of a mesh override these options.
             #[arg(value_name = "UNIT", value_parser = choice::<Unit>())]
             unit: Option<Unit>,
+            /// Transmittance of the panes of glass at normal incidence, 0.01 to 0.918, instead of the model's: of all, or by their materials
+            /// (pane=0.7,roof=0.5). A tint stays.
+            #[arg(value_name = "T", value_parser = materials::glass, allow_hyphen_values = true)]
+            glass: Option<ByMaterial>,
+            /// Makes materials grey and matt, with this reflectance each, 0 to 1, instead of their colours and textures.
+            #[arg(value_name = "NAME=R", value_parser = materials::reflectance, allow_hyphen_values = true)]
+            reflectance: Option<ByMaterial>,
         }
 
         "Limits" [] {

@@ -13,6 +13,8 @@ use crate::options::{Direction, choice, choice_enum};
 use crate::output::is_stdout;
 use crate::sensors::Shard;
 
+use super::vary::Vary;
+
 /// What to measure, and where to put it.
 #[derive(Debug, Clone, PartialEq, Args)]
 pub struct BenchArgs {
@@ -278,6 +280,11 @@ pub struct DaylightArgs {
     /// Thresholds of daylight autonomy, lux.
     #[arg(long, value_name = "LUX", value_delimiter = ',', value_parser = crate::options::threshold, allow_hyphen_values = true, default_value = "300", requires = "weather")]
     pub thresholds: Vec<f64>,
+    /// Measure every value of an option, for instance turbidity=2,3,4 or glass=.6,.7,.8; of several --vary every combination. All results are
+    /// in one table, each named by its values. A number of a material is glass.NAME or reflectance.NAME; values that hold commas
+    /// are separated by semicolons.
+    #[arg(long, value_name = "NAME=LIST", conflicts_with_all = ["ill", "plan", "heat", "report"])]
+    pub vary: Vec<Vary>,
     /// Print JSON instead of a table.
     #[arg(long, conflicts_with = "csv")]
     pub json: bool,
@@ -312,8 +319,8 @@ pub struct DaylightArgs {
     pub output: Option<PathBuf>,
     /// Measure the sensors of one part of the job, for instance 3/12, into a file, here daylight_3-of-12.shard unless -o names another:
     /// other machines measure the others, and skylight merge makes the result of all. Over a year a part has whole blocks of 256 sensors, which
-    /// share their light.
-    #[arg(long, value_name = "I/N", conflicts_with_all = ["ill", "plan", "heat", "report"])]
+    /// share their light. With --vary a part has whole variants.
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["plan", "heat", "report"])]
     pub shard: Option<Shard>,
     /// Standard error at which to stop. Of a moment: of each sensor's total, relative to it. Of a year: of each metric, root mean square
     /// over the sensors; 0.01 is one point of a percentage, or 1 % of an illuminance or a daylight factor.

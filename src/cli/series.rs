@@ -92,6 +92,9 @@ pub struct MergeArgs {
     /// Where to: the result of skylight daylight, by default printed; or a film of the frames of a sequence, .mp4.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Where to put the hourly matrix of shards that were measured with --ill; their own lie beside the shards.
+    #[arg(long, value_name = "FILE.ill")]
+    pub ill: Option<PathBuf>,
     /// Frames of a film in a second.
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=240), default_value_t = 24)]
     pub fps: u32,

@@ -14,15 +14,18 @@ use super::{check_strict, tell};
 use crate::daylight::colour::luminance;
 use crate::daylight::exposure::{KEY, automatic, factor_from_ev100, least_average};
 use crate::daylight::false_colour::{Colours, Quantity};
+use crate::daylight::glass::tinted;
 use crate::daylight::sample_count::ErrorEstimate;
 use crate::daylight::sky::Daylight;
 use crate::daylight::spectrum::LUMINOUS_EFFICACY;
 use crate::daylight::sun_position::SunPosition;
 use crate::daylight::sunlight::LIMB_DARKENING;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::frame::{Frame, FrameSettings, Sampling, Visibility};
 use crate::gpu::{Context, ContextOptions, GpuError, Recorder};
-use crate::options::{Fresnel, Mirrors, OptionValues, Options, Penumbra, Phong, Preset};
+use crate::options::{
+    ByMaterial, Fresnel, Mirrors, OptionValues, Options, OptionsError, Penumbra, Phong, Preset,
+};
 use crate::output::{LATITUDE, LONGITUDE, MOMENT, WHITE_LUMINANCE};
 use crate::passes::bounces::cells::Bounces;
 use crate::passes::dome::gather::DomeSettings;
@@ -31,7 +34,7 @@ use crate::passes::occlusion::ssao::SsaoSettings;
 use crate::passes::picture::tone_map::{Scale, is_light};
 use crate::passes::route::settle_route;
 use crate::passes::sky::irradiance::IrradianceSettings;
-use crate::scene::{self, Camera, LoadOptions, Loaded, Scene, Subject};
+use crate::scene::{self, Camera, LoadOptions, Loaded, Material, Scene, Subject};
 
 /// Edge of a sky cube face with `--preset lecture`, texels.
 const LECTURE_SKY_EDGE: u32 = 512;
@@ -84,6 +87,8 @@ pub struct Job {
     pub settings: Options,
     /// Geometry and materials.
     pub scene: Arc<Scene>,
+    /// Materials of the model, without those of `--glass` and `--reflectance`.
+    pub materials: Vec<Material>,
     /// What of the scene the default view shows.
     pub subject: Subject,
     /// The camera.
@@ -102,14 +107,41 @@ pub struct Job {
     pub loaded: Loaded,
 }
 
-/// Takes the scene out of what was loaded, as the options want it.
-pub(super) fn scene_of(loaded: &mut Loaded, settings: &Options) -> Scene {
+/// Takes the scene out of what was loaded, as the options want it but for [`set_materials`].
+fn model_of(loaded: &mut Loaded, settings: &Options) -> Scene {
     let mut scene = std::mem::take(&mut loaded.scene);
     scene.scale_emission(settings.emission_scale as f32);
     if settings.phong != Phong::ByFormat {
         scene.use_phong();
     }
     scene
+}
+
+/// Takes the scene out of what was loaded, as the options want it.
+///
+/// # Errors
+/// `--glass` or `--reflectance` of what the model lacks.
+pub(super) fn scene_of(loaded: &mut Loaded, settings: &Options) -> Result<Scene> {
+    let mut scene = model_of(loaded, settings);
+    set_materials(&mut scene, settings)?;
+    Ok(scene)
+}
+
+/// Gives materials the values of `--glass` and `--reflectance`.
+///
+/// # Errors
+/// What the model lacks.
+pub(super) fn set_materials(scene: &mut Scene, settings: &Options) -> Result<()> {
+    let wrong = |option: &'static str| {
+        move |what: String| Error::from(OptionsError(format!("--{option}: {what}")))
+    };
+    if let Some(ByMaterial(list)) = &settings.reflectance {
+        scene.set_reflectance(list).map_err(wrong("reflectance"))?;
+    }
+    if let Some(ByMaterial(list)) = &settings.glass {
+        scene.set_glass(list, tinted).map_err(wrong("glass"))?;
+    }
+    Ok(())
 }
 
 /// Settings whose frames have the visibility of one sun each, and nothing else to compute.
@@ -133,10 +165,18 @@ impl Job {
     /// # Errors
     /// A scene that cannot be read, invalid options, or a warning with `--strict`.
     pub fn new(path: Option<&Path>, user: &OptionValues) -> Result<Self> {
-        let loaded = scene::load_with_progress(path, &load_options(&user.alone()?), &|_, _| ())?;
-        let job = Self::of(path, loaded, user)?;
+        let job = Self::untold(path, user)?;
         tell(&job.settings, job.warnings())?;
         Ok(job)
+    }
+
+    /// Like [`Job::new`], without telling its warnings.
+    ///
+    /// # Errors
+    /// A scene that cannot be read, or invalid options.
+    pub fn untold(path: Option<&Path>, user: &OptionValues) -> Result<Self> {
+        let loaded = scene::load_with_progress(path, &load_options(&user.alone()?), &|_, _| ())?;
+        Self::of(path, loaded, user)
     }
 
     /// Resolves the user's options over those of a loaded scene.
@@ -156,7 +196,9 @@ impl Job {
         let sun = sun_position(&settings)?;
         let daylight = Daylight::new(&conditions(&settings, &sun));
         let suns = SunSeries::of(&settings, None)?;
-        let mut scene = scene_of(&mut loaded, &settings);
+        let mut scene = model_of(&mut loaded, &settings);
+        let materials = scene.materials.clone();
+        set_materials(&mut scene, &settings)?;
         let mut subject = Subject::of(&scene);
         if settings.eye.is_none() && settings.target.is_none() {
             subject = subject.entered(&mut scene);
@@ -166,6 +208,7 @@ impl Job {
         Ok(Self {
             settings,
             scene: Arc::new(scene),
+            materials,
             subject,
             camera,
             sun,

@@ -68,7 +68,11 @@ pub fn run(command: Command) -> Result<()> {
             bench::run(&args, options)
         }
         Command::Sky { args, options } => sky::run(&args, hour::applied(&args.at, None, options)?),
-        Command::Daylight { args, options } => daylight::run(&args, &options),
+        Command::Daylight {
+            args,
+            options,
+            variants,
+        } => daylight::run(&args, &options, &variants),
         Command::Weather { args, options } => weather::run(&args, &options),
         Command::Bake { args, options } => {
             bake::run(&args, hour::applied(&args.at, None, options)?)

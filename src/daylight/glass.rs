@@ -9,6 +9,8 @@
 //!
 //! `include/glass.glsl` is the same on the device.
 
+use super::colour::luminance;
+
 /// Index of refraction of soda-lime glass.
 pub const INDEX: f64 = 1.52;
 
@@ -16,6 +18,16 @@ pub const INDEX: f64 = 1.52;
 pub fn clearest() -> f64 {
     let surface = normal_reflectance();
     (1.0 - surface) / (1.0 + surface)
+}
+
+/// Glass of the tint of `glass`, linear RGB, that lets this much light through at normal incidence; `None` if one of its colours would need more
+/// than [`clearest`].
+pub fn tinted(glass: [f32; 3], transmittance: f64) -> Option<[f32; 3]> {
+    let luminance = luminance(glass.map(f64::from).into());
+    let tinted = glass.map(|v| f64::from(v) * transmittance / luminance);
+    // A grey pane may have the transmittance of the clearest glass, rounded.
+    let is_glass = luminance > 0.0 && tinted.iter().all(|v| *v <= clearest() + 1e-6);
+    is_glass.then(|| tinted.map(|v| v as f32))
 }
 
 /// Reflectance of one surface at normal incidence.

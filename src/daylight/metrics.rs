@@ -83,8 +83,18 @@ pub enum Blinds {
     /// There are none.
     #[default]
     None,
-    /// All are one group, closed in every hour in which more than 2 % of the points have 1000 lux of direct sun or more (IES LM-83-12, 2.2.6).
+    /// Those of a room are one group, closed in every hour in which more than 2 % of its points have 1000 lux of direct sun or more (IES LM-83-12,
+    /// 2.2.6).
     Lm83,
+}
+
+/// When blinds are closed.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Closings {
+    /// Number of the room of each point.
+    pub room_of: Vec<usize>,
+    /// Of each room and lit hour, whether its blinds are closed.
+    pub closed: Vec<Vec<bool>>,
 }
 
 /// Direct sun from which a point asks for closed blinds, lux (IES LM-83-12, 2.2.6).
@@ -113,8 +123,8 @@ pub struct Measures {
     count: usize,
     /// Length of an interval, hours.
     step_hours: f64,
-    /// Of each lit hour, whether blinds are closed; empty without blinds.
-    closed: Vec<bool>,
+    /// When blinds are closed; without rooms there are none.
+    blinds: Closings,
 }
 
 impl Measures {
@@ -152,22 +162,24 @@ impl Measures {
             brightest_count,
             count: records.len(),
             step_hours: weather.step_hours,
-            closed: Vec::new(),
+            blinds: Closings::default(),
         })
     }
 
-    /// Closes blinds in these of the lit hours, for the shares of the occupied hours: DA, cDA, UDI. Not for EN 17037, means and exposure, of
-    /// which no definition knows blinds.
-    pub fn close_blinds(&mut self, closed: Vec<bool>) {
-        self.closed = closed;
+    /// Closes blinds, for the shares of the occupied hours: DA, cDA, UDI. Not for EN 17037, means and exposure, of which no definition knows
+    /// blinds.
+    pub fn close_blinds(&mut self, blinds: Closings) {
+        self.blinds = blinds;
     }
 
-    /// Occupied hours with closed blinds.
-    pub fn closed_hours(&self) -> f64 {
-        let both = self.closed.iter().zip(&self.occupied);
-        both.filter(|(closed, occupied)| **closed && **occupied)
-            .count() as f64
-            * self.step_hours
+    /// Occupied hours with closed blinds, of each room.
+    pub fn closed_hours(&self) -> Vec<f64> {
+        let of_room = |closed: &Vec<bool>| {
+            let both = closed.iter().zip(&self.occupied);
+            let both = both.filter(|(closed, occupied)| **closed && **occupied);
+            both.count() as f64 * self.step_hours
+        };
+        self.blinds.closed.iter().map(of_room).collect()
     }
 
     /// Occupied hours of the file.
@@ -208,13 +220,13 @@ impl Measures {
         names
     }
 
-    /// The metrics of a sensor with these illuminances in the lit hours, lux: DA and cDA at each threshold and UDI, percent of the
+    /// The metrics of point number `at` with these illuminances in the lit hours, lux: DA and cDA at each threshold and UDI, percent of the
     /// occupied hours; hours of EN 17037; mean of all hours, lux.
-    pub fn values(&self, lux: &[f32]) -> Vec<f64> {
+    pub fn values(&self, lux: &[f32], at: usize) -> Vec<f64> {
         if self.count == 0 {
             return Vec::new();
         }
-        let occupied = self.behind_blinds(lux);
+        let occupied = self.behind_blinds(lux, at);
         let percent = |sum: f64| 100.0 * sum / self.occupied_count as f64;
         let at_least = |list: &[f64], limit: f64| list.iter().filter(|e| **e >= limit).count();
         let share = |limit: f64| percent(at_least(&occupied, limit) as f64);
@@ -259,15 +271,18 @@ impl Measures {
         exposed.count() as f64 * self.step_hours
     }
 
-    /// The illuminances of the occupied hours, through closed blinds where they are.
-    fn behind_blinds(&self, lux: &[f32]) -> Vec<f64> {
-        if self.closed.is_empty() {
+    /// The illuminances of the occupied hours at a point, through closed blinds where they are.
+    fn behind_blinds(&self, lux: &[f32], at: usize) -> Vec<f64> {
+        let Some(room) = self.blinds.room_of.get(at) else {
             return self.counted(&self.occupied, lux);
-        }
-        let shaded = lux.iter().zip(&self.closed).map(|(lux, closed)| {
-            let left = if *closed { CLOSED_BLINDS } else { 1.0 };
-            (f64::from(*lux) * left) as f32
-        });
+        };
+        let shaded = lux
+            .iter()
+            .zip(&self.blinds.closed[*room])
+            .map(|(lux, closed)| {
+                let left = if *closed { CLOSED_BLINDS } else { 1.0 };
+                (f64::from(*lux) * left) as f32
+            });
         self.counted(&self.occupied, &shaded.collect::<Vec<f32>>())
     }
 
@@ -344,7 +359,7 @@ mod tests {
         // 0 to 8: two lit hours a day of eight.
         let (measures, lit) = measures("0-8");
         assert_eq!((lit, measures.occupied_hours()), (28, 16.0));
-        let values = measures.values(&vec![400.0; lit]);
+        let values = measures.values(&vec![400.0; lit], 0);
         let of = |name: &str| values[measures.names().iter().position(|n| n == name).expect(name)];
         assert_eq!((of("da300"), of("da500")), (25.0, 0.0));
         assert!((of("cda500") - 20.0).abs() < 1e-12);
@@ -360,7 +375,7 @@ mod tests {
         lux[2..12].copy_from_slice(&[
             99.9, 100.0, 299.9, 300.0, 3000.0, 3000.1, 1000.0, 1000.1, 0.0, 0.0,
         ]);
-        let values = measures.values(&lux);
+        let values = measures.values(&lux, 0);
         let of = |name: &str| values[measures.names().iter().position(|n| n == name).expect(name)];
         assert_eq!(of("da300"), 25.0);
         assert_eq!(of("udi_low"), 65.0);
@@ -375,9 +390,15 @@ mod tests {
         let (mut measures, lit) = measures("8-18");
         let lux = vec![6200.0; lit];
         // Every second hour of 28: ten of twenty occupied ones.
-        measures.close_blinds((0..lit).map(|at| at % 2 == 0).collect());
-        assert_eq!(measures.closed_hours(), 10.0);
-        let values = measures.values(&lux);
+        let every_second = (0..lit).map(|at| at % 2 == 0).collect();
+        measures.close_blinds(Closings {
+            room_of: vec![1, 0],
+            closed: vec![vec![false; lit], every_second],
+        });
+        assert_eq!(measures.closed_hours(), [0.0, 10.0]);
+        let open = measures.values(&lux, 1);
+        assert_eq!(open[..2], [100.0, 100.0], "another room");
+        let values = measures.values(&lux, 0);
         let of = |name: &str| values[measures.names().iter().position(|n| n == name).expect(name)];
         // 310 and 6200 lux.
         assert_eq!((of("da300"), of("da500")), (100.0, 50.0));
@@ -397,7 +418,7 @@ mod tests {
         assert_eq!(measures.en17037_hours(), 24.0);
         assert!(measures.brightest.iter().all(|is| *is));
         measures.brightest.fill(false);
-        assert_eq!(measures.values(&vec![900.0; lit.len()])[4], 0.0);
+        assert_eq!(measures.values(&vec![900.0; lit.len()], 0)[4], 0.0);
     }
 
     #[test]

@@ -134,7 +134,7 @@ choices! {
     }
     Blinds {
         None = "none": "No blinds",
-        Lm83 = "lm83": "IES LM-83: all are closed in hours in which more than 2 % of the sensors have 1000 lux of direct sun, and leave 5 % of all light; for da, cda, udi, sda",
+        Lm83 = "lm83": "IES LM-83: those of a room are closed in hours in which more than 2 % of its sensors have 1000 lux of direct sun, and leave 5 % of all light; for da, cda, udi, sda",
     }
     Ambient {
         Cells = "cells": "Cells of irradiance in the scene: the true visibility of the sky, and bounces",

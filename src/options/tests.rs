@@ -8,10 +8,10 @@ use clap::Arg;
 use super::*;
 use crate::cli::{self, parse};
 use crate::daylight::sampling::rnd;
-use crate::scene::{Bounds, Camera, Loaded, NamedOptions, Scene};
+use crate::scene::{Bounds, Camera, Loaded, Material, NamedOptions, Scene};
 
 /// Texts of which each parser accepts at least one. The first is also the name of a camera and of a moment of [`scene`].
-const TEXTS: [&str; 18] = [
+const TEXTS: [&str; 19] = [
     "7",
     "-7.25",
     "0.5",
@@ -30,6 +30,7 @@ const TEXTS: [&str; 18] = [
     "1999-12-31T23:59:59.25-05:45",
     "-a 'quoted' $name",
     "2-3,year",
+    "a pane=0.25",
 ];
 
 fn pairs(list: &[(&str, &str)]) -> Vec<(String, String)> {
@@ -44,7 +45,14 @@ pub(crate) fn scene(tables: &[(&str, &[(&str, &str)])]) -> Loaded {
     };
     Loaded {
         path: "s.toml".into(),
-        scene: Scene::default(),
+        scene: Scene {
+            materials: vec![Material {
+                name: "a pane".into(),
+                glass: Some([0.5; 3]),
+                ..Material::default()
+            }],
+            ..Scene::default()
+        },
         options: tables.iter().map(|(name, o)| named(name, o)).collect(),
         cameras: vec![named("7", &[("eye", "-1,1,1"), ("fov", "33")])],
         moments: vec![named(

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use super::{Bounces, Choice, SunDates, choice_enum};
+use super::{Bounces, ByMaterial, Choice, SunDates, choice_enum};
 use crate::daylight::atmosphere::air::{
     ALTITUDE_RANGE_M, AOD_RANGE, Aerosol, Air, OZONE_RANGE_DU, VISIBILITY_RANGE_KM,
 };
@@ -269,7 +269,7 @@ macro_rules! written_as_displayed {
     };
 }
 
-written_as_displayed! { u32 f64 String Size Direction SolarTime Bounces AerosolInput SunDates }
+written_as_displayed! { u32 f64 String Size Direction SolarTime Bounces AerosolInput ByMaterial SunDates }
 
 /// A finite number.
 pub(super) fn number(text: &str) -> Result<f64, String> {

@@ -4,6 +4,7 @@
 //! ready for upload. World space is right-handed, in metres, with +Y up, +X east and −Z north; it is read in `f64`. Positions are
 //! kept in `f32` relative to [`Scene::origin`], which is not zero for models with the coordinates of a map.
 
+mod adjusted;
 mod bounds;
 mod builder;
 mod bundled;

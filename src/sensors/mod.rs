@@ -27,7 +27,7 @@ use std::thread;
 
 use glam::{DVec3, Vec3};
 
-pub use self::blinds::closed_hours;
+pub use self::blinds::close_blinds;
 pub use self::facade::{Facades, make_facades};
 pub use self::grid::{GridError, read_grid};
 pub use self::path::Lights;

@@ -227,6 +227,16 @@ impl<'a> TracedScene<'a> {
         }
     }
 
+    /// Whether anything is between two points, a pane too.
+    pub(super) fn is_parted(&self, a: Vec3, b: Vec3) -> bool {
+        let (direction, far) = (b - a).normalize_and_length();
+        let ray = Ray {
+            origin: a,
+            direction,
+        };
+        self.bvh.any(&ray, 0.0, far, |hit| self.is_solid(hit))
+    }
+
     /// What a pane that is hit lets through and mirrors, linear RGB; `None` for other surfaces.
     fn pane(&self, hit: &Hit, direction: Vec3) -> Option<[DVec3; 2]> {
         if self.panes.is_empty() {

@@ -39,6 +39,12 @@ const RAYS: u32 = 8;
 /// Most of a later one: their points are kept while the sunlight on them is found.
 const MOST_ROUND: u32 = 1024;
 
+/// Sensors whose errors tell together how many paths one of them needs, itself among them.
+const NEIGHBOURS: usize = 5;
+
+/// How many times more paths a sensor gets at once: its error after few is a guess.
+const MOST_TIMES: f64 = 16.0;
+
 /// Most numbers of sunlight that are held at a time, 4 bytes each; with more, cells are larger.
 const MOST_SUNLIGHT: usize = 1 << 25;
 
@@ -51,7 +57,7 @@ pub struct YearRun<'a> {
     /// Metrics, thresholds and hours.
     pub measures: &'a Measures,
     /// When to stop. The error is the root mean square over the sensors of a block, of each metric: of percentages 0.01 is one point,
-    /// illuminances and daylight factors have it relative to their value.
+    /// illuminances and daylight factors have it relative to their value. Sensors that err more have more paths.
     pub accuracy: Accuracy,
     /// Of each value, whether its error counts.
     pub wanted: Vec<bool>,
@@ -125,8 +131,10 @@ struct Block<'a> {
     run: &'a YearRun<'a>,
     sums: Vec<Sums>,
     direct: Vec<Vec<f32>>,
-    /// Paths of each replicate and sensor so far.
-    traced: u32,
+    /// Paths of each replicate so far, of each sensor.
+    traced: Vec<u32>,
+    /// Rounds of paths so far.
+    rounds: u32,
 }
 
 impl<'a> Block<'a> {
@@ -140,7 +148,8 @@ impl<'a> Block<'a> {
         Self {
             sums: sensors.iter().map(|_| sums()).collect(),
             direct: sensors.par_iter().map(direct).collect(),
-            traced: 0,
+            traced: vec![0; sensors.len()],
+            rounds: 0,
             sensors,
             first,
             run,
@@ -148,77 +157,134 @@ impl<'a> Block<'a> {
     }
 
     /// Rounds of paths until the error is met; `None` if stopped before the first is done. Before it, `done` sensors were measured.
+    ///
+    /// Sensors that err more get more paths: the errors of all become alike, for as many paths as would bring the mean square down alone.
     fn measured(mut self, done: usize) -> Option<(Vec<SensorYear>, f64)> {
         let accuracy = &self.run.accuracy;
         let most = (accuracy.max_paths / REPLICATES as u32).max(FIRST_ROUND);
         let is_wanted = self.run.wanted.contains(&true);
-        let mut until = FIRST_ROUND;
+        let mut aims = vec![if is_wanted { FIRST_ROUND } else { 0 }; self.sensors.len()];
         loop {
-            while is_wanted && self.traced < until {
-                let round = (until - self.traced).min(MOST_ROUND);
-                if !self.trace(round) {
+            while self
+                .traced
+                .iter()
+                .zip(&aims)
+                .any(|(traced, aim)| traced < aim)
+            {
+                if !self.trace(&aims) {
                     return None;
                 }
                 if (self.run.is_stopped)() {
-                    until = self.traced;
+                    break;
                 }
             }
             let measured: Vec<SensorYear> = (0..self.sensors.len())
                 .into_par_iter()
                 .map(|at| self.sensor_year(at))
                 .collect();
-            let error = self.error(&measured);
+            let errors = self.errors(&measured);
+            let error = largest_mean(&errors);
             (self.run.progress)(done, Some(error));
-            let is_met = error <= accuracy.relative_error || self.traced >= most;
+            let is_met = error <= accuracy.relative_error || self.traced.iter().all(|n| *n >= most);
             if is_met || (self.run.is_stopped)() {
                 return Some((measured, error));
             }
-            // The error falls at least with the square root of the number of paths.
-            let times = (error / accuracy.relative_error).powi(2).clamp(1.2, 64.0);
-            until = (f64::from(self.traced) * times).ceil().min(f64::from(most)) as u32;
+            aims = self.aims(&errors, most);
         }
     }
 
-    /// One more round of paths; false if stopped in the first.
-    fn trace(&mut self, paths: u32) -> bool {
+    /// How many paths of each sensor the next rounds are to reach.
+    fn aims(&self, errors: &[Vec<f64>], most: u32) -> Vec<u32> {
+        let worst = |own: &Vec<f64>| own.iter().copied().fold(0.0, f64::max);
+        let worst: Vec<f64> = errors.iter().map(worst).collect();
+        let worst = self.with_neighbours(&worst);
+        let squares: f64 = worst.iter().map(|error| error * error).sum();
+        // The error of every sensor at which the mean square that counts is that which is asked for.
+        let mean = (squares / worst.len() as f64).sqrt();
+        let level = self.run.accuracy.relative_error * mean / largest_mean(errors);
+        let aim = |(traced, error): (&u32, &f64)| {
+            // The error falls at least with the square root of the number of paths.
+            let times = (error / level).powi(2).min(MOST_TIMES);
+            let aim = f64::from(*traced) * if times > 1.0 { times.max(1.2) } else { 1.0 };
+            aim.ceil().min(f64::from(most.max(*traced))) as u32
+        };
+        let mut aims: Vec<u32> = self.traced.iter().zip(&worst).map(aim).collect();
+        if aims == self.traced {
+            // None errs more than it may by itself: all go on.
+            let more = |traced: &u32| (traced + traced / 5).min(most.max(*traced));
+            aims = self.traced.iter().map(more).collect();
+        }
+        aims
+    }
+
+    /// Errors as root mean squares with those of the nearest sensors, which err alike: an error by eight replicates is a guess, and sensors that
+    /// are thought to be right too early would stay wrong.
+    fn with_neighbours(&self, errors: &[f64]) -> Vec<f64> {
+        let of = |sensor: &Sensor| {
+            let distance = |other: &Sensor| sensor.position.distance_squared(other.position);
+            let mut near: Vec<(f32, f64)> = self
+                .sensors
+                .iter()
+                .map(distance)
+                .zip(errors.iter().copied())
+                .collect();
+            let count = NEIGHBOURS.min(near.len());
+            near.select_nth_unstable_by(count - 1, |a, b| a.0.total_cmp(&b.0));
+            let squares = near[..count].iter().map(|(_, error)| error * error);
+            (squares.sum::<f64>() / count as f64).sqrt()
+        };
+        self.sensors.par_iter().map(of).collect()
+    }
+
+    /// One more round of paths toward these aims; false if stopped in the first.
+    fn trace(&mut self, aims: &[u32]) -> bool {
+        let more = |(aim, traced): (&u32, &u32)| (aim - traced.min(aim)).min(MOST_ROUND);
+        let paths: Vec<u32> = aims.iter().zip(&self.traced).map(more).collect();
         for replicate in 0..REPLICATES {
-            let is_first = self.traced == 0;
-            if is_first && (self.run.is_stopped)() {
+            if self.rounds == 0 && (self.run.is_stopped)() {
                 return false;
             }
-            let vertices = self.walked(paths, replicate);
+            let vertices = self.walked(&paths, replicate);
             self.gather(&vertices, replicate);
         }
-        self.traced += paths;
+        self.traced
+            .iter_mut()
+            .zip(&paths)
+            .for_each(|(sum, more)| *sum += more);
+        self.rounds += 1;
         true
     }
 
     /// Traces the rays and paths of a replicate; the points of each sensor where it is reflected.
-    fn walked(&mut self, paths: u32, replicate: usize) -> Vec<Vec<Vertex>> {
-        let (run, first, traced) = (self.run, self.first, self.traced);
+    fn walked(&mut self, paths: &[u32], replicate: usize) -> Vec<Vec<Vertex>> {
+        let (run, first) = (self.run, self.first);
         let patches = run.light.patches.count();
         let range = replicate * patches..(replicate + 1) * patches;
         let sensors = self.sensors.par_iter().zip(&mut self.sums).enumerate();
-        let walked = sensors.map(|(at, (sensor, sums))| {
-            let seed = seed(run.accuracy.seed, (first + at) as u32, replicate as u32);
-            see(
-                sensor,
-                run,
-                [RAYS * traced, RAYS * (traced + paths), seed],
-                &mut sums.patches[range.clone()],
-            );
-            let mut vertices = Vec::new();
-            for index in traced..traced + paths {
-                walk(
+        let rounds = self.traced.par_iter().zip(paths);
+        let walked = sensors
+            .zip(rounds)
+            .map(|((at, (sensor, sums)), (traced, paths))| {
+                let (from, to) = (*traced, traced + paths);
+                let seed = seed(run.accuracy.seed, (first + at) as u32, replicate as u32);
+                see(
                     sensor,
-                    run.scene,
-                    run.accuracy.bounces,
-                    [index, seed],
-                    &mut vertices,
+                    run,
+                    [RAYS * from, RAYS * to, seed],
+                    &mut sums.patches[range.clone()],
                 );
-            }
-            vertices
-        });
+                let mut vertices = Vec::new();
+                for index in from..to {
+                    walk(
+                        sensor,
+                        run.scene,
+                        run.accuracy.bounces,
+                        [index, seed],
+                        &mut vertices,
+                    );
+                }
+                vertices
+            });
         walked.collect()
     }
 
@@ -231,7 +297,7 @@ impl<'a> Block<'a> {
         let accuracy = &self.run.accuracy;
         let seed = seed(
             accuracy.seed,
-            self.first as u32 ^ (self.traced << 8),
+            tea::<8>(self.first as u32, self.rounds),
             !replicate as u32,
         );
         let most = (MOST_SUNLIGHT / (channels * suns).max(1)).max(1);
@@ -271,9 +337,9 @@ impl<'a> Block<'a> {
 
     /// What the paths so far tell of a sensor.
     fn sensor_year(&self, at: usize) -> SensorYear {
-        let (run, direct) = (self.run, &self.direct[at]);
+        let (run, direct, traced) = (self.run, &self.direct[at], self.traced[at]);
         let exposed_hours = run.measures.exposed_hours(direct);
-        if self.traced == 0 {
+        if traced == 0 {
             return SensorYear {
                 exposed_hours,
                 ..SensorYear::default()
@@ -281,12 +347,12 @@ impl<'a> Block<'a> {
         }
         let sums = &self.sums[at];
         let mut lux = run.light.indirect(&sums.patches, &sums.suns, REPLICATES);
-        lux /= self.traced as f32;
+        lux /= traced as f32;
         let (values, errors) = jackknife(&lux, |lux| {
             // The last column is that of the overcast sky.
             let (hours, factor) = lux.split_at(direct.len());
             let total: Vec<f32> = hours.iter().zip(direct).map(|(e, sun)| e + sun).collect();
-            let mut values = run.measures.values(&total);
+            let mut values = run.measures.values(&total, self.first + at);
             values.push(f64::from(factor[0]));
             values
         });
@@ -301,27 +367,37 @@ impl<'a> Block<'a> {
             errors,
             exposed_hours,
             lux: hours,
-            paths: self.traced * REPLICATES as u32,
+            paths: traced * REPLICATES as u32,
         }
     }
 
-    /// Largest error of the wanted values: root mean squares over the sensors.
-    fn error(&self, measured: &[SensorYear]) -> f64 {
+    /// The errors of the wanted values of each sensor, as [`YearRun::accuracy`] counts them.
+    fn errors(&self, measured: &[SensorYear]) -> Vec<Vec<f64>> {
         let run = self.run;
-        let of = |value: usize| {
-            let squares = measured.iter().map(|sensor| {
+        let of = |sensor: &SensorYear| {
+            let wanted = (0..run.wanted.len()).filter(|value| run.wanted[*value]);
+            let error = |value: usize| {
                 let scale = run.measures.error_scale(value, sensor.values[value]);
                 if scale > 0.0 {
-                    (sensor.errors[value] / scale).powi(2)
+                    sensor.errors[value] / scale
                 } else {
                     0.0
                 }
-            });
-            (squares.sum::<f64>() / measured.len() as f64).sqrt()
+            };
+            wanted.map(error).collect()
         };
-        let wanted = (0..run.wanted.len()).filter(|value| run.wanted[*value]);
-        wanted.map(of).fold(0.0, f64::max)
+        measured.iter().map(of).collect()
     }
+}
+
+/// The largest of the root mean squares over the sensors.
+fn largest_mean(errors: &[Vec<f64>]) -> f64 {
+    let count = errors.first().map_or(0, Vec::len);
+    let mean = |value: usize| {
+        let squares = errors.iter().map(|own| own[value] * own[value]);
+        (squares.sum::<f64>() / errors.len() as f64).sqrt()
+    };
+    (0..count).map(mean).fold(0.0, f64::max)
 }
 
 /// Adds what a sensor sees of sky and ground by rays of some numbers.

@@ -267,7 +267,7 @@ fn the_report_says_what_blinds_there_are() {
     assert_eq!(report["blinds_closed_hours"], 10.0);
     let page = text(folder, "a.html");
     for part in [
-        "all windows are one group",
+        "the windows of a room are one group",
         "10 of the occupied hours",
         "sDA300/50 of 75 %",
     ] {

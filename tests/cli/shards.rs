@@ -5,9 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-const PROGRAM: &str = env!("CARGO_BIN_EXE_skylight");
+pub const PROGRAM: &str = env!("CARGO_BIN_EXE_skylight");
 
-fn jobs() -> PathBuf {
+pub fn jobs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/jobs")
 }
 
@@ -17,7 +17,7 @@ fn run(folder: &Path, words: &[&str]) -> Output {
     command.output().expect("it starts")
 }
 
-fn succeed(folder: &Path, line: &str) -> Vec<u8> {
+pub fn succeed(folder: &Path, line: &str) -> Vec<u8> {
     let words: Vec<&str> = line.split_whitespace().collect();
     let output = run(folder, &words);
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -39,7 +39,7 @@ const WEATHER: &str =
     "LOCATION,Havnby,-,DNK,made,0,55.1,8.6,1.0,4.0\nDATA PERIODS,1,1,Data,Sunday, 6/20, 6/20\n";
 
 /// A folder with a grid of so many sensors, near and far from the columns, and some weather.
-fn scratch(sensors: usize) -> tempfile::TempDir {
+pub fn scratch(sensors: usize) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let line = |at: usize| format!("{},1,{}\n", at % 40, at / 40);
     let grid: String = (0..sensors).map(line).collect();
@@ -66,7 +66,7 @@ fn shards(folder: &Path, line: &str, of: usize) -> Vec<String> {
     (1..=of).map(one).collect()
 }
 
-const MOMENT: &str = "daylight colonnade --grid grid.csv --sky hosek --max-paths 2048 --error 0.05 --no-warnings --quiet";
+pub const MOMENT: &str = "daylight colonnade --grid grid.csv --sky hosek --max-paths 2048 --error 0.05 --no-warnings --quiet";
 
 #[test]
 fn twelve_merged_shards_are_the_single_run() {
@@ -106,6 +106,38 @@ fn blocks_of_a_year_are_those_of_the_single_run() {
             .all(|s| s["da300"].is_number() && s["mean_lux"].is_number())
     );
     assert!(result["en17037"]["method_1"].is_object() && result["sda"].is_object());
+}
+
+#[test]
+fn matrices_of_shards_are_that_of_the_single_run() {
+    // Two blocks: the third shard has no sensors.
+    let folder = scratch(256 + 5);
+    let folder = folder.path();
+    let line = "daylight colonnade --grid grid.csv --weather a.epw --metrics illuminance --error 9 --max-paths 1024 --bounces 0 --no-warnings --quiet --csv --ill year.ill";
+    let single = succeed(folder, line);
+    let matrix = fs::read(folder.join("year.ill")).expect("a matrix");
+    let parts = shards(folder, line, 3).join(" ");
+    let merge = format!("merge {parts} --ill merged.ill");
+    assert!(succeed(folder, &merge) == single);
+    assert!(fs::read(folder.join("merged.ill")).expect("a matrix") == matrix);
+    let own = folder.join("year_2-of-3.ill");
+    let text = fs::read_to_string(&own).expect("a matrix");
+    fs::write(&own, text.replacen("6 20 ", "6 21 ", 1)).expect("changed");
+    let error = fail(folder, &merge);
+    assert!(
+        error.contains("year_2-of-3.ill is damaged: run again with --shard 2/3"),
+        "{error}"
+    );
+    fs::remove_file(&own).expect("removed");
+    assert!(fail(folder, &merge).contains("year_2-of-3.ill is missing"));
+    succeed(folder, &format!("{line} --shard 2/3"));
+    assert!(succeed(folder, &merge) == single);
+    fs::write(folder.join("grid.csv"), "0,1,0\n").expect("a grid");
+    let merge = "merge daylight_1-of-1.shard --ill merged.ill";
+    shards(folder, &line.replace(" --ill year.ill", ""), 1);
+    assert!(fail(folder, merge).contains("measured without --ill"));
+    shards(folder, MOMENT, 1);
+    assert!(fail(folder, merge).contains("only the shards of a year"));
 }
 
 #[test]

@@ -15,6 +15,11 @@ impl Exact {
         self.0.first().copied().unwrap_or_default()
     }
 
+    /// Their mean; 0 without any.
+    pub fn mean(&self) -> f64 {
+        self.0.iter().sum::<f64>() / self.0.len().max(1) as f64
+    }
+
     /// Rows of equal length.
     pub fn rows<const N: usize>(&self) -> Vec<[f64; N]> {
         let rows = self.0.chunks_exact(N);

@@ -8,6 +8,7 @@ mod outcome;
 mod report;
 mod results;
 mod shards;
+mod study;
 mod summary;
 mod table;
 mod unreflected;
@@ -28,7 +29,7 @@ pub(super) use self::{
     verdict::Verdict,
 };
 use super::hour;
-use crate::cli::DaylightArgs;
+use crate::cli::{DaylightArgs, Variant};
 use crate::daylight::metrics::Blinds;
 use crate::error::Result;
 use crate::options::{OptionValues, Options};
@@ -37,13 +38,16 @@ use crate::passes::bounces::cells::Bounces;
 use crate::scene::Scene;
 use crate::sensors::{ALL_BOUNCES, Facades, Planes, Sensor, make_facades, make_grid, read_grid};
 
-/// Measures metrics if there is a weather file without an hour or some are asked for, else a moment.
+/// Measures metrics if there is a weather file without an hour or some are asked for, else a moment; all variants, if there are some.
 ///
 /// # Errors
 /// A grid, a model or a weather file that cannot be read, or invalid options.
-pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
+pub fn run(args: &DaylightArgs, options: &OptionValues, variants: &[Variant]) -> Result<()> {
     if let Some(output) = &args.output {
         check_writable(output)?;
+    }
+    if !variants.is_empty() {
+        return study::run(args, options, variants);
     }
     if args.asks_for_metrics() {
         return year::run(args, options);

@@ -4,15 +4,15 @@ use std::fmt::Write as _;
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::super::job::Job;
-use super::super::merge::Kind;
+use super::super::merge::{JobKey, Kind};
 use super::super::{progress, tell, tell_no_device};
 use super::drawings::Plan;
 use super::exact::Exact;
 use super::outcome::Form;
-use super::table::{Column, PLACE, place};
+use super::table::{Column, Figure, PLACE, place};
 use super::{bounces, deliver, sensors, shards};
 use crate::cli::DaylightArgs;
 use crate::error::{Error, Result};
@@ -40,44 +40,79 @@ pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
         let what = "--plan-of is for metrics; the plan of a moment shows all light".to_owned();
         return Err(Error::from(OptionsError(what)));
     }
-    let job = Job::new(Some(&args.scene), options)?;
-    tell_no_device("daylight", &job.settings);
     args.files().try_for_each(|path| check_writable(path))?;
-    let sensors = sensors(args, &job.scene)?;
-    let accuracy = Accuracy {
-        relative_error: args.error,
-        max_paths: args.max_paths,
-        seed: job.settings.seed,
-        bounces: bounces(&job.settings),
-    };
-    let shard = args.shard.unwrap_or(Shard::ALL);
-    let numbers: Vec<usize> = (0..sensors.len()).filter(|at| shard.takes(*at)).collect();
-    let (scene, lights) = (TracedScene::new(&job.scene), Lights::new(&job.daylight));
-    let bar = progress(numbers.len() as u64, "sensors", job.settings.quiet);
-    let readings = measure_shard(&sensors, shard, &scene, &lights, &accuracy, &|| bar.inc(1));
-    bar.finish_and_clear();
-    let row =
-        |(number, reading): (&usize, &Reading)| row(&sensors[*number], reading, job.scene.origin);
-    let report = MomentReport {
-        form: Form::of(args),
-        error: args.error.into(),
-        max_paths: args.max_paths,
-        sensors: sensors.len(),
-        warnings: job.warnings().cloned().collect(),
-        rows: numbers.iter().zip(&readings).flat_map(row).collect(),
-        numbers,
-    };
-    if args.shard.is_some() {
-        let given = (&*job.scene, &sensors[..]);
-        let key = shards::key(Kind::Moment, args, &job.settings, given, String::new());
+    let given = Given::new(args, options)?;
+    tell(&given.job.settings, given.job.warnings())?;
+    tell_no_device("daylight", &given.job.settings);
+    let (readings, report) = given.measured(args);
+    if let Some(shard) = args.shard {
         let count = report.numbers.len();
-        return shards::write(args, (&key, shard), &report, [count, count]);
+        return shards::write(
+            args,
+            (&given.key(args), shard),
+            &report,
+            ([count; 2], "sensors"),
+        );
     }
-    tell(&job.settings, report.oddities().iter())?;
+    tell(&given.job.settings, report.oddities().iter())?;
     if let Some(path) = &args.plan {
-        plan(&sensors, &readings, &job, args).write(path)?;
+        plan(&given.sensors, &readings, &given.job, args).write(path)?;
     }
     deliver(args.output.as_deref(), &report.text())
+}
+
+/// What a run is given: model and moment, sensors.
+pub(super) struct Given {
+    job: Job,
+    sensors: Vec<Sensor>,
+}
+
+impl Given {
+    /// Reads all of it, and tells nothing.
+    ///
+    /// # Errors
+    /// A grid or a model that cannot be read, or invalid options.
+    pub fn new(args: &DaylightArgs, options: &OptionValues) -> Result<Self> {
+        let job = Job::untold(Some(&args.scene), options)?;
+        let sensors = sensors(args, &job.scene)?;
+        Ok(Self { job, sensors })
+    }
+
+    /// The job of these arguments.
+    pub fn key(&self, args: &DaylightArgs) -> JobKey {
+        let given = (&*self.job.scene, &self.sensors[..]);
+        shards::key(Kind::Moment, args, &self.job.settings, given, String::new())
+    }
+
+    /// Measures the sensors, of a shard those that are its own.
+    pub fn measured(&self, args: &DaylightArgs) -> (Vec<Reading>, MomentReport) {
+        let (job, sensors) = (&self.job, &self.sensors);
+        let accuracy = Accuracy {
+            relative_error: args.error,
+            max_paths: args.max_paths,
+            seed: job.settings.seed,
+            bounces: bounces(&job.settings),
+        };
+        let shard = args.shard.unwrap_or(Shard::ALL);
+        let numbers: Vec<usize> = (0..sensors.len()).filter(|at| shard.takes(*at)).collect();
+        let (scene, lights) = (TracedScene::new(&job.scene), Lights::new(&job.daylight));
+        let bar = progress(numbers.len() as u64, "sensors", job.settings.quiet);
+        let readings = measure_shard(sensors, shard, &scene, &lights, &accuracy, &|| bar.inc(1));
+        bar.finish_and_clear();
+        let row = |(number, reading): (&usize, &Reading)| {
+            row(&sensors[*number], reading, job.scene.origin)
+        };
+        let report = MomentReport {
+            form: Form::of(args),
+            error: args.error.into(),
+            max_paths: args.max_paths,
+            sensors: sensors.len(),
+            warnings: job.warnings().cloned().collect(),
+            rows: numbers.iter().zip(&readings).flat_map(row).collect(),
+            numbers,
+        };
+        (readings, report)
+    }
 }
 
 /// A plan of all light.
@@ -163,16 +198,39 @@ impl MomentReport {
         (count > 0).then(line).into_iter().collect()
     }
 
+    /// All warnings: of model and light, and of the result.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = self.warnings.clone();
+        warnings.extend(self.oddities());
+        warnings
+    }
+
+    /// What `--json` prints.
+    pub fn json(&self) -> Value {
+        let rows: Vec<Row> = self.rows.rows();
+        let list: Vec<_> = rows.iter().map(object).collect();
+        json!({ "sensors": list, "warnings": self.warnings() })
+    }
+
+    /// Means of its parts, and the least and the largest total, lux.
+    pub fn figures(&self) -> Vec<Figure> {
+        let rows: Vec<Row> = self.rows.rows();
+        let all = |at: usize| rows.iter().map(move |row| row[at]);
+        let mean = |at: usize| all(at).sum::<f64>() / rows.len().max(1) as f64;
+        let names = COLUMNS.iter().take(4).enumerate();
+        let figure = |(at, name): (usize, &&str)| Figure::new(name, mean(PLACE.len() + at));
+        let mut figures: Vec<Figure> = names.map(figure).collect();
+        let least = all(TOTAL).fold(f64::INFINITY, f64::min);
+        figures.push(Figure::new("least", least));
+        figures.push(Figure::new("most", all(TOTAL).fold(0.0, f64::max)));
+        figures
+    }
+
     /// The text of the result.
     pub fn text(&self) -> String {
         let rows: Vec<Row> = self.rows.rows();
         match self.form {
-            Form::Json => {
-                let mut warnings = self.warnings.clone();
-                warnings.extend(self.oddities());
-                let list: Vec<_> = rows.iter().map(object).collect();
-                format!("{:#}\n", json!({ "sensors": list, "warnings": warnings }))
-            }
+            Form::Json => format!("{:#}\n", self.json()),
             Form::Csv => csv(&rows),
             Form::Table => table(&rows),
         }
@@ -200,7 +258,7 @@ fn names() -> impl Iterator<Item = &'static str> {
     PLACE.into_iter().chain(COLUMNS)
 }
 
-fn object(row: &Row) -> serde_json::Value {
+fn object(row: &Row) -> Value {
     let pairs = names().zip(row);
     pairs
         .map(|(name, value)| (name.to_owned(), *value))

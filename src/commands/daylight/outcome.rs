@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::exact::Exact;
 use super::summary::{Asked, Summary};
-use super::table::{Column, csv, objects, overview};
+use super::table::{Column, Figure, csv, objects, overview};
 use crate::cli::DaylightArgs;
 
 /// The form of the result.
@@ -39,7 +39,7 @@ pub(super) struct Common {
     pub form: Form,
     /// Figures of the whole grid that are wanted.
     pub asked: Asked,
-    /// The rule of the blinds, and the hours in which they are closed.
+    /// The rule of the blinds, and the hours in which they are closed in each room.
     pub blinds: String,
     pub blinds_closed_hours: Exact,
     /// What is said of blinds.
@@ -117,9 +117,17 @@ impl Outcome {
         Summary::of(&self.common.asked, &self.columns)
     }
 
-    /// Paths of a sensor.
+    /// Means of the columns, and figures of the whole grid.
+    pub fn figures(&self) -> Vec<Figure> {
+        let means = self.columns.iter();
+        let means = means.map(|column| Figure::new(&column.name, column.figures()[0]));
+        means.chain(self.summary().figures()).collect()
+    }
+
+    /// Paths of a sensor, in the mean.
     pub fn paths(&self) -> u32 {
-        self.paths.first().copied().unwrap_or_default()
+        let sum: u64 = self.paths.iter().map(|n| u64::from(*n)).sum();
+        (sum / self.paths.len().max(1) as u64) as u32
     }
 
     /// What `--json` prints.
@@ -132,7 +140,8 @@ impl Outcome {
             "ase": summary.ase,
             "en17037": summary.en17037_json(),
             "blinds": common.blinds,
-            "blinds_closed_hours": common.blinds_closed_hours.one(),
+            "blinds_closed_hours": common.blinds_closed_hours.mean(),
+            "blinds_closed_hours_of_rooms": common.blinds_closed_hours.0,
             "schedule": common.schedule,
             "occupied_hours": common.occupied_hours.one(),
             "bounces": common.bounces,
@@ -142,7 +151,8 @@ impl Outcome {
         })
     }
 
-    fn head(&self) -> String {
+    /// Place, hours and bounces, for the eye.
+    pub fn head(&self) -> String {
         let common = &self.common;
         let mut text = String::new();
         if let Some(name) = &common.place {

@@ -1,5 +1,7 @@
 //! All that a single run found, for its files: pictures, the matrix, the report.
 
+use std::path::Path;
+
 use super::drawings::{Heat, Plan, hours, limit};
 use super::outcome::Outcome;
 use super::table::{Column, place};
@@ -36,8 +38,8 @@ impl Results<'_> {
     /// # Errors
     /// A file cannot be written, or the plan has no such metric.
     pub fn write_files(&self) -> Result<()> {
-        if let (Some(path), Some(weather)) = (&self.args.ill, self.weather) {
-            ill::write(path, weather, self.light, self.year)?;
+        if let Some(path) = &self.args.ill {
+            self.write_matrix(path)?;
         }
         if let Some(path) = &self.args.report {
             report::write(path, self)?;
@@ -49,6 +51,17 @@ impl Results<'_> {
             self.heat(weather).write(path)?;
         }
         Ok(())
+    }
+
+    /// Writes the illuminances of every hour of the weather file.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write_matrix(&self, path: &Path) -> Result<()> {
+        match self.weather {
+            Some(weather) => ill::write(path, weather, self.light, self.year),
+            None => Ok(()),
+        }
     }
 
     /// A plan of a column.

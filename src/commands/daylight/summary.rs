@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::exact::Exact;
-use super::table::{Column, rounded};
+use super::table::{Column, Figure, rounded};
 use super::verdict::Verdict;
 use crate::daylight::metrics::{EN_17037_LUX, EXPOSED_HOURS, Passing, SPATIAL_PERCENT, passing};
 
@@ -110,6 +110,19 @@ impl Summary {
         self.sda.map_or(Value::Null, |sda| {
             json!({ "percent": rounded(sda.percent), "percent_se": rounded(sda.standard_error) })
         })
+    }
+
+    /// Each figure in a word, for tables of several results.
+    pub(super) fn figures(&self) -> Vec<Figure> {
+        let mut figures = Vec::new();
+        figures.extend(self.sda.map(|sda| Figure::new("sda", sda.percent)));
+        figures.extend(self.ase.map(|ase| Figure::new("ase", ase)));
+        if let Some(provision) = &self.en17037 {
+            let [(_, by_factor), (_, by_hours)] = provision.methods();
+            figures.push(Figure::said("en17037_df", level(by_factor)));
+            figures.push(Figure::said("en17037_hours", level(by_hours)));
+        }
+        figures
     }
 
     /// Lines for the eye.

@@ -44,6 +44,30 @@ impl Column {
     }
 }
 
+/// A figure of the whole grid.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Figure {
+    /// What it is.
+    pub name: String,
+    /// As it is printed.
+    pub text: String,
+}
+
+impl Figure {
+    /// A number.
+    pub fn new(name: &str, value: f64) -> Self {
+        Self::said(name, format!("{value:.2}"))
+    }
+
+    /// A word.
+    pub fn said(name: &str, text: impl Into<String>) -> Self {
+        Self {
+            name: name.to_owned(),
+            text: text.into(),
+        }
+    }
+}
+
 /// Keys of position and normal in JSON and CSV.
 pub(super) const PLACE: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 

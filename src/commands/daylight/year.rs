@@ -5,16 +5,17 @@ use serde_json::{Value, json};
 
 use super::super::hour::{NoHour, check_given, expand};
 use super::super::job::{load_options, scene_of};
-use super::super::merge::Kind;
+use super::super::merge::{FileBeside, JobKey, Kind};
 use super::super::weather::{read_weather, warnings};
 use super::super::{interrupt, progress, tell, tell_no_device};
 use super::exact::Exact;
 use super::outcome::{Common, Form, Outcome};
 use super::results::Results;
+use super::shards::YearPart;
 use super::summary::Asked;
 use super::table::{Column, place};
 use super::unreflected::unreflected;
-use super::{blinds, bounces, deliver, sensors, shards};
+use super::{blinds, bounces, deliver, ill, sensors, shards};
 use crate::cli::{DaylightArgs, Metric};
 use crate::daylight::metrics::{Blinds, Measures, SPATIAL_LUX};
 use crate::daylight::weather::Weather;
@@ -24,7 +25,7 @@ use crate::options::{OptionValues, Options, OptionsError, name};
 use crate::output::check_writable;
 use crate::scene::{self, Scene};
 use crate::sensors::{
-    Accuracy, BLOCK, Sensor, Shard, TracedScene, Year, YearLight, YearRun, closed_hours,
+    Accuracy, BLOCK, Sensor, Shard, TracedScene, Year, YearLight, YearRun, close_blinds,
     measure_year,
 };
 
@@ -37,62 +38,139 @@ const MOST_RECORDS: usize = 60_000;
 /// A grid, a model or a weather file that cannot be read, or invalid options.
 pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
     args.files().try_for_each(|path| check_writable(path))?;
-    let weather = weather(args, options)?;
-    let weather = weather.as_ref();
-    let mut loaded = scene::load_with_progress(
-        Some(&args.scene),
-        &load_options(&options.alone()?),
-        &|_, _| (),
-    )?;
-    expand(&mut loaded, NoHour::PlaceAlone)?;
-    let settings = Options::resolve(options, &loaded)?;
-    let scene = scene_of(&mut loaded, &settings);
-    tell_no_device("daylight", &settings);
-    let clock = weather.and_then(ClockCheck::of);
-    let mut told = scene.warnings.clone();
-    told.extend(weather.iter().flat_map(|w| warnings(w, clock.as_ref())));
-    tell(&settings, told.iter())?;
-    let all = sensors(args, &scene)?;
-    let light = match weather {
-        Some(weather) => YearLight::new(weather, settings.ground_albedo),
-        None => YearLight::overcast(settings.ground_albedo),
-    };
-    let mut measures = measures(args, weather, &light)?;
-    check_pictures(args, &measures, all.len())?;
-    let traced = TracedScene::new(&scene);
-    if args.blinds == Blinds::Lm83 {
-        measures.close_blinds(closed_hours(&all, &traced, &light));
+    let given = Given::new(args, options)?;
+    tell_no_device("daylight", &given.settings);
+    tell(&given.settings, given.told.iter())?;
+    given.measured(args, |results| {
+        let outcome = results.outcome;
+        if let Some(shard) = args.shard {
+            return given.write_shard(args, shard, results);
+        }
+        tell(&given.settings, outcome.oddities().iter())?;
+        results.write_files()?;
+        deliver(args.output.as_deref(), &outcome.text())
+    })
+}
+
+/// What a run is given: model, sensors, weather.
+pub(super) struct Given {
+    weather: Option<Weather>,
+    clock: Option<ClockCheck>,
+    settings: Options,
+    scene: Scene,
+    /// What is odd about model and weather.
+    told: Vec<String>,
+    sensors: Vec<Sensor>,
+}
+
+impl Given {
+    /// Reads all of it.
+    ///
+    /// # Errors
+    /// A grid, a model or a weather file that cannot be read, or invalid options.
+    pub fn new(args: &DaylightArgs, options: &OptionValues) -> Result<Self> {
+        let weather = weather(args, options)?;
+        let mut loaded = scene::load_with_progress(
+            Some(&args.scene),
+            &load_options(&options.alone()?),
+            &|_, _| (),
+        )?;
+        expand(&mut loaded, NoHour::PlaceAlone)?;
+        let settings = Options::resolve(options, &loaded)?;
+        let scene = scene_of(&mut loaded, &settings)?;
+        let clock = weather.as_ref().and_then(ClockCheck::of);
+        let mut told = scene.warnings.clone();
+        told.extend(weather.iter().flat_map(|w| warnings(w, clock.as_ref())));
+        Ok(Self {
+            sensors: sensors(args, &scene)?,
+            weather,
+            clock,
+            settings,
+            scene,
+            told,
+        })
     }
-    let year = measured(args, &settings, &traced, &light, &measures, &all);
-    let sensors: Vec<(usize, Sensor)> = year.numbers.iter().map(|n| (*n, all[*n])).collect();
-    let mut columns = columns(args, &measures, &year);
-    columns.extend(unreflected(args, weather, &settings, &sensors, &traced)?);
-    let mut common = common(args, &settings, &measures, &light);
-    if let Some(weather) = weather {
-        common.weather = weather_json(weather, clock.as_ref()).to_string();
-        common.place = Some(weather.station.name.clone());
+
+    /// The job of these arguments.
+    pub fn key(&self, args: &DaylightArgs) -> JobKey {
+        let weather = self.weather.as_ref().map(|w| (&w.station, &w.records));
+        let given = (&self.scene, &self.sensors[..]);
+        shards::key(
+            Kind::Year,
+            args,
+            &self.settings,
+            given,
+            format!("{weather:?}"),
+        )
     }
-    (common.sensors, common.warnings) = (all.len(), told);
-    let outcome = outcome(common, (&sensors, scene.origin), columns, &year);
-    if args.shard.is_some() {
-        return write_shard(args, &settings, weather, (&scene, &all), &outcome);
+
+    /// Measures the sensors, of a shard those that are its own, and gives the results to `then`.
+    ///
+    /// # Errors
+    /// A metric that cannot be measured, or those of `then`.
+    pub fn measured<T>(
+        &self,
+        args: &DaylightArgs,
+        then: impl FnOnce(&Results) -> Result<T>,
+    ) -> Result<T> {
+        let (settings, all, weather) = (&self.settings, &self.sensors, self.weather.as_ref());
+        let light = match weather {
+            Some(weather) => YearLight::new(weather, settings.ground_albedo),
+            None => YearLight::overcast(settings.ground_albedo),
+        };
+        let mut measures = measures(args, weather, &light)?;
+        check_pictures(args, &measures, all.len())?;
+        let traced = TracedScene::new(&self.scene);
+        if args.blinds == Blinds::Lm83 {
+            measures.close_blinds(close_blinds(all, &traced, &light));
+        }
+        let year = measured(args, settings, &traced, &light, &measures, all);
+        let sensors: Vec<(usize, Sensor)> = year.numbers.iter().map(|n| (*n, all[*n])).collect();
+        let mut columns = columns(args, &measures, &year);
+        columns.extend(unreflected(args, weather, settings, &sensors, &traced)?);
+        let mut common = common(args, settings, &measures, &light);
+        if let Some(weather) = weather {
+            common.weather = weather_json(weather, self.clock.as_ref()).to_string();
+            common.place = Some(weather.station.name.clone());
+        }
+        (common.sensors, common.warnings) = (all.len(), self.told.clone());
+        let outcome = outcome(common, (&sensors, self.scene.origin), columns, &year);
+        let sensors: Vec<Sensor> = sensors.into_iter().map(|(_, sensor)| sensor).collect();
+        then(&Results {
+            args,
+            settings,
+            scene: &self.scene,
+            weather,
+            clock: self.clock.as_ref(),
+            light: &light,
+            measures: &measures,
+            sensors: &sensors,
+            year: &year,
+            outcome: &outcome,
+        })
     }
-    tell(&settings, outcome.oddities().iter())?;
-    let sensors: Vec<Sensor> = sensors.into_iter().map(|(_, sensor)| sensor).collect();
-    let results = Results {
-        args,
-        settings: &settings,
-        scene: &scene,
-        weather,
-        clock: clock.as_ref(),
-        light: &light,
-        measures: &measures,
-        sensors: &sensors,
-        year: &year,
-        outcome: &outcome,
-    };
-    results.write_files()?;
-    deliver(args.output.as_deref(), &outcome.text())
+
+    /// Writes the result of a shard.
+    ///
+    /// # Errors
+    /// See [`shards::write`].
+    fn write_shard(&self, args: &DaylightArgs, shard: Shard, results: &Results) -> Result<()> {
+        let key = self.key(args);
+        let mine = (0..self.sensors.len()).filter(|at| shard.takes(at / BLOCK));
+        let count = [results.outcome.numbers.len(), mine.count()];
+        let mut part = YearPart {
+            outcome: results.outcome.clone(),
+            ill: None,
+        };
+        if let (Some(path), [done, all]) = (&args.ill, count)
+            && done == all
+        {
+            let path = ill::of_shard(path, shard);
+            results.write_matrix(&path)?;
+            part.ill = Some(FileBeside::new(&path)?);
+        }
+        shards::write(args, (&key, shard), &part, (count, "sensors"))
+    }
 }
 
 /// What is printed of sensors with their numbers in the grid.
@@ -111,25 +189,6 @@ fn outcome(
         error_so_far: year.error.into(),
         numbers: year.numbers.clone(),
     }
-}
-
-/// Writes the result of a shard.
-///
-/// # Errors
-/// See [`shards::write`].
-fn write_shard(
-    args: &DaylightArgs,
-    settings: &Options,
-    weather: Option<&Weather>,
-    given: (&Scene, &[Sensor]),
-    outcome: &Outcome,
-) -> Result<()> {
-    let shard = args.shard.unwrap_or(Shard::ALL);
-    let weather = format!("{:?}", weather.map(|w| (&w.station, &w.records)));
-    let key = shards::key(Kind::Year, args, settings, given, weather);
-    let mine = (0..given.1.len()).filter(|at| shard.takes(at / BLOCK));
-    let count = [outcome.numbers.len(), mine.count()];
-    shards::write(args, (&key, shard), outcome, count)
 }
 
 /// What is the same for all sensors, but for weather and warnings.
@@ -153,7 +212,7 @@ fn common(
             en17037: asks(Metric::En17037).then(hours),
         },
         blinds: name(args.blinds).to_owned(),
-        blinds_closed_hours: measures.closed_hours().into(),
+        blinds_closed_hours: measures.closed_hours().into_iter().collect(),
         blinds_said: blinds(args).to_owned(),
         schedule: args.schedule.to_string(),
         occupied_hours: measures.occupied_hours().into(),

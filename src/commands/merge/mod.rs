@@ -2,10 +2,10 @@
 
 mod part;
 
-pub(super) use self::part::{JobKey, Kind, Parts, write_part};
+pub(super) use self::part::{FileBeside, JobKey, Kind, Parts, write_part};
 
 use crate::cli::MergeArgs;
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// Merges the files of all shards of a job.
 ///
@@ -13,8 +13,12 @@ use crate::error::Result;
 /// One line with what is missing, doubled or damaged, and which shards to run again.
 pub fn run(args: &MergeArgs) -> Result<()> {
     let parts = self::part::gather(&args.shards)?;
+    if args.ill.is_some() && parts.kind != Kind::Year {
+        let what = "only the shards of a year have hourly matrices; leave out --ill";
+        return Err(Error::Merge(what.to_owned()));
+    }
     match parts.kind {
         Kind::Sequence => super::sequence::merge(&parts, args),
-        Kind::Moment | Kind::Year => super::daylight::merge(&parts, args),
+        Kind::Moment | Kind::Year | Kind::Study => super::daylight::merge(&parts, args),
     }
 }

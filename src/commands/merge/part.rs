@@ -23,6 +23,8 @@ pub(in crate::commands) enum Kind {
     Moment,
     /// Sensors over a year.
     Year,
+    /// Variants of one of these.
+    Study,
 }
 
 /// Which job a shard is part of.
@@ -104,6 +106,50 @@ pub(in crate::commands) fn write_part(
         path,
         &(serde_json::to_string(&file).map_err(failed)? + "\n"),
     )
+}
+
+/// A file that lies beside that of a shard, and the hash of its bytes.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(in crate::commands) struct FileBeside {
+    /// Its name without folder.
+    name: String,
+    check: String,
+}
+
+impl FileBeside {
+    /// Of a file that is written.
+    ///
+    /// # Errors
+    /// It cannot be read again.
+    pub fn new(file: &Path) -> Result<Self> {
+        let check = check(file).map_err(|error| Error::Read {
+            path: file.to_owned(),
+            reason: error.to_string(),
+        })?;
+        let name = file.file_name().unwrap_or_default();
+        Ok(Self {
+            name: name.to_string_lossy().into_owned(),
+            check,
+        })
+    }
+
+    /// The file beside that of its shard, and what is wrong with it, if something is.
+    pub fn found(&self, shard: &Path) -> (PathBuf, Option<String>) {
+        let folder = shard.parent().unwrap_or_else(|| Path::new(""));
+        let file = folder.join(&self.name);
+        let fault = match check(&file) {
+            Ok(check) if check == self.check => None,
+            Ok(_) => Some(format!("{} is damaged", file.display())),
+            Err(_) => Some(format!("{} is missing", file.display())),
+        };
+        (file, fault)
+    }
+}
+
+fn check(file: &Path) -> std::io::Result<String> {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(std::fs::File::open(file)?)?;
+    Ok(hasher.finalize().to_hex().to_string())
 }
 
 /// The shards of one job, all of them, in their order.

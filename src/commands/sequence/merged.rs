@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::film::{check_ffmpeg, folder_of, write_film};
 use crate::cli::MergeArgs;
-use crate::commands::merge::Parts;
+use crate::commands::merge::{FileBeside, Parts};
 use crate::error::{Error, Result};
 use crate::output::{check_writable, print};
 use crate::sensors::Shard;
@@ -18,10 +18,9 @@ pub(super) struct DrawnFrame {
     /// Its file.
     #[serde(skip)]
     pub file: PathBuf,
-    /// Its name without folder.
-    name: String,
-    /// Hash of its bytes.
-    check: String,
+    /// What it must be.
+    #[serde(flatten)]
+    written: FileBeside,
     /// What was drawn, for the line on stdout.
     #[serde(skip)]
     pub summary: String,
@@ -31,24 +30,13 @@ impl DrawnFrame {
     /// # Errors
     /// The file cannot be read again.
     pub fn new(number: usize, file: &Path, summary: String) -> Result<Self> {
-        let check = check(file).map_err(|error| Error::Read {
-            path: file.to_owned(),
-            reason: error.to_string(),
-        })?;
-        let name = file.file_name().unwrap_or_default();
         Ok(Self {
             number,
             file: file.to_owned(),
-            name: name.to_string_lossy().into_owned(),
-            check,
+            written: FileBeside::new(file)?,
             summary,
         })
     }
-}
-
-fn check(file: &Path) -> std::io::Result<String> {
-    let bytes = std::fs::read(file)?;
-    Ok(blake3::hash(&bytes).to_hex().to_string())
 }
 
 /// Frames of a shard.
@@ -96,12 +84,8 @@ fn frames_of(shards: &[(PathBuf, DrawnShard)]) -> Result<Vec<PathBuf>> {
     for (number, (path, shard)) in (1..).zip(shards) {
         let mut odd = Vec::new();
         for frame in &shard.drawn {
-            let file = folder_of(path).join(&frame.name);
-            match check(&file) {
-                Ok(check) if check == frame.check => {}
-                Ok(_) => odd.push(format!("{} is damaged", file.display())),
-                Err(_) => odd.push(format!("{} is missing", file.display())),
-            }
+            let (file, fault) = frame.written.found(path);
+            odd.extend(fault);
             if let Some(place) = frames.get_mut(frame.number) {
                 *place = Some(file);
             }

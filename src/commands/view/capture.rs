@@ -53,10 +53,6 @@ fn metadata(stage: &mut Stage, document: &Document) -> Result<Metadata> {
     let mut metadata = document.job.metadata();
     let (averaged, _) = document.progress();
     metadata.push(("samples drawn".into(), averaged.max(1).to_string()));
-    // The command among the parameters gives the model's own surfaces.
-    for (name, value) in document.surfaces.changes() {
-        metadata.push((format!("changed surface {name}"), value.to_string()));
-    }
     if document.job.settings.ev100.is_none() {
         let average = read_back(stage.idle()?, document.frame().average_luminance())?.floats()[0];
         let ev100 = document.job.automatic_ev100(f64::from(average) * 1e3);

@@ -115,7 +115,12 @@ impl Aside {
             Err(_) => recorder.abandon()?,
         }
         Ok(Document {
-            surfaces: Surfaces::new(context, wake, &self.job.scene),
+            surfaces: Surfaces::new(
+                (context, wake),
+                &self.job.scene,
+                self.job.materials.clone(),
+                &self.job.settings,
+            ),
             overlay: GridOverlay::new(context),
             frame: frame?,
             passes: PassesAhead::new(wake, recorder),

@@ -204,10 +204,6 @@ impl Interface {
                     }
                     Err(error) => self.complain(&error.to_string()),
                 }
-                if document.surfaces.changes().next().is_some() {
-                    self.notes
-                        .warn("the command has the surfaces of the model, not the changed ones");
-                }
             }
             other => document.perform(other, &mut self.notes),
         }

@@ -1,108 +1,163 @@
-//! Reflectances and transmittances of the materials, changed in the window. Another thread makes the scene with them and uploads it, and the
-//! window goes on with the one before.
+//! Reflectances of the materials and transmittances of the panes, changed in the window: sliders write the options `--reflectance` and
+//! `--glass`. Another thread makes the scene with them and uploads it, and the window goes on with the one before.
 
 use std::sync::Arc;
 
 use super::background::{Background, Wake};
+use crate::commands::job::set_materials;
 use crate::daylight::colour::luminance;
 use crate::error::Result;
 use crate::frame::{Frame, FrameSettings};
 use crate::gpu::{Context, Recorder, Timing};
+use crate::options::{ByMaterial, Options};
 use crate::scene::{Material, Scene};
 
-/// Largest reflectance or transmittance that is set.
-pub(super) const MOST: f32 = 0.95;
+/// The options that change materials.
+#[derive(Debug, Clone, PartialEq)]
+struct Asked {
+    glass: Option<ByMaterial>,
+    reflectance: Option<ByMaterial>,
+}
+
+impl Asked {
+    fn of(options: &Options) -> Self {
+        Self {
+            glass: options.glass.clone(),
+            reflectance: options.reflectance.clone(),
+        }
+    }
+}
+
+/// A material that can be changed.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Surface {
+    pub(super) name: String,
+    /// Whether it is a pane of glass.
+    pub(super) is_glass: bool,
+    /// Diffuse reflectance without its texture, or transmittance at normal incidence, 0..=1.
+    pub(super) value: f64,
+}
+
+impl Surface {
+    /// With its value by these options.
+    fn by(&self, options: &Options) -> Self {
+        let asked = if self.is_glass {
+            &options.glass
+        } else {
+            &options.reflectance
+        };
+        let entries = asked.iter().flat_map(|list| &list.0);
+        let mine = entries.filter(|(name, _)| name.is_empty() || *name == self.name);
+        Self {
+            value: mine.last().map_or(self.value, |(_, value)| *value),
+            ..self.clone()
+        }
+    }
+
+    /// Writes its value into the options. A value of all panes becomes one of each of `panes`.
+    fn write<'a>(&self, options: &mut Options, panes: impl Iterator<Item = &'a str>) {
+        let asked = if self.is_glass {
+            &mut options.glass
+        } else {
+            &mut options.reflectance
+        };
+        let mut entries = asked.take().map_or_else(Vec::new, |list| list.0);
+        if let Some(all) = entries.iter().position(|(name, _)| name.is_empty()) {
+            let (_, value) = entries.remove(all);
+            entries.extend(panes.map(|pane| (pane.to_owned(), value)));
+        }
+        match entries.iter_mut().find(|(name, _)| *name == self.name) {
+            Some(entry) => entry.1 = self.value,
+            None => entries.push((self.name.clone(), self.value)),
+        }
+        *asked = Some(ByMaterial(entries));
+    }
+}
 
 /// What a scene is drawn with.
 type Made = Result<(Arc<Scene>, Frame)>;
 
-/// Changes of the materials of a scene.
+/// The materials of a scene, and how they are changed.
 pub(super) struct Surfaces {
     context: Arc<Context>,
     wake: Wake,
     /// The materials of the model.
     own: Vec<Material>,
-    /// Value of each material that is wanted, if it is changed.
-    wanted: Vec<Option<f32>>,
-    /// Those of the scene that is drawn.
-    drawn: Vec<Option<f32>>,
-    making: Option<(Vec<Option<f32>>, Background<Made>)>,
+    /// Those that can be changed, with their values in the model.
+    list: Vec<Surface>,
+    /// What the scene is drawn with.
+    drawn: Asked,
+    making: Option<(Asked, Background<Made>)>,
 }
 
 impl Surfaces {
-    /// Of a scene that is drawn as it is.
-    pub(super) fn new(context: &Arc<Context>, wake: &Wake, scene: &Scene) -> Self {
-        let none = vec![None; scene.materials.len()];
+    /// Of a scene that is drawn with these options; `own` are the materials of its model.
+    pub(super) fn new(
+        (context, wake): (&Arc<Context>, &Wake),
+        scene: &Scene,
+        own: Vec<Material>,
+        options: &Options,
+    ) -> Self {
         Self {
             context: context.clone(),
             wake: wake.clone(),
-            own: scene.materials.clone(),
-            drawn: none.clone(),
-            wanted: none,
+            list: changeable(scene, &own),
+            own,
+            drawn: Asked::of(options),
             making: None,
         }
     }
 
-    /// Each material: its name, whether it is glass, and its reflectance or transmittance, 0..1.
-    pub(super) fn list(&self) -> impl Iterator<Item = (&str, bool, f32)> {
-        let pairs = self.own.iter().zip(&self.wanted);
-        pairs.map(|(own, wanted)| {
-            let value = wanted.unwrap_or_else(|| value(own));
-            (own.name.as_str(), own.glass.is_some(), value)
-        })
+    /// The materials that can be changed, with their values by these options.
+    pub(super) fn list(&self, options: &Options) -> Vec<Surface> {
+        self.list.iter().map(|own| own.by(options)).collect()
     }
 
-    /// Sets the value of a material; `None`: that of the model.
-    pub(super) fn set(&mut self, material: usize, value: Option<f32>) {
-        if let Some(wanted) = self.wanted.get_mut(material) {
-            *wanted = value.map(|value| value.clamp(0.0, MOST));
-        }
-    }
-
-    /// Gives all materials their own values back.
-    pub(super) fn reset(&mut self) {
-        self.wanted.fill(None);
-    }
-
-    /// What is changed: names and values.
-    pub(super) fn changes(&self) -> impl Iterator<Item = (&str, f32)> {
-        let pairs = self.own.iter().zip(&self.drawn);
-        pairs.filter_map(|(own, drawn)| Some((own.name.as_str(), (*drawn)?)))
+    /// Writes the value of a material into the options.
+    pub(super) fn set(&self, options: &mut Options, surface: &Surface) {
+        let panes = self.list.iter().filter(|own| own.is_glass);
+        surface.write(options, panes.map(|own| own.name.as_str()));
     }
 
     /// Whether the scene that is drawn lacks a change.
-    pub(super) fn is_behind(&self) -> bool {
-        self.wanted != self.drawn
+    pub(super) fn is_behind(&self, options: &Options) -> bool {
+        Asked::of(options) != self.drawn
+    }
+
+    /// Takes the changes that are not drawn yet out of the options.
+    pub(super) fn take_back(&self, options: &mut Options) {
+        options.glass.clone_from(&self.drawn.glass);
+        options.reflectance.clone_from(&self.drawn.reflectance);
     }
 
     /// The scene with the changes, once, when it is ready; starts making it if that is needed.
     ///
     /// # Errors
-    /// Not enough device memory, or a lost device; the changes are then taken back.
+    /// A tint that is too deep for a transmittance, not enough device memory, or a lost device.
     pub(super) fn follow(
         &mut self,
         scene: &Arc<Scene>,
+        options: &Options,
         settings: FrameSettings,
     ) -> Result<Option<(Arc<Scene>, Frame)>> {
-        if let Some((values, mut work)) = self.making.take() {
+        if let Some((asked, mut work)) = self.making.take() {
             match work.result() {
-                None => self.making = Some((values, work)),
-                Some(Ok(made)) => {
-                    self.drawn = values;
+                None => self.making = Some((asked, work)),
+                Some(made) => {
+                    let made = made?;
+                    self.drawn = asked;
                     return Ok(Some(made));
-                }
-                Some(Err(error)) => {
-                    self.wanted.clone_from(&self.drawn);
-                    return Err(error);
                 }
             }
         }
-        if self.making.is_none() && self.is_behind() {
-            let (values, own) = (self.wanted.clone(), self.own.clone());
+        if self.making.is_none() && self.is_behind(options) {
+            let (own, options) = (self.own.clone(), options.clone());
             let (scene, context) = (scene.clone(), self.context.clone());
-            let wanted = values.clone();
+            let asked = Asked::of(&options);
             let work = move || {
-                let scene = Arc::new(changed(&scene, &own, &wanted));
+                let mut scene = Scene::clone(&scene);
+                scene.materials = own;
+                set_materials(&mut scene, &options)?;
                 let mut recorder = Recorder::new(&context, Timing::Off)?;
                 recorder.begin()?;
                 let frame = Frame::new(&mut recorder, &scene, settings);
@@ -110,9 +165,9 @@ impl Surfaces {
                     Ok(_) => recorder.finish()?,
                     Err(_) => recorder.abandon()?,
                 }
-                Ok((scene, frame?))
+                Ok((Arc::new(scene), frame?))
             };
-            self.making = Some((values, Background::start(&self.wake, work)));
+            self.making = Some((asked, Background::start(&self.wake, work)));
         }
         Ok(None)
     }
@@ -127,72 +182,93 @@ impl Drop for Surfaces {
     }
 }
 
-fn grey([r, g, b]: [f32; 3]) -> f32 {
-    luminance(glam::Vec3::new(r, g, b).as_dvec3()) as f32
-}
-
-/// Reflectance of a material, without its map, or transmittance of glass.
-fn value(material: &Material) -> f32 {
-    let colour = material.glass.or(material.microfacet.map(|m| m.base));
-    grey(colour.unwrap_or(material.diffuse))
-}
-
-/// A colour of this luminance; grey where it is black, and where a channel would be above 1.
-fn with_luminance(colour: [f32; 3], value: f32) -> [f32; 3] {
-    let factor = value / grey(colour).max(1e-6);
-    let scaled = colour.map(|channel| channel * factor);
-    let fits = scaled.iter().all(|channel| *channel <= 1.0);
-    if fits && grey(colour) > 1e-6 {
-        scaled
-    } else {
-        [value; 3]
-    }
-}
-
-/// A scene whose materials have these values.
-fn changed(scene: &Scene, own: &[Material], values: &[Option<f32>]) -> Scene {
-    let mut scene = scene.clone();
-    scene.materials = own.to_vec();
-    for (material, value) in scene.materials.iter_mut().zip(values) {
-        let Some(value) = *value else { continue };
-        if let Some(glass) = &mut material.glass {
-            *glass = with_luminance(*glass, value);
-        } else if let Some(facets) = &mut material.microfacet {
-            facets.base = with_luminance(facets.base, value);
-        } else {
-            material.diffuse = with_luminance(material.diffuse, value);
+/// The materials of these that a reflectance or a transmittance can replace, each name once.
+fn changeable(scene: &Scene, own: &[Material]) -> Vec<Surface> {
+    let coloured = scene.parts.iter().filter(|part| part.has_colours);
+    let coloured: Vec<&str> = coloured
+        .filter_map(|part| own.get(part.material as usize))
+        .map(|material| material.name.as_str())
+        .collect();
+    let mut list: Vec<Surface> = Vec::new();
+    for material in own {
+        let name = &material.name;
+        let is_fixed = material.alpha_cutoff.is_some() || coloured.contains(&name.as_str());
+        if name.is_empty() || is_fixed || list.iter().any(|known| known.name == *name) {
+            continue;
         }
+        let colour = material.glass.or(material.microfacet.map(|m| m.base));
+        let colour = colour.unwrap_or(material.diffuse).map(f64::from);
+        list.push(Surface {
+            name: name.clone(),
+            is_glass: material.glass.is_some(),
+            value: luminance(colour.into()),
+        });
     }
-    scene
+    list
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::options::OptionValues;
+    use crate::options::tests::exposed_scene;
 
-    #[test]
-    fn a_colour_keeps_its_hue_as_long_as_it_can() {
-        let colour = with_luminance([0.4, 0.2, 0.1], 0.5);
-        assert!((grey(colour) - 0.5).abs() < 1e-6);
-        assert!((colour[0] / colour[1] - 2.0).abs() < 1e-5);
-        assert_eq!(with_luminance([0.4, 0.2, 0.1], 0.9), [0.9; 3]);
-        assert_eq!(with_luminance([0.0; 3], 0.3), [0.3; 3]);
+    fn model() -> Scene {
+        let material = |name: &str, glass: Option<[f32; 3]>| Material {
+            name: name.to_owned(),
+            diffuse: [0.3; 3],
+            glass,
+            ..Material::default()
+        };
+        let leaf = Material {
+            alpha_cutoff: Some(0.5),
+            ..material("leaf", None)
+        };
+        let (east, west) = (
+            material("east", Some([0.8; 3])),
+            material("west", Some([0.8; 3])),
+        );
+        Scene {
+            materials: vec![
+                material("floor", None),
+                east,
+                west,
+                leaf,
+                material("", None),
+            ],
+            ..Scene::default()
+        }
     }
 
     #[test]
-    fn materials_are_changed_and_come_back() {
-        let glass = Material {
-            glass: Some([0.8; 3]),
-            ..Material::default()
+    fn sliders_write_the_options_of_the_command() {
+        let scene = model();
+        let list = changeable(&scene, &scene.materials);
+        let names: Vec<&str> = list.iter().map(|surface| surface.name.as_str()).collect();
+        assert_eq!(names, ["floor", "east", "west"]);
+        let given = OptionValues::from(vec![("glass".to_owned(), "0.6".to_owned())]);
+        let mut options = Options::resolve(&given, &exposed_scene()).expect("options");
+        assert_eq!(list[1].by(&options).value, 0.6);
+        assert!((list[0].by(&options).value - 0.3).abs() < 1e-6);
+        let set = |options: &mut Options, number: usize, value: f64| {
+            let surface = Surface {
+                value,
+                ..list[number].clone()
+            };
+            surface.write(options, ["east", "west"].into_iter());
         };
-        let scene = Scene {
-            materials: vec![Material::default(), glass],
-            ..Scene::default()
-        };
-        let own = scene.materials.clone();
-        let other = changed(&scene, &own, &[Some(0.2), Some(0.4)]);
-        assert_eq!(other.materials[0].diffuse, [0.2; 3]);
-        assert_eq!(other.materials[1].glass, Some([0.4; 3]));
-        assert_eq!(changed(&other, &own, &[None, None]).materials, own);
+        set(&mut options, 1, 0.5);
+        set(&mut options, 0, 0.2);
+        set(&mut options, 0, 0.4);
+        let written = [&options.glass, &options.reflectance]
+            .map(|list| list.as_ref().map(ToString::to_string).unwrap_or_default());
+        assert_eq!(written, ["east=0.5,west=0.6", "floor=0.4"]);
+        let values: Vec<f64> = list.iter().map(|own| own.by(&options).value).collect();
+        assert_eq!(values, [0.4, 0.5, 0.6]);
+        // The model takes what was written.
+        let mut changed = model();
+        set_materials(&mut changed, &options).expect("its materials");
+        assert_eq!(changed.materials[0].diffuse, [0.4; 3]);
+        assert!((changed.materials[2].glass.expect("a pane")[0] - 0.6).abs() < 1e-6);
     }
 }

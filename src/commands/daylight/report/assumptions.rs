@@ -41,7 +41,10 @@ pub fn assumptions(results: &Results) -> String {
     lines.push(("blinds", of_blinds(results)));
     lines.push(("bounces", results.settings.bounces.to_string()));
     lines.push(("seed", results.settings.seed.to_string()));
-    lines.push(("paths of a sensor", results.outcome.paths().to_string()));
+    lines.push((
+        "paths of a sensor, mean",
+        results.outcome.paths().to_string(),
+    ));
     lines.push(("error", format!(
         "asked {}, reached {:.4}: largest root mean square over the sensors of a metric's standard error; 0.01 is one point of a percentage",
         results.args.error, results.year.error
@@ -109,12 +112,16 @@ fn of_weather(results: &Results, lines: &mut Vec<(&str, String)>) {
 fn of_blinds(results: &Results) -> String {
     match results.args.blinds {
         Blinds::None => "none".to_owned(),
-        Blinds::Lm83 => format!(
-            "LM-83-12, 2.2.6: all windows are one group, closed in hours in which more than {} % of the sensors have {BLINDS_LUX} lux of direct sun, {} of the occupied hours; closed they leave {} % of all light; for da, cda, udi, sda",
-            100.0 * BLINDS_SHARE,
-            results.measures.closed_hours(),
-            100.0 * CLOSED_BLINDS
-        ),
+        Blinds::Lm83 => {
+            let hours = results.measures.closed_hours();
+            let hours: Vec<String> = hours.iter().map(f64::to_string).collect();
+            format!(
+                "LM-83-12, 2.2.6: the windows of a room are one group, closed in hours in which more than {} % of its sensors have {BLINDS_LUX} lux of direct sun, {} of the occupied hours (each room); closed they leave {} % of all light; for da, cda, udi, sda",
+                100.0 * BLINDS_SHARE,
+                hours.join(", "),
+                100.0 * CLOSED_BLINDS
+            )
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::daylight::weather::Weather;
 use crate::scene::Scene;
 use crate::sensors::{
     Accuracy, BLOCK, Lights, Reading, Sensor, Shard, TracedScene, Year, YearLight, YearRun,
-    closed_hours, measure, measure_year,
+    close_blinds, measure, measure_year,
 };
 
 /// Most paths of a sensor, as `skylight daylight` has it.
@@ -88,7 +88,7 @@ impl Setup {
         let mut measures = measures.unwrap_or_default();
         if self.has_blinds {
             let traced = TracedScene::new(&self.scene);
-            measures.close_blinds(closed_hours(&self.sensors, &traced, &light));
+            measures.close_blinds(close_blinds(&self.sensors, &traced, &light));
         }
         let mut of_record = vec![None; weather.records.len()];
         for (at, hour) in light.hours.iter().enumerate() {

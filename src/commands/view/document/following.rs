@@ -17,7 +17,7 @@ impl Document {
             || self.screen.is_hdr != self.is_hdr
             || self.light.is_solving()
             || self.passes.is_making()
-            || self.surfaces.is_behind()
+            || self.surfaces.is_behind(&self.job.settings)
     }
 
     /// Updates daylight and frame to the options, as far as other threads have prepared that, and lets them prepare the rest: a new air,
@@ -64,10 +64,16 @@ impl Document {
         Ok(())
     }
 
-    /// Takes the scene with changed reflectances, if another thread has made it, or lets it do so.
+    /// Takes the scene with changed materials, if another thread has made it, or lets it do so.
     fn follow_surfaces(&mut self) -> Result<()> {
         let settings = *self.frame.settings();
-        if let Some((scene, frame)) = self.surfaces.follow(&self.job.scene, settings)? {
+        let made = self
+            .surfaces
+            .follow(&self.job.scene, &self.job.settings, settings);
+        if made.is_err() {
+            self.surfaces.take_back(&mut self.followed);
+        }
+        if let Some((scene, frame)) = made? {
             self.replaced
                 .push(Box::new(std::mem::replace(&mut self.frame, frame)));
             self.job.scene = scene;

@@ -4,35 +4,38 @@ use egui::Ui;
 
 use super::numbers::slider;
 use crate::commands::view::document::Document;
-use crate::commands::view::surfaces::MOST;
+use crate::daylight::glass::clearest;
 
 /// Most materials that have sliders.
 const MOST_LISTED: usize = 60;
 
 pub(super) fn show(ui: &mut Ui, document: &mut Document) {
-    let surfaces = &mut document.surfaces;
-    let mut changed = Vec::new();
-    for (number, (name, is_glass, value)) in surfaces.list().enumerate().take(MOST_LISTED) {
-        let name = if name.is_empty() { "unnamed" } else { name };
-        let mut new = value;
-        let slider = slider(&mut new, 0.0..=MOST).max_decimals(2).text(name);
-        let hint = if is_glass {
-            "transmittance of the glass, at normal incidence"
+    let (surfaces, settings) = (&document.surfaces, &mut document.job.settings);
+    let list = surfaces.list(settings);
+    for mut surface in list.iter().take(MOST_LISTED).cloned() {
+        let (range, hint) = if surface.is_glass {
+            let range = 0.01..=(clearest() * 100.0).floor() / 100.0;
+            (range, "transmittance of the glass, at normal incidence")
         } else {
-            "diffuse reflectance; where there is a texture, a factor on it"
+            (
+                0.0..=1.0,
+                "reflectance of a grey and matt surface in its place",
+            )
         };
-        if ui.add(slider).on_hover_text(hint).changed() && new != value {
-            changed.push((number, new));
+        let before = surface.value;
+        let slider = slider(&mut surface.value, range)
+            .max_decimals(2)
+            .text(&surface.name);
+        if ui.add(slider).on_hover_text(hint).changed() && surface.value != before {
+            surface.value = (surface.value * 100.0).round() / 100.0;
+            surfaces.set(settings, &surface);
         }
     }
-    let more = surfaces.list().count().saturating_sub(MOST_LISTED);
+    let more = list.len().saturating_sub(MOST_LISTED);
     if more > 0 {
         ui.weak(format!("and {more} more materials"));
     }
-    for (number, value) in changed {
-        surfaces.set(number, Some(value));
-    }
     if ui.button("those of the model").clicked() {
-        surfaces.reset();
+        (settings.glass, settings.reflectance) = (None, None);
     }
 }

@@ -21,7 +21,7 @@ use crate::error::Result;
 use crate::frame::{FrameSettings, Sampling};
 use crate::gpu::{Context, ContextOptions, GpuError};
 use crate::options::{Fresnel, Mirrors, OptionValues, Options, Penumbra, Phong, Preset};
-use crate::output::{LATITUDE, LONGITUDE, MOMENT, WHITE_LUMINANCE};
+use crate::output::{LATITUDE, LONGITUDE, MOMENT, WHITE_LUMINANCE, message};
 use crate::passes::dome::gather::DomeSettings;
 use crate::passes::light::lighting::{Precision, Show};
 use crate::passes::occlusion::ssao::SsaoSettings;
@@ -71,7 +71,7 @@ pub fn notice(context: &Context) {
     let device = context.summary();
     let missing = device.optional.iter().filter(|(_, used)| !used);
     for what in missing.filter_map(|(optional, _)| optional.fallback()) {
-        eprintln!("notice: \"{}\" has {what}", device.name);
+        message::notice(format!("\"{}\" has {what}", device.name));
     }
 }
 

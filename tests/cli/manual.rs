@@ -1,7 +1,8 @@
 //! The commands of README and docs: each is read by the command line's parser, and run at a small size unless its block says why not.
 //!
 //! A block `sh` is run line by line in a scratch folder that has the files of `docs/files` and short weather files, one folder for each
-//! text, so that later blocks may use what earlier ones made. A block `sh norun: reason` is not run.
+//! text, so that later blocks may use what earlier ones made. A block `sh norun: reason` is not run. A block `toml` is drawn as a scene file, or read as a
+//! file of defaults.
 
 #[allow(dead_code)]
 #[path = "../../examples/make_reference.rs"]
@@ -85,7 +86,10 @@ fn skylights(line: &str) -> Vec<Words> {
 fn small(line: &str) -> String {
     let there = |program: &&str| {
         let name = words(program).into_iter().next().unwrap_or_default();
-        name == "skylight" || name.starts_with("scripts/") || is_installed(&name)
+        name == "skylight"
+            || name.contains('=')
+            || name.starts_with("scripts/")
+            || is_installed(&name)
     };
     let parts = programs(line).into_iter().filter(there).map(smaller);
     parts.collect::<Vec<_>>().join(" | ")
@@ -193,10 +197,18 @@ fn run_text(text: &Text, count: &mut Count) {
         if let Some(reason) = block.info.strip_prefix("sh norun: ") {
             count.not_run.push(format!("{place}: {reason}"));
         }
-        if block.info != "sh" {
-            continue;
+        if block.info == "toml" {
+            fs::write(folder.path().join("block.toml"), block.lines.join("\n")).expect("written");
         }
-        for line in lines(&block) {
+        let lines = match block.info.as_str() {
+            "sh" => lines(&block),
+            "toml" if block.lines.iter().any(|line| line == "[[mesh]]") => {
+                vec!["skylight render block.toml -o block.png".to_owned()]
+            }
+            "toml" => vec!["SKYLIGHT_CONFIG=block.toml skylight --print-config".to_owned()],
+            _ => continue,
+        };
+        for line in lines {
             if line.contains(".mp4") && !is_installed("ffmpeg") {
                 count.without += 1;
                 continue;

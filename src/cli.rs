@@ -19,11 +19,16 @@ pub use series::{Expose, MergeArgs, SequenceArgs, StudyArgs};
 pub use vary::Vary;
 pub use view::ViewArgs;
 
-use crate::options::{OptionValues, Optional, SeveralPictures, choice, decides_light, one_line};
+use crate::options::{
+    OptionValues, Optional, SeveralPictures, choice, choice_enum, decides_light, one_line,
+};
 
 /// A command with its arguments.
 #[derive(Debug, Clone, PartialEq, Subcommand)]
 pub enum Command {
+    /// `--print-config`, instead of a command.
+    #[command(skip)]
+    PrintConfig,
     /// Render a picture to a file, or several of one scene, without a window.
     ///
     /// --camera, --moment and --when may be given several times, or as lists (--camera porch,pool): every camera in every moment. The scene is
@@ -35,6 +40,9 @@ pub enum Command {
         /// those of each picture. - is standard output as PNG, exr:- as EXR.
         #[arg(short, long, value_name = "FILE", default_value = "skylight.png", value_parser = args::named_or_stdout(&["png", "exr"]))]
         output: PathBuf,
+        /// Also write FILE.json: every option as resolved, command, place and moment, sun, exposure, device, version.
+        #[arg(long)]
+        sidecar: bool,
         /// An hour of a weather file.
         #[command(flatten)]
         at: HourArgs,
@@ -171,7 +179,7 @@ pub enum Command {
         #[arg(long, value_name = "NAME|INDEX", requires = "startup")]
         device: Option<String>,
         /// Machine-readable instead of text.
-        #[arg(long, conflicts_with = "startup")]
+        #[arg(long)]
         json: bool,
         /// Do without something that the devices have, as on devices that lack it.
         #[arg(long, value_name = "FEATURE", value_parser = choice::<Optional>())]
@@ -213,11 +221,51 @@ impl CliExit {
 #[command(name = "skylight", version, max_term_width = 100)]
 #[command(about = "Shows a 3D model in the daylight of a place and a moment, in cd/m² and lux")]
 #[command(
-    after_help = "An option overrides the scene file. Exit code: 0 done, 1 failed, 2 wrong usage. Results are on standard output, messages on standard error."
+    after_help = "An option overrides the scene file, and that the user's config.toml (see --print-config). Exit code: 0 done, 1 failed, 2 wrong usage. Results are on standard output, messages on standard error."
 )]
 struct Cli {
     #[command(subcommand)]
-    command: Command,
+    command: Option<Command>,
+    /// Print where the file of your own defaults is, and what it sets: lines as size = "1920x1080", with the names of options. Command line,
+    /// scene file and preset override it.
+    #[arg(long)]
+    print_config: bool,
+    /// Colour the first word of messages: by default on a terminal, unless NO_COLOR is in the environment.
+    #[arg(long, global = true, value_name = "WHEN", value_parser = choice::<Colour>(), default_value_t)]
+    color: Colour,
+}
+
+choice_enum! {
+    /// When messages are coloured.
+    #[derive(Default)]
+    pub enum Colour {
+        #[default]
+        Auto = "auto": "On a terminal, unless NO_COLOR is set",
+        Always = "always": "Always",
+        Never = "never": "Never",
+    }
+}
+
+impl Command {
+    /// The options that decide its picture or daylight.
+    pub fn options_mut(&mut self) -> Option<&mut OptionValues> {
+        match self {
+            Self::Render { options, .. } => Some(&mut options.first),
+            Self::Sequence { options, .. }
+            | Self::Study { options, .. }
+            | Self::View { options, .. }
+            | Self::Bench { options, .. }
+            | Self::Sky { options, .. }
+            | Self::Daylight { options, .. }
+            | Self::Weather { options, .. }
+            | Self::Bake { options, .. } => Some(options),
+            Self::PrintConfig
+            | Self::Merge { .. }
+            | Self::Compare { .. }
+            | Self::Validate { .. }
+            | Self::Info { .. } => None,
+        }
+    }
 }
 
 /// The definition of the command line, of which man pages and completions of shells are made (`examples/make_package`).
@@ -272,9 +320,33 @@ pub fn parse(words: impl IntoIterator<Item = OsString>) -> Result<Command, CliEx
 }
 
 fn read(words: &[OsString]) -> Result<Command, CliExit> {
-    Cli::try_parse_from(words)
-        .map(|cli| cli.command)
-        .map_err(|error| exit(&error, words))
+    let cli = Cli::try_parse_from(words).map_err(|error| exit(&error, words))?;
+    match (cli.command, cli.print_config) {
+        (Some(command), false) => Ok(command),
+        (None, true) => Ok(Command::PrintConfig),
+        (None, false) => Err(CliExit::Usage(missing_command())),
+        (Some(_), true) => {
+            let what = "--print-config stands alone; leave out the command";
+            Err(CliExit::Usage(what.to_owned()))
+        }
+    }
+}
+
+/// The choice of `--color`, also for a line that is wrong otherwise.
+pub fn colour(words: impl IntoIterator<Item = OsString>) -> anstream::ColorChoice {
+    let words: Vec<OsString> = words.into_iter().collect();
+    let given = |at: usize| {
+        let word = words[at].to_str()?;
+        match word.strip_prefix("--color")? {
+            "" => words.get(at + 1)?.to_str(),
+            rest => rest.strip_prefix('='),
+        }
+    };
+    match (0..words.len()).find_map(given) {
+        Some("always") => anstream::ColorChoice::Always,
+        Some("never") => anstream::ColorChoice::Never,
+        _ => anstream::ColorChoice::Auto,
+    }
 }
 
 fn exit(error: &clap::Error, words: &[OsString]) -> CliExit {

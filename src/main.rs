@@ -5,15 +5,16 @@ use std::process::ExitCode;
 use skylight::cli::{self, CliExit};
 use skylight::commands;
 use skylight::error::Result;
-use skylight::output::print;
+use skylight::output::{message, print};
 
 fn main() -> ExitCode {
+    cli::colour(std::env::args_os()).write_global();
     let command = match cli::parse(std::env::args_os()) {
         Ok(command) => command,
         Err(exit) => {
             match &exit {
                 CliExit::Help(text) => return ended(print(text)),
-                CliExit::Usage(line) => eprintln!("error: {line}"),
+                CliExit::Usage(line) => message::error(line),
             }
             return exit.code().into();
         }
@@ -25,7 +26,7 @@ fn ended(result: Result<()>) -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            message::error(&error);
             error.exit_code().into()
         }
     }

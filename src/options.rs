@@ -2,7 +2,7 @@
 //!
 //! [`Options`] holds the settings of a render. They are resolved from four sources, each overriding the ones before it: the
 //! preset, the scene file, the camera or moment that is selected from the scene file by name, and the user
-//! ([`OptionValues`], [`Options::resolve`]). [`Options::values`] is the inverse: file metadata, `--resume` and
+//! ([`OptionValues`], [`Options::resolve`]). Below all of them are the user's own defaults ([`read_config`]). [`Options::values`] is the inverse: file metadata, `--resume` and
 //! [`Options::command_line`] are made from it.
 //!
 //! A new option takes three edits:
@@ -15,6 +15,7 @@
 
 mod choices;
 mod command_line;
+mod config;
 mod given;
 mod materials;
 mod resolve;
@@ -40,6 +41,7 @@ pub use crate::passes::light::lighting::{Ambient, Show};
 use choices::VisibilityParser;
 pub use choices::{Choice, name};
 pub(crate) use choices::{choice, choice_enum, choices};
+pub use config::read_config;
 pub use given::OptionValues;
 pub use materials::ByMaterial;
 pub use resolve::ResolveError;
@@ -446,6 +448,10 @@ options! {
             quiet: bool,
             /// No warnings.
             no_warnings: bool,
+            /// File of your own defaults instead of config.toml in the user's folder (skylight --print-config tells which); none is none. So does
+            /// SKYLIGHT_CONFIG in the environment.
+            #[arg(value_name = "FILE|none")]
+            config: Option<String>,
             /// Every warning is an error: nothing is drawn or written, and the exit code is 1.
             strict: bool,
             /// Check every Vulkan call with the validation layers; slow.

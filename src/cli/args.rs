@@ -160,6 +160,9 @@ pub struct CompareArgs {
     /// Factor on scene-linear light before LDR-FLIP; by default it brings the 75th percentile of the reference to 0.5.
     #[arg(long, value_name = "FACTOR", value_parser = crate::options::exposure_factor)]
     pub exposure: Option<f64>,
+    /// Print JSON instead of a table.
+    #[arg(long)]
+    pub json: bool,
     /// Write the map of FLIP, black (none) to white.
     #[arg(long, value_name = "FILE.png", value_parser = named(&["png"]))]
     pub diff: Option<PathBuf>,

@@ -1,7 +1,8 @@
 //! `skylight compare`: the difference between two images, as figures and as an image.
 
-use std::fmt::Write as _;
 use std::path::Path;
+
+use serde_json::json;
 
 use crate::cli::CompareArgs;
 use crate::compare::{
@@ -22,12 +23,33 @@ pub fn run(args: &CompareArgs) -> Result<()> {
     check_comparable(&reference, &test)?;
     let mask = mask(args, &reference)?;
     let statistics = Statistics::new(&reference, &test, &mask)?;
-    let mut text = report(&statistics);
-    let map = flip_map(args, [&reference, &test], &mask, &mut text);
+    let perceived = Perceived::new(args, [&reference, &test], &mask);
     if let Some(path) = &args.diff {
-        write_map(path, reference.size, &map)?;
+        write_map(path, reference.size, &perceived.map)?;
     }
-    print(&text)
+    if args.json {
+        return print(&format!("{:#}\n", json(&statistics, &perceived)));
+    }
+    print(&(report(&statistics) + &perceived.report()))
+}
+
+/// The same figures as the table, by name.
+fn json(s: &Statistics, perceived: &Perceived) -> serde_json::Value {
+    let mut figures = json!({
+        "pixels": s.pixels,
+        "mean_ratio": s.mean_ratio,
+        "rmse_over_mean": s.rmse_over_mean,
+        "relative_error_median": s.median,
+        "relative_error_95": s.p95,
+        "flip": perceived.shown,
+    });
+    if let Some(hdr) = &perceived.hdr {
+        figures["flip_exposure"] = hdr.exposure.into();
+        figures["flip_hdr"] = hdr.flip.into();
+        let (start, stop, count) = hdr.exposures;
+        figures["flip_hdr_exposures"] = json!({ "start": start, "stop": stop, "count": count });
+    }
+    figures
 }
 
 fn mask(args: &CompareArgs, reference: &Picture) -> Result<Vec<bool>> {
@@ -53,38 +75,72 @@ fn report(s: &Statistics) -> String {
     )
 }
 
-/// Appends FLIP within the mask to `text`, and returns the map for the difference image.
-fn flip_map(
-    args: &CompareArgs,
-    [reference, test]: [&Picture; 2],
-    mask: &[bool],
-    text: &mut String,
-) -> Vec<f32> {
-    let (a, b) = (reference.masked(mask), test.masked(mask));
-    let mean = |map: &[f32]| {
-        let kept = map.iter().zip(mask).filter(|(_, kept)| **kept);
-        let kept: Vec<f32> = kept.map(|(v, _)| *v).collect();
-        flip::mean(&kept)
-    };
-    if reference.referred == Referred::Display {
-        let map = flip::ldr(&a, &b);
-        let _ = writeln!(text, "FLIP                   {:.4}", mean(&map));
-        return map;
+/// What a viewer sees of the difference.
+struct Perceived {
+    /// FLIP of the pictures as they are shown.
+    shown: f64,
+    /// Of scene-linear pictures only.
+    hdr: Option<Hdr>,
+    /// FLIP of every pixel, for the difference image.
+    map: Vec<f32>,
+}
+
+/// FLIP of scene-linear pictures.
+struct Hdr {
+    /// Factor with which they are shown.
+    exposure: f32,
+    /// HDR-FLIP.
+    flip: f64,
+    /// First and last exposure of HDR-FLIP, stops, and their number.
+    exposures: (f32, f32, usize),
+}
+
+impl Perceived {
+    /// FLIP within the mask.
+    fn new(args: &CompareArgs, [reference, test]: [&Picture; 2], mask: &[bool]) -> Self {
+        let (a, b) = (reference.masked(mask), test.masked(mask));
+        let mean = |map: &[f32]| {
+            let kept = map.iter().zip(mask).filter(|(_, kept)| **kept);
+            let kept: Vec<f32> = kept.map(|(v, _)| *v).collect();
+            flip::mean(&kept)
+        };
+        if reference.referred == Referred::Display {
+            let map = flip::ldr(&a, &b);
+            let shown = mean(&map);
+            return Self {
+                shown,
+                hdr: None,
+                map,
+            };
+        }
+        let exposure = args
+            .exposure
+            .map_or_else(|| exposure_of(reference, mask), |e| e as f32);
+        let shown = flip::ldr(&a.exposed(exposure), &b.exposed(exposure));
+        let map = flip::hdr(&a, &b);
+        let hdr = Hdr {
+            exposure,
+            flip: mean(&map),
+            exposures: flip::exposures(&a),
+        };
+        Self {
+            shown: mean(&shown),
+            hdr: Some(hdr),
+            map,
+        }
     }
-    let exposure = args
-        .exposure
-        .map_or_else(|| exposure_of(reference, mask), |e| e as f32);
-    let shown = flip::ldr(&a.exposed(exposure), &b.exposed(exposure));
-    let map = flip::hdr(&a, &b);
-    let (start, stop, count) = flip::exposures(&a);
-    let _ = writeln!(
-        text,
-        "FLIP, shown            {:.4} (exposure {exposure:.4e}, sRGB)\n\
-         FLIP, HDR              {:.4} ({count} exposures, {start:.2} to {stop:.2} stops)",
-        mean(&shown),
-        mean(&map)
-    );
-    map
+
+    fn report(&self) -> String {
+        let Some(hdr) = &self.hdr else {
+            return format!("FLIP                   {:.4}\n", self.shown);
+        };
+        let (start, stop, count) = hdr.exposures;
+        format!(
+            "FLIP, shown            {:.4} (exposure {:.4e}, sRGB)\n\
+             FLIP, HDR              {:.4} ({count} exposures, {start:.2} to {stop:.2} stops)\n",
+            self.shown, hdr.exposure, hdr.flip
+        )
+    }
 }
 
 fn write_map(path: &Path, size: [usize; 2], map: &[f32]) -> Result<()> {

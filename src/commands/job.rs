@@ -26,7 +26,7 @@ use crate::gpu::{Context, ContextOptions, GpuError, Recorder};
 use crate::options::{
     ByMaterial, Fresnel, Mirrors, OptionValues, Options, OptionsError, Penumbra, Phong, Preset,
 };
-use crate::output::{LATITUDE, LONGITUDE, MOMENT, WHITE_LUMINANCE};
+use crate::output::{LATITUDE, LONGITUDE, MOMENT, WHITE_LUMINANCE, message};
 use crate::passes::bounces::cells::Bounces;
 use crate::passes::dome::gather::DomeSettings;
 use crate::passes::light::lighting::{Ambient, Precision, Show};
@@ -77,7 +77,7 @@ pub fn notice(context: &Context) {
     let device = context.summary();
     let missing = device.optional.iter().filter(|(_, used)| !used);
     for what in missing.filter_map(|(optional, _)| optional.fallback()) {
-        eprintln!("notice: \"{}\" has {what}", device.name);
+        message::notice(format!("\"{}\" has {what}", device.name));
     }
 }
 

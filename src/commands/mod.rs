@@ -3,6 +3,7 @@
 mod bake;
 mod bench;
 mod compare;
+mod config;
 mod daylight;
 mod hour;
 mod info;
@@ -20,6 +21,7 @@ mod render;
 mod renderer;
 mod samples;
 mod sequence;
+mod sidecar;
 mod sky;
 mod sky_almanac;
 mod sky_compare;
@@ -39,6 +41,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::cli::Command;
 use crate::error::{Error, Result};
 use crate::options::Options;
+use crate::output::message;
 use crate::scene::shortened;
 
 /// Runs a command.
@@ -46,15 +49,17 @@ use crate::scene::shortened;
 /// # Errors
 /// The reason for the failure, in one line.
 pub fn run(command: Command) -> Result<()> {
-    match command {
+    match config::applied(command)? {
+        Command::PrintConfig => config::show(),
         Command::Render {
             scene,
             output,
+            sidecar,
             at,
             mut options,
         } => {
             options.first = hour::applied(&at, scene.as_deref(), options.first)?;
-            render::run(scene.as_deref(), &output, &options)
+            render::run(scene.as_deref(), (&output, sidecar), &options)
         }
         Command::Sequence { args, options } => sequence::run(&args, &options),
         Command::Study { args, options } => study::run(&args, &options),
@@ -87,8 +92,8 @@ pub fn run(command: Command) -> Result<()> {
             startup: true,
             device,
             without,
-            ..
-        } => startup::run(device, without),
+            json,
+        } => startup::run(device, without, json),
         Command::Info { without, json, .. } => info::run(without.as_slice(), json),
     }
 }
@@ -103,7 +108,7 @@ const MAX_STRICT: usize = 120;
 fn tell<'w>(settings: &Options, warnings: impl Iterator<Item = &'w String> + Clone) -> Result<()> {
     check_strict(settings, warnings.clone())?;
     if !settings.no_warnings {
-        warnings.for_each(|warning| eprintln!("warning: {warning}"));
+        warnings.for_each(message::warning);
     }
     Ok(())
 }
@@ -119,7 +124,7 @@ fn tell_no_device(command: &str, settings: &Options) {
         ("--without", settings.without.is_some()),
     ];
     for (option, _) in given.iter().filter(|(_, is_given)| *is_given) {
-        eprintln!("notice: {command} needs no device: {option} has no effect");
+        message::notice(format!("{command} needs no device: {option} has no effect"));
     }
 }
 

@@ -5,7 +5,8 @@ use std::path::Path;
 use super::interrupt;
 use super::job::Job;
 use super::names::files;
-use super::renderer::{Renderer, precision, wanted_layers};
+use super::renderer::{Renderer, Saved, precision, wanted_layers};
+use super::sidecar;
 use super::tiled::Tiled;
 use crate::error::{Error, Result};
 use crate::options::{AntiAliasing, OptionValues, Options, OptionsError, SeveralPictures};
@@ -13,14 +14,22 @@ use crate::output::{check_writable, is_exr, print_beside};
 use crate::passes::light::lighting::Show;
 use crate::passes::picture::tone_map::is_light;
 
-/// Renders pictures of `scene` to `output`, whose placeholders tell several apart. Scene and device are loaded once.
+/// Renders pictures of `scene` to `output`, whose placeholders tell several apart, each with a sidecar if wanted. Scene and device are
+/// loaded once.
 ///
 /// # Errors
 /// Any error up to writing the files; existing files are then left unchanged.
-pub fn run(scene: Option<&Path>, output: &Path, options: &SeveralPictures) -> Result<()> {
+pub fn run(
+    scene: Option<&Path>,
+    (output, has_sidecar): (&Path, bool),
+    options: &SeveralPictures,
+) -> Result<()> {
     let exr = is_exr(output);
     check_layers(&options.first, exr)?;
     check_writable(output)?;
+    if has_sidecar {
+        sidecar::check(output)?;
+    }
     let pictures = options.pictures()?;
     let (mut job, context) = Job::on_device(scene, &pictures[0])?;
     check_anti_aliasing(&job.settings, exr)?;
@@ -34,7 +43,7 @@ pub fn run(scene: Option<&Path>, output: &Path, options: &SeveralPictures) -> Re
         if done > 0 {
             job.turn_to(options)?;
         }
-        let summary = if let Some(tiled) = Tiled::new(&job, &context, precision(exr))? {
+        let saved = if let Some(tiled) = Tiled::new(&job, &context, precision(exr))? {
             save_tiled(tiled, &job, file)?
         } else {
             let renderer = match &mut renderer {
@@ -47,7 +56,10 @@ pub fn run(scene: Option<&Path>, output: &Path, options: &SeveralPictures) -> Re
             renderer.save(&job, file)?
         };
         context.check_validation()?;
-        print_beside(file, &format!("{}: {summary}\n", file.display()))?;
+        if has_sidecar {
+            sidecar::write(&job, &context, file, &saved.metadata)?;
+        }
+        print_beside(file, &format!("{}: {}\n", file.display(), saved.summary))?;
     }
     Ok(())
 }
@@ -66,7 +78,7 @@ pub(super) fn check_layers(options: &OptionValues, exr: bool) -> Result<()> {
     Ok(())
 }
 
-fn save_tiled(tiled: Tiled<'_>, job: &Job, file: &Path) -> Result<String> {
+fn save_tiled(tiled: Tiled<'_>, job: &Job, file: &Path) -> Result<Saved> {
     if !is_exr(file) {
         return tiled.save_png(file);
     }

@@ -57,6 +57,14 @@ pub(super) struct Picture {
     summary: String,
 }
 
+/// What was written.
+pub(super) struct Saved {
+    /// Size, exposure and samples, for the line on stdout.
+    pub summary: String,
+    /// The parameters in the file.
+    pub metadata: Metadata,
+}
+
 impl Renderer {
     /// Uploads the scene of a job.
     ///
@@ -103,24 +111,27 @@ impl Renderer {
         Ok(self.recorder.finish()?)
     }
 
-    /// Draws a picture and writes it, with fewer samples if it is interrupted; returns a summary.
+    /// Draws a picture and writes it, with fewer samples if it is interrupted.
     ///
     /// # Errors
     /// Any error up to writing the file; an existing file is then left unchanged.
-    pub fn save(&mut self, job: &Job, path: &Path) -> Result<String> {
+    pub fn save(&mut self, job: &Job, path: &Path) -> Result<Saved> {
         let saved = self.write(job, path, true)?;
-        Ok(saved.unwrap_or_default())
+        Ok(saved.unwrap_or_else(|| Saved {
+            summary: String::new(),
+            metadata: Metadata::new(),
+        }))
     }
 
     /// As [`Renderer::save`], but `None` if it is interrupted: then nothing is written.
     ///
     /// # Errors
     /// See there.
-    pub fn save_whole(&mut self, job: &Job, path: &Path) -> Result<Option<String>> {
+    pub fn save_whole(&mut self, job: &Job, path: &Path) -> Result<Option<Saved>> {
         self.write(job, path, false)
     }
 
-    fn write(&mut self, job: &Job, path: &Path, keeps_part: bool) -> Result<Option<String>> {
+    fn write(&mut self, job: &Job, path: &Path, keeps_part: bool) -> Result<Option<Saved>> {
         if self.precision == Precision::Float {
             return self.write_exr(job, path, keeps_part);
         }
@@ -138,8 +149,10 @@ impl Renderer {
         self.progress.clear();
         let samples = picture.drawn.summary(&self.rule);
         let [width, height] = picture.size;
-        let summary = format!("{width}x{height}{}{samples}", picture.summary);
-        Ok(Some(summary))
+        Ok(Some(Saved {
+            summary: format!("{width}x{height}{}{samples}", picture.summary),
+            metadata: picture.metadata,
+        }))
     }
 
     /// Draws the displayed quantity.
@@ -232,7 +245,7 @@ impl Renderer {
         Ok(Some(job.automatic_ev100(f64::from(average) * 1e3)))
     }
 
-    fn write_exr(&mut self, job: &Job, path: &Path, keeps_part: bool) -> Result<Option<String>> {
+    fn write_exr(&mut self, job: &Job, path: &Path, keeps_part: bool) -> Result<Option<Saved>> {
         let shown = job.settings.show;
         let (picture, drawn) = self.layer(job, (shown, ""), self.rule)?;
         let mut layers = vec![picture];
@@ -264,8 +277,10 @@ impl Renderer {
         self.progress.clear();
         let (count, samples) = (layers.len(), drawn.summary(&self.rule));
         let [width, height] = size;
-        let summary = format!("{width}x{height}, {count} layer(s){samples}");
-        Ok(Some(summary))
+        Ok(Some(Saved {
+            summary: format!("{width}x{height}, {count} layer(s){samples}"),
+            metadata,
+        }))
     }
 
     fn layer(

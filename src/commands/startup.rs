@@ -3,6 +3,8 @@
 use std::fmt::Write as _;
 use std::time::Instant;
 
+use serde_json::json;
+
 use super::job::Job;
 use crate::error::Result;
 use crate::frame::Frame;
@@ -18,7 +20,7 @@ const LISTED: usize = 8;
 ///
 /// # Errors
 /// No usable device, or a device error.
-pub fn run(device: Option<String>, without: Option<Optional>) -> Result<()> {
+pub fn run(device: Option<String>, without: Option<Optional>, as_json: bool) -> Result<()> {
     let mut clock = Clock::new();
     let mut options = OptionValues::default();
     if let Some(device) = device {
@@ -47,6 +49,9 @@ pub fn run(device: Option<String>, without: Option<Optional>) -> Result<()> {
         clock.done(name);
     }
     context.check_validation()?;
+    if as_json {
+        return print(&format!("{:#}\n", json(&clock.steps, &context)));
+    }
     print(&report(&clock.steps, &context))
 }
 
@@ -106,6 +111,25 @@ fn report(steps: &[Step], context: &Context) -> String {
         4 * words / 1024
     );
     text
+}
+
+/// The same figures, every pipeline among them, slowest first; milliseconds.
+fn json(steps: &[Step], context: &Context) -> serde_json::Value {
+    let list = |steps: &[Step]| -> Vec<serde_json::Value> {
+        let step = |step: &Step| json!({ "name": step.name, "ms": step.ms });
+        steps.iter().map(step).collect()
+    };
+    let mut pipelines = context.pipelines();
+    pipelines.sort_by(|a, b| b.ms.total_cmp(&a.ms));
+    json!({
+        "device": context.summary().name,
+        "steps": list(steps),
+        "total_ms": steps.iter().map(|s| s.ms).sum::<f64>(),
+        "opening": list(context.opening()),
+        "pipelines": list(&pipelines),
+        "pipeline_cache": cache(context.cache_state()),
+        "shader_modules": shaders::ALL.len(),
+    })
 }
 
 fn cache(state: CacheState) -> String {

@@ -14,6 +14,7 @@ use indicatif::ProgressBar;
 use self::plan::{Plan, Span};
 use super::job::Job;
 use super::progress;
+use super::renderer::Saved;
 use crate::daylight::colour::luminance;
 use crate::daylight::exposure::automatic;
 use crate::daylight::false_colour::Range;
@@ -220,11 +221,11 @@ impl<'j> Tiled<'j> {
         Ok(whole)
     }
 
-    /// Writes a PNG; returns a summary with size and exposure.
+    /// Writes a PNG; the summary has size and exposure.
     ///
     /// # Errors
     /// Any error up to writing the file; an existing file is then left unchanged.
-    pub fn save_png(mut self, path: &Path) -> Result<String> {
+    pub fn save_png(mut self, path: &Path) -> Result<Saved> {
         let settings = &self.job.settings;
         if settings.false_colour.is_some() {
             let what = "--false-colour draws its legend on whole pictures; choose a smaller --size, or a larger --tile";
@@ -240,7 +241,10 @@ impl<'j> Tiled<'j> {
         }
         rows.finish()?;
         let exposure = ev100.map_or(String::new(), |ev| format!(", EV100 {ev:.2}"));
-        Ok(self.summary(&exposure))
+        Ok(Saved {
+            summary: self.summary(&exposure),
+            metadata,
+        })
     }
 
     /// EV100 used; `None` for quantities that are not exposed.
@@ -252,11 +256,11 @@ impl<'j> Tiled<'j> {
         settings.ev100.or_else(|| self.average.map(automatic))
     }
 
-    /// Writes an EXR of these quantities, the image first; returns a summary with size and layers.
+    /// Writes an EXR of these quantities, the image first; the summary has size and layers.
     ///
     /// # Errors
     /// Any error up to writing the file; an existing file is then left unchanged.
-    pub fn save_exr(mut self, path: &Path, shows: &[Show], kinds: &[LayerKind]) -> Result<String> {
+    pub fn save_exr(mut self, path: &Path, shows: &[Show], kinds: &[LayerKind]) -> Result<Saved> {
         let metadata = self.job.metadata();
         let mut bands = self.plan.bands.clone().into_iter();
         let size = self.plan.full.to_array();
@@ -269,7 +273,10 @@ impl<'j> Tiled<'j> {
                 .map(|show| self.layer(*show, &band, shows.len() > 1));
             layers.collect()
         })?;
-        Ok(self.summary(&format!(", {} layer(s)", kinds.len())))
+        Ok(Saved {
+            summary: self.summary(&format!(", {} layer(s)", kinds.len())),
+            metadata,
+        })
     }
 
     /// One quantity in a row of tiles, in the file's unit.

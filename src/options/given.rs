@@ -15,18 +15,25 @@ const REPLACES: [(&str, &[&str]); 3] = [
 
 /// Options that are set, by name, each at most once. The text of a flag is `true`.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct OptionValues(Vec<(String, String)>);
+pub struct OptionValues {
+    pairs: Vec<(String, String)>,
+    /// The user's own defaults, which scene and preset override.
+    defaults: Vec<(String, String)>,
+}
 
 impl From<Vec<(String, String)>> for OptionValues {
     fn from(pairs: Vec<(String, String)>) -> Self {
-        Self(pairs)
+        Self {
+            pairs,
+            defaults: Vec::new(),
+        }
     }
 }
 
 impl OptionValues {
     /// Text of an option, if it is set.
     pub fn get(&self, name: &str) -> Option<&str> {
-        let mut pairs = self.0.iter();
+        let mut pairs = self.pairs.iter();
         pairs
             .find(|(own, _)| own == name)
             .map(|(_, text)| text.as_str())
@@ -41,7 +48,7 @@ impl OptionValues {
             name
         };
         self.remove(&[name]);
-        self.0.push((name.to_owned(), text));
+        self.pairs.push((name.to_owned(), text));
     }
 
     /// Sets an option unless it is already set.
@@ -53,17 +60,32 @@ impl OptionValues {
 
     /// Unsets options, which leaves them to the lower sources.
     pub fn remove(&mut self, names: &[&str]) {
-        self.0.retain(|(name, _)| !names.contains(&name.as_str()));
+        self.pairs
+            .retain(|(name, _)| !names.contains(&name.as_str()));
     }
 
     /// Names and texts, in the order they were set.
     pub fn iter(&self) -> impl Iterator<Item = &(String, String)> {
-        self.0.iter()
+        self.pairs.iter()
     }
 
     /// Names and texts, in the order they were set.
     pub fn into_pairs(self) -> Vec<(String, String)> {
-        self.0
+        self.pairs
+    }
+
+    /// The user's own defaults: what neither these options nor scene and preset say.
+    pub fn defaults(&self) -> Self {
+        Self::from(self.defaults.clone())
+    }
+
+    /// Replaces the user's own defaults.
+    #[must_use]
+    pub fn with_defaults(self, defaults: Self) -> Self {
+        Self {
+            defaults: defaults.pairs,
+            ..self
+        }
     }
 
     /// These options, and those of `base` that none of these overrides.
@@ -73,9 +95,12 @@ impl OptionValues {
     #[must_use]
     pub fn over(self, base: Self) -> Self {
         let mut all = base;
-        all.0
-            .retain(|(name, _)| self.0.iter().all(|(own, _)| !replaces(own, name)));
-        all.0.extend(self.0);
+        all.pairs
+            .retain(|(name, _)| self.pairs.iter().all(|(own, _)| !replaces(own, name)));
+        all.pairs.extend(self.pairs);
+        if !self.defaults.is_empty() {
+            all.defaults = self.defaults;
+        }
         all
     }
 
@@ -85,7 +110,7 @@ impl OptionValues {
     /// # Errors
     /// An unknown name, an invalid value, or options that conflict.
     pub fn alone(&self) -> Result<Options, OptionsError> {
-        let mut values = self.clone();
+        let mut values = self.clone().over(self.defaults());
         values.remove(&["when"]);
         values.parse().map(|(options, _)| options)
     }
@@ -107,14 +132,14 @@ impl OptionValues {
     }
 
     fn matches(&self) -> Result<ArgMatches, OptionsError> {
-        let words = self
-            .0
-            .iter()
-            .filter_map(|(name, text)| match (is_flag(name), text.as_str()) {
-                (true, "true") => Some(format!("--{name}")),
-                (true, "false") => None,
-                _ => Some(format!("--{name}={text}")),
-            });
+        let words =
+            self.pairs
+                .iter()
+                .filter_map(|(name, text)| match (is_flag(name), text.as_str()) {
+                    (true, "true") => Some(format!("--{name}")),
+                    (true, "false") => None,
+                    _ => Some(format!("--{name}={text}")),
+                });
         let matches = DEFINITION.clone().try_get_matches_from(words);
         matches.map_err(|error| OptionsError(one_line(&error)))
     }

@@ -51,7 +51,8 @@ pub enum ResolveError {
 }
 
 impl Options {
-    /// Resolves options: the user's override the scene file's, which override the preset's, which override the defaults.
+    /// Resolves options: the user's override the scene file's, which override the preset's, which override the user's own defaults
+    /// ([`OptionValues::defaults`]), which override those of the program.
     ///
     /// # Errors
     /// An invalid key or value in the scene file, an unknown camera or moment, options that contradict each other.
@@ -79,10 +80,11 @@ impl Options {
             base = camera.over(base);
         }
         user.remove(&["moment", "camera"]);
-        let mut given = user.over(base);
+        let mut given = user.clone().over(base);
         if given.get("preset") == Some(name(Preset::Lecture)) {
             given = given.over(LECTURE.as_slice().into());
         }
+        given = given.over(user.defaults());
         if let Some(camera) = camera {
             given.set("camera", camera);
         }

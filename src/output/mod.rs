@@ -8,6 +8,7 @@ mod exr_rows;
 mod hdr;
 mod ktx2;
 mod legend;
+pub mod message;
 mod png;
 mod rows;
 mod sheet;

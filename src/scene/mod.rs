@@ -60,6 +60,7 @@ pub use microfacet::Microfacet;
 pub use placement::{Unit, Up};
 pub use progress::Progress;
 pub use reflectance::{Mean, Reflectances};
+pub(crate) use scene_file::option_text;
 pub use scene_file::{NamedCamera, NamedMoment, NamedOptions, weather_of};
 pub use subject::Subject;
 pub use texture::{Encoding, Texture, Wrap};

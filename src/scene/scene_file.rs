@@ -280,12 +280,12 @@ fn options(table: &Table) -> Result<Vec<NamedOptions>, String> {
 fn table_pairs(table: &Table) -> Result<Pairs, String> {
     table
         .iter()
-        .map(|(key, value)| Ok((key.clone(), text(key, value)?)))
+        .map(|(key, value)| Ok((key.clone(), option_text(key, value)?)))
         .collect()
 }
 
 /// A value as it would be typed after `--key=`.
-fn text(key: &str, value: &Value) -> Result<String, String> {
+pub(crate) fn option_text(key: &str, value: &Value) -> Result<String, String> {
     match value {
         Value::String(text) => Ok(text.clone()),
         Value::Integer(number) => Ok(number.to_string()),
@@ -298,7 +298,7 @@ fn text(key: &str, value: &Value) -> Result<String, String> {
                     if value.is_array() {
                         Err(bad_value(key))
                     } else {
-                        text(key, value)
+                        option_text(key, value)
                     }
                 })
                 .collect();

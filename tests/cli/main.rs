@@ -4,6 +4,8 @@
 mod common;
 #[path = "../common/pretended.rs"]
 mod pretended;
+#[path = "../common/texts.rs"]
+mod texts;
 
 mod bake;
 mod bake_ktx2;
@@ -16,7 +18,9 @@ mod daylight_year;
 mod devices;
 mod false_colour;
 mod gpu_check;
+mod habits;
 mod honeybee;
+mod manual;
 mod mitsuba_bake;
 mod moment;
 mod options;

@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::pretended::Layer;
 
 /// The README's table begins behind this line.
-const BEGIN: &str = "<!-- skylight validate, on Mesa 22.3.6's lavapipe -->\n\n```\n";
+const BEGIN: &str = "<!-- skylight validate, on Mesa 22.3.6's lavapipe -->\n\n```text\n";
 
 /// Errors of other drivers may be this much larger or smaller than those of the README.
 const OTHER_DRIVERS: f64 = 4.0;

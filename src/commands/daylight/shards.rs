@@ -115,7 +115,7 @@ pub(in crate::commands) fn merge(parts: &Parts, args: &MergeArgs) -> Result<()> 
             (merged.text(), merged.oddities())
         }
     };
-    odd.iter().for_each(|line| eprintln!("warning: {line}"));
+    odd.iter().for_each(crate::output::message::warning);
     deliver(output, &text)
 }
 

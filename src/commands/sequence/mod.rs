@@ -257,11 +257,12 @@ impl Sequence<'_> {
         }
         let file = self.names.file(number);
         let (renderer, job) = self.renderer()?;
-        let Some(summary) = renderer.save_whole(job, &file)? else {
+        let Some(saved) = renderer.save_whole(job, &file)? else {
             return Ok(false);
         };
         self.context.check_validation()?;
-        self.drawn.push(DrawnFrame::new(number, &file, summary)?);
+        self.drawn
+            .push(DrawnFrame::new(number, &file, saved.summary)?);
         Ok(true)
     }
 

@@ -113,7 +113,7 @@ impl App {
             && let Err(error) = super::resume::keep(document)
             && !self.options.no_warnings
         {
-            eprintln!("warning: {error}");
+            crate::output::message::warning(error);
         }
     }
 

@@ -124,7 +124,7 @@ impl App {
             self.loader.start(scene, &self.options);
         }
         if !self.options.no_warnings {
-            eprintln!("warning: {RECOVERED}");
+            crate::output::message::warning(RECOVERED);
         }
         self.interface.warn(RECOVERED);
         stage.window.request_redraw();

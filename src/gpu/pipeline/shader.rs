@@ -104,6 +104,23 @@ pub struct Shader {
 }
 
 impl Shader {
+    /// A stage of your own, compiled to SPIR-V, with an empty interface. State what it declares:
+    /// `Shader { bindings: .., outputs: 1, ..Shader::new(..) }`; what differs from the code is undefined behaviour of the device.
+    pub const fn new(name: &'static str, stage: Stage, words: &'static [u32]) -> Self {
+        Self {
+            name,
+            stage,
+            bindings: &[],
+            push: None,
+            constants: &[],
+            outputs: 0,
+            local_size: None,
+            words,
+            #[cfg(feature = "hot-reload")]
+            declared: "",
+        }
+    }
+
     /// Members of the uniform block with this name, or of the push constants (`push`).
     pub const fn block(&self, name: &str) -> Option<&'static [Field]> {
         if text_equals(name, "push") {

@@ -59,7 +59,7 @@ impl Notes {
 
     /// Shows an error, in the window and on stderr.
     pub(in crate::commands::view) fn complain(&mut self, text: &str) {
-        eprintln!("error: {text}");
+        crate::output::message::error(text);
         self.add(text, None);
     }
 

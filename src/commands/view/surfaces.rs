@@ -47,9 +47,9 @@ impl Surface {
             &options.reflectance
         };
         let entries = asked.iter().flat_map(|list| &list.0);
-        let mine = entries.filter(|(name, _)| name.is_empty() || *name == self.name);
+        let mut mine = entries.filter(|(name, _)| name.is_empty() || *name == self.name);
         Self {
-            value: mine.last().map_or(self.value, |(_, value)| *value),
+            value: mine.next_back().map_or(self.value, |(_, value)| *value),
             ..self.clone()
         }
     }

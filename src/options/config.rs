@@ -119,7 +119,7 @@ mod tests {
             (
                 "# mine\nsiez = \"4x3\"\n",
                 "line 2: ",
-                "\"size\" or another",
+                "write \"size\", or",
             ),
             ("zzz = 1", "line 1: ", "unknown option \"zzz\""),
             ("size = \"4\"", "line 1: ", "WIDTHxHEIGHT"),

@@ -116,11 +116,7 @@ mod tests {
     #[test]
     fn what_is_wrong_is_told_with_its_line() {
         for (text, line, part) in [
-            (
-                "# mine\nsiez = \"4x3\"\n",
-                "line 2: ",
-                "\"size\" or another",
-            ),
+            ("# mine\nsiez = \"4x3\"\n", "line 2: ", "write \"size\", or"),
             ("zzz = 1", "line 1: ", "unknown option \"zzz\""),
             ("size = \"4\"", "line 1: ", "WIDTHxHEIGHT"),
             ("quiet = 1", "line 1: ", "true or false"),

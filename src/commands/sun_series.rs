@@ -134,7 +134,8 @@ mod tests {
             let mut places: Vec<f32> = spread(&suns).iter().map(|sun| sun.x).collect();
             let first: f32 = places.iter().take(8).sum();
             if count == 144 {
-                assert!((first / 8.0 - 71.5).abs() < 10.0, "{places:?}");
+                // Within a tenth of the day of its middle.
+                assert!((first / 8.0 - 71.5).abs() < 14.4, "{places:?}");
             }
             places.sort_by(f32::total_cmp);
             assert!(places.iter().zip(0..).all(|(x, at)| *x == at as f32));

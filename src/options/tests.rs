@@ -11,11 +11,12 @@ use crate::daylight::sampling::rnd;
 use crate::scene::{Bounds, Camera, Loaded, Material, NamedOptions, Scene};
 
 /// Texts of which each parser accepts at least one. The first is also the name of a camera and of a moment of [`scene`].
-const TEXTS: [&str; 19] = [
+const TEXTS: [&str; 20] = [
     "7",
     "-7.25",
     "0.5",
     "64",
+    "10",
     "100",
     "16384",
     "0.012345678901234567",

@@ -67,7 +67,7 @@ fn tables_on_standard_output_are_alone_there() {
     assert!(!folder.path().join("-").exists());
 }
 
-/// Nothing is coloured, so NO_COLOR has nothing to do.
+/// Colours are for terminals alone.
 #[test]
 fn no_text_has_escape_sequences() {
     let folder = place();
@@ -80,7 +80,8 @@ fn no_text_has_escape_sequences() {
     ] {
         let output = run(&folder, line);
         let all = [output.stdout, output.stderr].concat();
-        assert!(!all.is_empty() && !all.contains(&0x1b), "{line}");
+        let shown = String::from_utf8_lossy(&all);
+        assert!(!all.is_empty() && !all.contains(&0x1b), "{line}: {shown:?}");
     }
 }
 

@@ -100,8 +100,9 @@ fn pictures_have_the_hours_of_the_sensors() {
     println!(
         "{count} pixels: mean error {mean:.3} h, at most {outside:.3} h beside the sensors around, most {most:.3} h"
     );
+    // A step for the ends of the hours of sun, and a quarter for the edges of the shadow maps.
     assert!(
-        count > 1000.0 && mean < 0.5 * STEP && outside < STEP,
+        count > 1000.0 && mean < 0.5 * STEP && outside < 1.25 * STEP,
         "{mean} {outside}"
     );
     // Open ground has the sun all day: 2/15 acos(-tan φ tan δ), with the declination of the solstice.

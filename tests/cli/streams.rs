@@ -10,8 +10,7 @@ const RENDER: &str =
 fn run(folder: &tempfile::TempDir, line: &str) -> Output {
     Command::new(env!("CARGO_BIN_EXE_skylight"))
         .current_dir(folder.path())
-        .env_remove("NO_COLOR")
-        .env("CLICOLOR_FORCE", "1")
+        .env_remove("CLICOLOR_FORCE")
         .args(line.split_whitespace())
         .output()
         .expect("the program starts")
@@ -67,10 +66,22 @@ fn tables_on_standard_output_are_alone_there() {
     assert!(!folder.path().join("-").exists());
 }
 
-/// Colours are for terminals alone.
+/// Colours are for terminals, and for those who force them; NO_COLOR is stronger.
 #[test]
 fn no_text_has_escape_sequences() {
     let folder = place();
+    let with = |line: &str, variables: &[(&str, &str)]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_skylight"))
+            .current_dir(folder.path())
+            .env_remove("NO_COLOR")
+            .env_remove("CLICOLOR_FORCE")
+            .envs(variables.iter().copied())
+            .args(line.split_whitespace())
+            .output()
+            .expect("the program starts");
+        [output.stdout, output.stderr].concat()
+    };
+    let forced = [("CLICOLOR_FORCE", "1"), ("NO_COLOR", "1")];
     for line in [
         "--help",
         "render --help",
@@ -78,11 +89,16 @@ fn no_text_has_escape_sequences() {
         "render none.obj",
         "paint",
     ] {
-        let output = run(&folder, line);
-        let all = [output.stdout, output.stderr].concat();
-        let shown = String::from_utf8_lossy(&all);
-        assert!(!all.is_empty() && !all.contains(&0x1b), "{line}: {shown:?}");
+        for variables in [&[][..], &forced] {
+            let said = with(line, variables);
+            let shown = String::from_utf8_lossy(&said);
+            assert!(
+                !said.is_empty() && !said.contains(&0x1b),
+                "{line}: {shown:?}"
+            );
+        }
     }
+    assert!(with("render none.obj", &forced[..1]).contains(&0x1b));
 }
 
 #[test]

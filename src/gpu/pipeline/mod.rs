@@ -101,7 +101,7 @@ pub(in crate::gpu) struct Slot {
     stages: vk::ShaderStageFlags,
 }
 
-/// A pipeline with its layout and interface. Pipelines of one description share what the driver made: see [`kept::Kept`].
+/// A pipeline with its layout and interface. Pipelines of one description share what the driver made (`kept.rs`).
 pub struct Pipeline {
     pub(in crate::gpu) made: Arc<Made>,
     name: String,

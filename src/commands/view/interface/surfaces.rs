@@ -26,8 +26,11 @@ pub(super) fn show(ui: &mut Ui, document: &mut Document) {
         let slider = slider(&mut surface.value, range)
             .max_decimals(2)
             .text(&surface.name);
-        if ui.add(slider).on_hover_text(hint).changed() && surface.value != before {
-            surface.value = (surface.value * 100.0).round() / 100.0;
+        let hundredths = |value: f64| (value * 100.0).round();
+        // A slider rounds what it is given, which is no change.
+        let is_changed = ui.add(slider).on_hover_text(hint).changed();
+        if is_changed && hundredths(surface.value) != hundredths(before) {
+            surface.value = hundredths(surface.value) / 100.0;
             surfaces.set(settings, &surface);
         }
     }

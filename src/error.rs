@@ -122,6 +122,11 @@ impl From<ResolveError> for Error {
 }
 
 impl Error {
+    /// Wrong usage: what is wrong, and the remedy.
+    pub fn usage(what: impl Into<String>) -> Self {
+        Self::Options(OptionsError(what.into()))
+    }
+
     /// Whether nothing can be drawn any more.
     pub fn is_device_lost(&self) -> bool {
         matches!(self, Self::Gpu(error) if error.is_device_lost())

@@ -12,7 +12,7 @@ use crate::daylight::place::Place;
 use crate::daylight::weather::clock::ClockCheck;
 use crate::daylight::weather::{Record, Weather, YearHour};
 use crate::error::{Error, Result};
-use crate::options::{OptionValues, OptionsError};
+use crate::options::OptionValues;
 use crate::scene::{Loaded, NamedOptions, SceneError, weather_of};
 
 /// What a weather file gives; none of it can be given besides.
@@ -44,14 +44,10 @@ type Pairs = Vec<(String, String)>;
 pub(super) fn check_given(options: &OptionValues) -> Result<()> {
     match GIVEN.iter().find(|name| options.get(name).is_some()) {
         None => Ok(()),
-        Some(name) => Err(wrong(format!(
+        Some(name) => Err(Error::usage(format!(
             "--weather gives place, sun and sky; leave out --{name}"
         ))),
     }
-}
-
-fn wrong(what: String) -> Error {
-    Error::from(OptionsError(what))
 }
 
 /// What an hour of a weather file gives: place, moment, irradiances and dew point of Perez' sky.
@@ -110,9 +106,10 @@ fn place(place: Place) -> (String, String) {
 fn at_hour((path, weather): (&Path, &Weather), hour: YearHour) -> Result<Pairs> {
     let shown = path.display();
     let record = weather.at(hour);
-    let record = record.ok_or_else(|| wrong(format!("{shown} has no hour {hour}")))?;
+    let record = record.ok_or_else(|| Error::usage(format!("{shown} has no hour {hour}")))?;
     let light = HourLight::of(weather, record);
-    let light = light.ok_or_else(|| wrong(format!("{shown} has no irradiances at {hour}")))?;
+    let light =
+        light.ok_or_else(|| Error::usage(format!("{shown} has no irradiances at {hour}")))?;
     Ok(light.pairs())
 }
 
@@ -135,7 +132,7 @@ fn near_opening(weather: &Weather) -> Option<Pairs> {
 pub fn applied(at: &HourArgs, scene: Option<&Path>, options: OptionValues) -> Result<OptionValues> {
     if at.weather.is_some() && at.hour.is_none() {
         let what = "--weather needs the hour; add --hour, for instance --hour 3-21T12";
-        return Err(wrong(what.to_owned()));
+        return Err(Error::usage(what));
     }
     window(at, scene, options).map(|(options, _)| options)
 }
@@ -154,7 +151,7 @@ pub fn window(
         (Some(file), _) => file.clone(),
         (None, Some(_)) => scene.and_then(weather_of).ok_or_else(|| {
             let what = "--hour needs a weather file; add --weather, or the key weather in [sky] of the scene file";
-            wrong(what.to_owned())
+            Error::usage(what)
         })?,
     };
     check_given(&options)?;
@@ -175,7 +172,7 @@ pub fn window(
 }
 
 fn no_light(file: &Path) -> Error {
-    wrong(format!(
+    Error::usage(format!(
         "{} has no irradiances; take another file",
         file.display()
     ))

@@ -24,7 +24,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Frame, FrameSettings, Sampling, Visibility};
 use crate::gpu::{Context, ContextOptions, GpuError, Recorder};
 use crate::options::{
-    ByMaterial, Fresnel, Mirrors, OptionValues, Options, OptionsError, Penumbra, Phong, Preset,
+    ByMaterial, Fresnel, Mirrors, OptionValues, Options, Penumbra, Phong, Preset,
 };
 use crate::output::{LATITUDE, LONGITUDE, MOMENT, WHITE_LUMINANCE, message};
 use crate::passes::bounces::cells::Bounces;
@@ -132,9 +132,8 @@ pub(super) fn scene_of(loaded: &mut Loaded, settings: &Options) -> Result<Scene>
 /// # Errors
 /// What the model lacks.
 pub(super) fn set_materials(scene: &mut Scene, settings: &Options) -> Result<()> {
-    let wrong = |option: &'static str| {
-        move |what: String| Error::from(OptionsError(format!("--{option}: {what}")))
-    };
+    let wrong =
+        |option: &'static str| move |what: String| Error::usage(format!("--{option}: {what}"));
     if let Some(ByMaterial(list)) = &settings.reflectance {
         scene.set_reflectance(list).map_err(wrong("reflectance"))?;
     }

@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use crate::error::Result;
-use crate::options::{OptionValues, Options, OptionsError};
+use crate::error::{Error, Result};
+use crate::options::{OptionValues, Options};
 use crate::scene::Loaded;
 
 /// The file of each picture: `pattern` with its `{camera}` and `{moment}`. That is the name of a moment, or the local time.
@@ -19,16 +19,15 @@ pub(super) fn files(
     let mut files = Vec::new();
     for picture in pictures {
         let settings = Options::resolve(picture, loaded)?;
-        files.push(file(pattern, picture, &settings).map_err(OptionsError)?);
+        files.push(file(pattern, picture, &settings).map_err(Error::usage)?);
     }
     let mut seen = HashSet::new();
     match files.iter().find(|file| !seen.insert(*file)) {
         None => Ok(files),
-        Some(file) => Err(OptionsError(format!(
+        Some(file) => Err(Error::usage(format!(
             "several pictures would be {}; tell them apart in -o, for instance -o '{{camera}}-{{moment}}.png'",
             file.display()
-        ))
-        .into()),
+        ))),
     }
 }
 

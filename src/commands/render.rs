@@ -9,7 +9,7 @@ use super::renderer::{Renderer, Saved, precision, wanted_layers};
 use super::sidecar;
 use super::tiled::Tiled;
 use crate::error::{Error, Result};
-use crate::options::{AntiAliasing, OptionValues, Options, OptionsError, SeveralPictures};
+use crate::options::{AntiAliasing, OptionValues, Options, SeveralPictures};
 use crate::output::{check_writable, is_exr, print_beside};
 use crate::passes::light::lighting::Show;
 use crate::passes::picture::tone_map::is_light;
@@ -69,11 +69,11 @@ pub(super) fn check_layers(options: &OptionValues, exr: bool) -> Result<()> {
     let settings = options.alone()?;
     if settings.layers && settings.show == Show::SunHours {
         let what = "--show sun-hours has no layers: each sun is a frame; leave out --layers";
-        return Err(OptionsError(what.to_owned()).into());
+        return Err(Error::usage(what));
     }
     if settings.layers && !exr {
         let what = "--layers needs an .exr file; choose one with -o";
-        return Err(OptionsError(what.to_owned()).into());
+        return Err(Error::usage(what));
     }
     Ok(())
 }
@@ -103,5 +103,5 @@ pub(super) fn check_anti_aliasing(options: &Options, exr: bool) -> Result<()> {
         }
         AntiAliasing::Smaa => return Ok(()),
     };
-    Err(OptionsError(what.to_owned()).into())
+    Err(Error::usage(what))
 }

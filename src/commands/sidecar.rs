@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 use serde_json::{Map, Value, json};
 
 use super::job::Job;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::gpu::Context;
-use crate::options::OptionsError;
 use crate::output::{Metadata, is_stdout, write_text};
 
 /// Fails if there is no file to be beside of.
@@ -17,7 +16,7 @@ use crate::output::{Metadata, is_stdout, write_text};
 pub fn check(output: &Path) -> Result<()> {
     if is_stdout(output) {
         let what = "--sidecar writes a file beside the picture, and standard output has none; name a file with -o";
-        return Err(OptionsError(what.to_owned()).into());
+        return Err(Error::usage(what));
     }
     Ok(())
 }

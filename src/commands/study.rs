@@ -17,7 +17,7 @@ use crate::daylight::steps::DayTime;
 use crate::daylight::sun_hours::SunDate;
 use crate::error::{Error, Result};
 use crate::gpu::Context;
-use crate::options::{OptionValues, Options, OptionsError, Show};
+use crate::options::{OptionValues, Options, Show};
 use crate::output::{
     Cell, Effort, Encoding, Metadata, SheetLayout, check_writable, compose, print, write_png,
 };
@@ -37,12 +37,11 @@ const LINES: [u32; 2] = [2, 3];
 /// # Errors
 /// Any error up to writing the file; an existing file is then left unchanged.
 pub fn run(args: &StudyArgs, options: &OptionValues) -> Result<()> {
-    let wrong = |what: String| Error::from(OptionsError(what));
     if let Some(name) = ["solar", "sun"]
         .iter()
         .find(|name| options.get(name).is_some())
     {
-        return Err(wrong(format!(
+        return Err(Error::usage(format!(
             "--dates and --hours say when; leave out --{name}"
         )));
     }
@@ -68,8 +67,8 @@ pub fn run(args: &StudyArgs, options: &OptionValues) -> Result<()> {
     } else {
         &args.hours[..]
     };
-    let moments = moments(args, hours, &job.settings).map_err(wrong)?;
-    let layout = layout(args, hours, &job.settings).map_err(wrong)?;
+    let moments = moments(args, hours, &job.settings).map_err(Error::usage)?;
+    let layout = layout(args, hours, &job.settings).map_err(Error::usage)?;
     let study = Study {
         args,
         options,

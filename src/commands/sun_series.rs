@@ -7,7 +7,7 @@ use crate::daylight::false_colour::Range;
 use crate::daylight::place::Place;
 use crate::daylight::sun_hours::{Site, SunDates};
 use crate::error::{Error, Result};
-use crate::options::{Options, OptionsError, Show};
+use crate::options::{Options, Show};
 
 /// Suns, each a moment of the dates.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,14 +22,10 @@ pub struct SunSeries {
 /// What the suns are of: place, clock, year, dates, step.
 type Key = ([u64; 2], FixedOffset, i32, SunDates, u32);
 
-fn wrong(what: String) -> Error {
-    Error::from(OptionsError(what))
-}
-
 fn key(settings: &Options) -> Result<(Key, Place)> {
     let what = "--show sun-hours needs a place; give --place instead of a direction or solar time";
     let place = settings.sun.place();
-    let (latitude, longitude, when) = place.ok_or_else(|| wrong(what.to_owned()))?;
+    let (latitude, longitude, when) = place.ok_or_else(|| Error::usage(what))?;
     let place = Place {
         latitude,
         longitude,
@@ -62,12 +58,12 @@ impl SunSeries {
         let mut suns = Vec::new();
         for date in &dates.0 {
             let of_date = site.suns_every(*date, 0.0, i64::from(*step))?;
-            let of_date =
-                of_date.ok_or_else(|| wrong(format!("--sun-dates: {year} has no {date}")))?;
+            let of_date = of_date
+                .ok_or_else(|| Error::usage(format!("--sun-dates: {year} has no {date}")))?;
             suns.extend(of_date.suns.iter().map(|sun| sun.as_vec3()));
         }
         if suns.is_empty() {
-            return Err(wrong(format!(
+            return Err(Error::usage(format!(
                 "the sun is not up on {dates}; choose other --sun-dates"
             )));
         }

@@ -18,10 +18,10 @@ use super::renderer::Saved;
 use crate::daylight::colour::luminance;
 use crate::daylight::exposure::automatic;
 use crate::daylight::false_colour::Range;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::frame::{Frame, FrameSettings, Visibility};
 use crate::gpu::{Context, Image, Pixels, Recorder, Timing, read_back};
-use crate::options::{AntiAliasing, OptionsError};
+use crate::options::AntiAliasing;
 use crate::output::{Encoding, LayerKind, PngRows, write_exr_rows};
 use crate::passes::light::lighting::{Ambient, Precision, Show};
 use crate::passes::picture::tone_map::Scale;
@@ -57,7 +57,7 @@ pub(super) fn check_whole(job: &Job, context: &Context) -> Result<()> {
         return Ok(());
     }
     let what = "pictures of a series are drawn in one piece, not in tiles; choose a smaller --size, and leave out --tile";
-    Err(OptionsError(what.to_owned()).into())
+    Err(Error::usage(what))
 }
 
 impl<'j> Tiled<'j> {
@@ -71,15 +71,15 @@ impl<'j> Tiled<'j> {
         };
         if job.suns.is_some() {
             let what = "--show sun-hours is drawn in one piece, not in tiles; choose a smaller --size, and leave out --tile";
-            return Err(OptionsError(what.to_owned()).into());
+            return Err(Error::usage(what));
         }
         if job.settings.noise.is_some() {
             let what = "--noise is judged on whole pictures, not in tiles; say how many --samples, or choose a smaller --size";
-            return Err(OptionsError(what.to_owned()).into());
+            return Err(Error::usage(what));
         }
         if job.settings.samples == 1 && job.settings.aa == AntiAliasing::Smaa {
             let what = "--aa smaa smooths whole pictures, not tiles; choose --samples 4 or more, or a smaller --size";
-            return Err(OptionsError(what.to_owned()).into());
+            return Err(Error::usage(what));
         }
         let occludes = job.settings.visibility == Visibility::Ssao
             && job.settings.ambient == Ambient::Ssao
@@ -229,7 +229,7 @@ impl<'j> Tiled<'j> {
         let settings = &self.job.settings;
         if settings.false_colour.is_some() {
             let what = "--false-colour draws its legend on whole pictures; choose a smaller --size, or a larger --tile";
-            return Err(OptionsError(what.to_owned()).into());
+            return Err(Error::usage(what));
         }
         let ev100 = self.ev100();
         let mut metadata = self.job.metadata();

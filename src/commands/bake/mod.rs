@@ -12,8 +12,8 @@ use super::panorama::{self, Picture};
 use super::sky::exact_by_default;
 use crate::cli::{BakeArgs, Layout, Map, Texels};
 use crate::daylight::ggx::ROUGHEST_EDGE;
-use crate::error::Result;
-use crate::options::{OptionValues, OptionsError};
+use crate::error::{Error, Result};
+use crate::options::OptionValues;
 use crate::output::{
     Channels, Layer, Metadata, TexelFormat, check_writable, encode_exr, encode_hdr, encode_ktx2,
     print, scale, write_set,
@@ -100,7 +100,7 @@ pub fn run(args: &BakeArgs, mut options: OptionValues) -> Result<()> {
 /// Whether the arguments fit each other.
 fn check(args: &BakeArgs) -> Result<()> {
     let is_cube = Container::of(&args.output) == Container::Ktx2;
-    let refuse = |what: String| Err(OptionsError(what).into());
+    let refuse = |what: String| Err(Error::usage(what));
     if is_cube && args.layout.is_some() {
         return refuse(
             "a .ktx2 file holds a cube map: leave --layout out, or write .exr".to_owned(),

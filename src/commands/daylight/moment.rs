@@ -16,7 +16,7 @@ use super::table::{Column, Figure, PLACE, place};
 use super::{bounces, deliver, sensors, shards};
 use crate::cli::DaylightArgs;
 use crate::error::{Error, Result};
-use crate::options::{OptionValues, OptionsError};
+use crate::options::OptionValues;
 use crate::output::{Drawing, check_writable};
 use crate::sensors::{Accuracy, Lights, Reading, Sensor, Shard, TracedScene, measure_shard};
 
@@ -38,7 +38,7 @@ const COLUMNS: [&str; 7] = [
 pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
     if args.plan_of.is_some() {
         let what = "--plan-of is for metrics; the plan of a moment shows all light".to_owned();
-        return Err(Error::from(OptionsError(what)));
+        return Err(Error::usage(what));
     }
     args.files().try_for_each(|path| check_writable(path))?;
     let given = Given::new(args, options)?;

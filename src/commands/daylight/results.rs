@@ -11,7 +11,7 @@ use crate::daylight::metrics::Measures;
 use crate::daylight::weather::Weather;
 use crate::daylight::weather::clock::ClockCheck;
 use crate::error::{Error, Result};
-use crate::options::{Options, OptionsError};
+use crate::options::Options;
 use crate::output::Drawing;
 use crate::scene::Scene;
 use crate::sensors::{Sensor, Year, YearLight};
@@ -132,10 +132,10 @@ impl Results<'_> {
                 .iter()
                 .map(|c| c.name.as_str())
                 .collect();
-            Error::from(OptionsError(format!(
+            Error::usage(format!(
                 "--plan-of {asked} was not measured; choose of {}",
                 known.join(", ")
-            )))
+            ))
         })
     }
 

@@ -8,7 +8,7 @@ use crate::daylight::place::Place;
 use crate::daylight::sun_hours::Site;
 use crate::daylight::weather::Weather;
 use crate::error::{Error, Result};
-use crate::options::{Options, OptionsError};
+use crate::options::Options;
 use crate::sensors::{Sensor, TracedScene, sky_components, suns_seen};
 
 /// The columns of those that are asked for, for sensors with their numbers in the grid.
@@ -55,13 +55,12 @@ fn sun_hours(
     sensors: &[(usize, Sensor)],
     scene: &TracedScene,
 ) -> Result<Vec<Column>> {
-    let wrong = |what: String| Error::from(OptionsError(what));
     let site = site(weather, settings)
-        .ok_or_else(|| wrong("hours of sun need a place; give --place, or --weather".to_owned()))?;
+        .ok_or_else(|| Error::usage("hours of sun need a place; give --place, or --weather"))?;
     let mut columns = Vec::new();
     for date in &args.dates {
         let suns = site.suns(*date, args.min_elevation)?;
-        let suns = suns.ok_or_else(|| wrong(format!("{} has no 29 February", site.year)))?;
+        let suns = suns.ok_or_else(|| Error::usage(format!("{} has no 29 February", site.year)))?;
         let directions: Vec<_> = suns.suns.iter().map(|sun| sun.as_vec3()).collect();
         let seen = suns_seen(sensors, scene, &directions);
         columns.push(Column {

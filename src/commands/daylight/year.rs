@@ -21,7 +21,7 @@ use crate::daylight::metrics::{Blinds, Measures, SPATIAL_LUX};
 use crate::daylight::weather::Weather;
 use crate::daylight::weather::clock::ClockCheck;
 use crate::error::{Error, Result};
-use crate::options::{OptionValues, Options, OptionsError, name};
+use crate::options::{OptionValues, Options, name};
 use crate::output::check_writable;
 use crate::scene::{self, Scene};
 use crate::sensors::{
@@ -227,7 +227,7 @@ fn common(
 
 /// The weather file, if one is given.
 fn weather(args: &DaylightArgs, options: &OptionValues) -> Result<Option<Weather>> {
-    let wrong = |what: String| Err(Error::from(OptionsError(what)));
+    let wrong = |what: String| Err(Error::usage(what));
     let Some(file) = &args.weather else {
         let mut metrics = args.metrics.iter().filter(|metric| metric.needs_hours());
         return match metrics.next() {
@@ -257,7 +257,7 @@ fn measures(args: &DaylightArgs, weather: Option<&Weather>, light: &YearLight) -
         thresholds.push(SPATIAL_LUX);
     }
     let measures = Measures::new(weather, &light.hours, args.schedule, thresholds);
-    measures.map_err(|what| Error::from(OptionsError(what)))
+    measures.map_err(Error::usage)
 }
 
 /// Fails early with a picture of what is not measured.
@@ -265,7 +265,7 @@ fn measures(args: &DaylightArgs, weather: Option<&Weather>, light: &YearLight) -
 /// # Errors
 /// See above.
 fn check_pictures(args: &DaylightArgs, measures: &Measures, sensors: usize) -> Result<()> {
-    let wrong = |what: String| Err(Error::from(OptionsError(what)));
+    let wrong = |what: String| Err(Error::usage(what));
     if args.heat_of.is_some_and(|number| number as usize > sensors) {
         return wrong(format!("--heat-of is a sensor from 1 to {sensors}"));
     }

@@ -51,9 +51,8 @@ const OF_NO_PICTURE: [&str; 6] = [
 /// # Errors
 /// Any error up to writing the files. Frames that are finished stay.
 pub fn run(args: &SequenceArgs, options: &OptionValues) -> Result<()> {
-    let wrong = |what: String| Error::from(OptionsError(what));
     if let Some(name) = GIVEN.iter().find(|name| options.get(name).is_some()) {
-        return Err(wrong(format!(
+        return Err(Error::usage(format!(
             "--from and --to say when; leave out --{name}"
         )));
     }
@@ -67,7 +66,7 @@ pub fn run(args: &SequenceArgs, options: &OptionValues) -> Result<()> {
     let (job, context) = loaded.map_err(|error| renamed(error, "--when:", "--from:"))?;
     check_anti_aliasing(&job.settings, is_exr(&args.output))?;
     check_whole(&job, &context)?;
-    let moments = moments(args, &job.settings).map_err(wrong)?;
+    let moments = moments(args, &job.settings).map_err(Error::usage)?;
     interrupt::listen();
     Sequence {
         args,
@@ -106,7 +105,7 @@ impl Target {
                 "a shard draws frames: -o {stem}_%04d.png; skylight merge -o {} makes the film of all of them",
                 output.display()
             );
-            return Err(OptionsError(what).into());
+            return Err(Error::usage(what));
         }
         check_ffmpeg(output)?;
         let mut builder = tempfile::Builder::new();
@@ -128,7 +127,7 @@ impl Target {
 /// An error about one option as one about another, which gave its value.
 fn renamed(error: Error, from: &str, to: &str) -> Error {
     match error {
-        Error::Options(OptionsError(what)) => OptionsError(what.replacen(from, to, 1)).into(),
+        Error::Options(OptionsError(what)) => Error::usage(what.replacen(from, to, 1)),
         error => error,
     }
 }

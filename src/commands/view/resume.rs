@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
-use crate::options::{OptionValues, Options, OptionsError};
+use crate::options::{OptionValues, Options};
 use crate::output::write_whole;
 use crate::scene::{BUNDLED, bundled_name};
 
@@ -77,9 +77,9 @@ pub(super) fn recall(scene: Option<&Path>, user: OptionValues) -> Result<OptionV
     };
     let damaged = |reason: String| {
         let file = file.display();
-        Error::from(OptionsError(format!(
+        Error::usage(format!(
             "{file} cannot be resumed from ({reason}); delete it"
-        )))
+        ))
     };
     let text = std::fs::read_to_string(&file).map_err(|e| damaged(e.to_string()))?;
     let kept = from_text(&text).map_err(damaged)?;

@@ -198,7 +198,7 @@ fn ends_in(path: PathBuf, extensions: &[&str]) -> Result<PathBuf, String> {
 /// An hour of a weather file, instead of a place, a moment and a sky.
 #[derive(Debug, Clone, Default, PartialEq, Args)]
 pub struct HourArgs {
-    /// Weather file (.epw, .wea) that gives place, sun and sky of --hour: --sky perez with its irradiances and dew point.
+    /// Weather file (.epw, .wea), or bundled weather (chicago), that gives place, sun and sky of --hour: --sky perez with its irradiances and dew point.
     #[arg(long, value_name = "FILE")]
     pub weather: Option<PathBuf>,
     /// Hour of the weather file, or of that of the scene file: the one that holds this time of its clock, local standard time without
@@ -210,7 +210,7 @@ pub struct HourArgs {
 /// The weather file, and the form of the table.
 #[derive(Debug, Clone, PartialEq, Eq, Args)]
 pub struct WeatherArgs {
-    /// EnergyPlus weather (.epw) or Radiance's .wea.
+    /// EnergyPlus weather (.epw), Radiance's .wea, or bundled weather (chicago).
     pub file: PathBuf,
     /// Print JSON instead of a table.
     #[arg(long)]
@@ -252,7 +252,7 @@ pub struct DaylightArgs {
         conflicts_with = "facade"
     )]
     pub rooms: Vec<String>,
-    /// Weather file (.epw, .wea): measures its year, every hour with its own sun and Perez' sky; with --hour one moment of it.
+    /// Weather file (.epw, .wea), or bundled weather (chicago): measures its year, every hour with its own sun and Perez' sky; with --hour one moment of it.
     #[arg(long, value_name = "FILE")]
     pub weather: Option<PathBuf>,
     /// A moment instead of the year: the hour of the weather file, or of that of the scene file, that holds this time of its clock, local standard

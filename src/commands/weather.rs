@@ -1,6 +1,7 @@
 //! `skylight weather`: what a weather file holds. Needs no device.
 
 use std::fmt::Write as _;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use serde_json::{Value, json};
@@ -9,13 +10,16 @@ use super::tell;
 use crate::cli::WeatherArgs;
 use crate::daylight::weather::clock::ClockCheck;
 use crate::daylight::weather::summary::{Sums, months, year};
-use crate::daylight::weather::{Station, Weather};
+use crate::daylight::weather::{BUNDLED, Station, Weather, bundled};
 use crate::error::{Error, Result};
 use crate::options::OptionValues;
 use crate::output::print;
 
 /// Largest weather file, bytes: a year by the minute has 90 MB.
 const MAX_BYTES: u64 = 1 << 28;
+
+/// Where files are to be had.
+const SOURCES: &str = "climate.onebuilding.org has files of most places";
 
 pub(super) const MONTHS: [&str; 12] = [
     "January",
@@ -53,7 +57,7 @@ pub fn run(args: &WeatherArgs, options: &OptionValues) -> Result<()> {
     })
 }
 
-/// Reads a weather file; `.wea` by its extension.
+/// Reads a weather file, `.wea` by its extension, or bundled weather by its name.
 ///
 /// # Errors
 /// A file that cannot be read or is damaged.
@@ -62,7 +66,13 @@ pub fn read_weather(path: &Path) -> Result<Weather> {
         path: path.to_owned(),
         reason,
     };
-    let io = |error: std::io::Error| failed(error.to_string());
+    if let Some(text) = bundled(path) {
+        return Weather::parse(text, false).map_err(failed);
+    }
+    let io = |error: std::io::Error| match error.kind() {
+        ErrorKind::NotFound => failed(format!("no such file; {} is bundled, {SOURCES}", names())),
+        _ => failed(error.to_string()),
+    };
     if std::fs::metadata(path).map_err(io)?.len() > MAX_BYTES {
         return Err(failed("larger than 256 MiB".to_owned()));
     }
@@ -71,6 +81,11 @@ pub fn read_weather(path: &Path) -> Result<Weather> {
         .extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("wea"));
     Weather::parse(&String::from_utf8_lossy(&bytes), is_wea).map_err(failed)
+}
+
+/// Names of the bundled weather.
+fn names() -> String {
+    BUNDLED.map(|(name, _)| name).join(", ")
 }
 
 /// What is odd about a file and its clock.

@@ -11,6 +11,9 @@ use super::sun_position::direction;
 /// Mean radius of the earth, km.
 const EARTH_RADIUS_KM: f64 = 6371.0;
 
+/// Jaro-Winkler similarity from which a name may be a misspelt one.
+const LEAST_LIKENESS: f64 = 0.78;
+
 /// A city of the list.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct City {
@@ -65,7 +68,7 @@ pub fn search(text: &str) -> Vec<&'static City> {
 /// The city of this name.
 ///
 /// # Errors
-/// One line that suggests the most similar city name.
+/// One line that suggests the most similar city name, if one is similar.
 pub fn named(text: &str) -> Result<&'static City, String> {
     let wanted = folded(text);
     if let Some(city) = CITIES
@@ -74,28 +77,31 @@ pub fn named(text: &str) -> Result<&'static City, String> {
     {
         return Ok(city);
     }
-    let meant = search(&wanted)
-        .first()
-        .copied()
-        .unwrap_or_else(|| alike(&wanted));
-    Err(format!(
-        "\"{}\" is not a listed city; did you mean \"{}\"? Otherwise write LAT,LON in degrees",
-        text.trim(),
-        meant.name
-    ))
+    let text = text.trim();
+    let like = || Some(alike(&wanted)).filter(|city| likeness(city, &wanted) >= LEAST_LIKENESS);
+    match search(&wanted).first().copied().or_else(like) {
+        Some(City { name, .. }) => Err(format!(
+            "\"{text}\" is not a listed city; did you mean \"{name}\"? Otherwise write LAT,LON in degrees"
+        )),
+        None => Err(format!(
+            "\"{text}\" is none of the {} listed cities; write LAT,LON in degrees, for instance 55.64,12.08",
+            CITIES.len()
+        )),
+    }
+}
+
+/// Jaro-Winkler similarity, 0..1, of the most similar name of a city to a folded text.
+fn likeness(city: &City, wanted: &str) -> f64 {
+    let all = city.names().map(|name| strsim::jaro_winkler(&name, wanted));
+    all.fold(0.0, f64::max)
 }
 
 /// The city whose name is most similar to `text` (Jaro-Winkler similarity).
 pub fn alike(text: &str) -> &'static City {
     let wanted = folded(text);
-    let likeness = |city: &City| {
-        let names = city.names();
-        let all = names.map(|name| strsim::jaro_winkler(&name, &wanted));
-        all.fold(0.0, f64::max)
-    };
     let best = CITIES
         .iter()
-        .max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+        .max_by(|a, b| likeness(a, &wanted).total_cmp(&likeness(b, &wanted)));
     best.unwrap_or(&CITIES[0])
 }
 
@@ -216,6 +222,9 @@ mod tests {
             );
             assert_eq!(error.lines().count(), 1);
         }
+        // Nothing is like it: Oslo is no help.
+        let error = named("Roskilde").expect_err("not listed");
+        assert!(error.contains("\"Roskilde\" is none of the 275 listed cities; write LAT,LON"), "{error}");
     }
 
     #[test]

@@ -1,14 +1,17 @@
 //! Weather files: the irradiances of a year at a place, hour by hour.
 //!
 //! [`Weather::parse`] reads EnergyPlus weather (`.epw`) and Radiance's `.wea`. [`clock`] tells whether the clock of a file is that of its
-//! irradiances, [`summary`] sums them up.
+//! irradiances, [`summary`] sums them up. [`bundled`] weather needs no file.
 
+mod bundled;
 pub mod clock;
 mod epw;
 pub mod summary;
 #[cfg(test)]
 mod tests;
 mod wea;
+
+pub use bundled::{BUNDLED, bundled};
 
 use chrono::{DateTime, Duration, FixedOffset, NaiveDate};
 

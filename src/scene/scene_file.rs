@@ -72,7 +72,7 @@ pub(super) fn append_scene(
     let folder = path.parent().unwrap_or(Path::new(""));
     let sky = options.iter_mut().filter(|table| table.name == "sky");
     for (_, file) in sky.flat_map(|table| &mut table.options).filter(is_weather) {
-        *file = beside(folder, file);
+        *file = weather_file(folder, file);
     }
     let whole = builder.progress;
     for (i, mesh) in meshes.iter().enumerate() {
@@ -93,9 +93,13 @@ fn is_weather((key, _): &&mut (String, String)) -> bool {
     key == "weather"
 }
 
-/// A file whose name is relative to a folder.
-fn beside(folder: &Path, file: &str) -> String {
-    folder.join(file).to_string_lossy().into_owned()
+/// A weather file whose name is relative to a folder. A name without an extension that is no file there stays: it may be that of bundled weather.
+fn weather_file(folder: &Path, file: &str) -> String {
+    let beside = folder.join(file);
+    if Path::new(file).extension().is_none() && !beside.exists() {
+        return file.to_owned();
+    }
+    beside.to_string_lossy().into_owned()
 }
 
 /// The weather file that a scene file names: `weather` in `[sky]`.
@@ -106,7 +110,7 @@ pub fn weather_of(scene_file: &Path) -> Option<PathBuf> {
     let table = parse(&text?.ok()?).ok()?;
     let file = table.get("sky")?.get("weather")?.as_str()?;
     let folder = scene_file.parent().unwrap_or(Path::new(""));
-    Some(beside(folder, file).into())
+    Some(weather_file(folder, file).into())
 }
 
 fn parse(text: &str) -> Result<Table, String> {

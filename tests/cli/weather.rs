@@ -99,7 +99,10 @@ fn files_that_cannot_be_used_are_one_line() {
     std::fs::write(folder.path().join("b.epw"), damaged).expect("written");
     for (words, what) in [
         (["b.epw"], "line 14: the direct irradiance is \"bright\""),
-        (["c.epw"], "c.epw"),
+        (
+            ["c.epw"],
+            "no such file; chicago is bundled, climate.onebuilding.org",
+        ),
     ] {
         let output = weather(folder.path(), &words);
         let line = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -107,6 +110,20 @@ fn files_that_cannot_be_used_are_one_line() {
         assert_eq!(line.lines().count(), 1, "{line}");
         assert!(line.contains(words[0]) && line.contains(what), "{line}");
     }
+}
+
+#[test]
+fn bundled_weather_has_a_name_which_a_file_may_take() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let name = || {
+        let output = weather(folder.path(), &["chicago", "--json", "--no-warnings"]);
+        let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        report["place"]["name"].as_str().map(str::to_owned)
+    };
+    assert_eq!(name().as_deref(), Some("Chicago OHare Intl AP, IL, USA"));
+    let file = |text: &str| std::fs::write(folder.path().join(text), two_days()).expect("written");
+    file("chicago");
+    assert!(name().is_some_and(|name| !name.contains("Chicago")));
 }
 
 /// Measures open ground with `skylight daylight` in a folder.
@@ -159,6 +176,17 @@ fn a_scene_file_may_name_an_hour_of_a_file_beside_it() {
         assert_eq!(sensors(&output), by_hand(hour), "{words}");
     }
     assert_ne!(by_hand("6-20T11"), by_hand("6-20T18"));
+    scene(
+        "scenes/c.toml",
+        "weather = \"chicago\"\nhour = \"6-20T11\"",
+        "",
+    );
+    let (bundled, same) = (
+        "scenes/c.toml",
+        "scenes/m.obj --weather chicago --hour 6-20T11",
+    );
+    let [bundled, same] = [bundled, same].map(|words| sensors(&measured(folder.path(), words)));
+    assert_eq!(bundled, same);
     for (sky, rest, what) in [
         ("weather = \"a.epw\"", "", "no hour; add hour = \"3-21T12\""),
         ("hour = \"6-20T11\"", "", "add weather = \"FILE.epw\""),

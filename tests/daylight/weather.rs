@@ -5,7 +5,7 @@ use std::path::Path;
 
 use skylight::daylight::perez::AllWeather;
 use skylight::daylight::weather::clock::ClockCheck;
-use skylight::daylight::weather::{Record, Weather};
+use skylight::daylight::weather::{BUNDLED, Record, Weather};
 
 use crate::common::{Worst, shared};
 
@@ -36,6 +36,28 @@ fn clocks_that_are_off_are_told() {
         assert!((clock.minutes - minutes).abs() <= 5, "{name}: {clock:?}");
         assert!(clock.residual_w < most_residual, "{name}: {clock:?}");
         assert_eq!(clock.is_off(), minutes != 0, "{name}");
+    }
+}
+
+#[test]
+fn bundled_chicago_has_the_irradiances_that_others_have() {
+    let Some(shared) = shared() else { return };
+    let theirs = read(&shared.join("daylight/weather/chicago.epw.xz"));
+    let ours = Weather::parse(BUNDLED[0].1, false).expect("a whole file");
+    assert_eq!(ours.records.len(), theirs.records.len());
+    for (a, b) in ours.records.iter().zip(&theirs.records) {
+        let dry = |r: &Record| {
+            (
+                r.month,
+                r.day,
+                r.hour,
+                r.global_w,
+                r.direct_normal_w,
+                r.diffuse_w,
+            )
+        };
+        assert_eq!(dry(a), dry(b));
+        assert_eq!(a.dew_point_c, b.dew_point_c);
     }
 }
 

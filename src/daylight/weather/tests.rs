@@ -194,3 +194,24 @@ fn the_clock_of_wea_is_positive_toward_the_west() {
         assert!(told.contains(part), "{told} for {part}");
     }
 }
+
+#[test]
+fn bundled_weather_is_a_whole_year_with_a_right_clock() {
+    for (name, text) in BUNDLED {
+        let weather = Weather::parse(text, false).expect(name);
+        assert_eq!(
+            (weather.records.len(), weather.step_hours),
+            (8760, 1.0),
+            "{name}"
+        );
+        assert_eq!(weather.warnings, Vec::<String>::new(), "{name}");
+        let clock = ClockCheck::of(&weather).expect("all three irradiances");
+        assert!(
+            !clock.is_off() && clock.residual_w < 3.0,
+            "{name}: {clock:?}"
+        );
+        assert_eq!(bundled(name.as_ref()), Some(text));
+    }
+    assert_eq!(bundled("chicago.epw".as_ref()), None);
+    assert_eq!(bundled("src".as_ref()), None);
+}

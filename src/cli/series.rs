@@ -38,6 +38,9 @@ pub struct SequenceArgs {
     /// frame_3-of-12.shard, by which skylight merge finds whether all are there.
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
+    /// Also write FRAME.json beside each frame, or FILM.json: every option as resolved, command, place and moment, sun, exposure, device, version.
+    #[arg(long)]
+    pub sidecar: bool,
 }
 
 choice_enum! {
@@ -81,6 +84,9 @@ pub struct StudyArgs {
     /// The sheet.
     #[arg(short, long, value_name = "FILE.png", value_parser = named(&["png"]), default_value = "study.png")]
     pub output: PathBuf,
+    /// Also write FILE.json: every option as resolved, command, place and moment, sun, exposure, device, version of each picture.
+    #[arg(long)]
+    pub sidecar: bool,
 }
 
 /// What to put together.

@@ -57,7 +57,8 @@ pub fn run(
         };
         context.check_validation()?;
         if has_sidecar {
-            sidecar::write(&job, &context, file, &saved.metadata)?;
+            let report = sidecar::report(&job, &context, file, &saved.metadata);
+            sidecar::write(file, &report)?;
         }
         print_beside(file, &format!("{}: {}\n", file.display(), saved.summary))?;
     }

@@ -1,4 +1,4 @@
-//! `render --sidecar`: a JSON file beside a picture that tells how it was made.
+//! `--sidecar`: a JSON file beside pictures, films and sheets that tells how they were made.
 
 use std::path::{Path, PathBuf};
 
@@ -28,16 +28,25 @@ pub fn beside(picture: &Path) -> PathBuf {
     name.into()
 }
 
-/// Writes the sidecar of a picture with these parameters. The same picture has the same one: no date, no duration.
+/// Writes a sidecar beside its picture.
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write(job: &Job, context: &Context, picture: &Path, metadata: &Metadata) -> Result<()> {
-    let report = report(job, context, picture, metadata);
+pub fn write(picture: &Path, report: &Value) -> Result<()> {
     write_text(&beside(picture), &format!("{report:#}\n"))
 }
 
-fn report(job: &Job, context: &Context, picture: &Path, metadata: &Metadata) -> Value {
+/// The sidecar of a file that holds several pictures: theirs, as a list with this name.
+pub fn of_several(file: &Path, name: &str, reports: &[Value]) -> Value {
+    json!({ "file": file_name(file), name: reports })
+}
+
+fn file_name(file: &Path) -> Option<String> {
+    Some(file.file_name()?.to_string_lossy().into_owned())
+}
+
+/// How a picture with these parameters was made. The same picture has the same one: no date, no duration.
+pub fn report(job: &Job, context: &Context, picture: &Path, metadata: &Metadata) -> Value {
     let text = |name: &str| {
         let found = metadata.iter().find(|(own, _)| own == name);
         found.map(|(_, text)| text.as_str())
@@ -51,7 +60,7 @@ fn report(job: &Job, context: &Context, picture: &Path, metadata: &Metadata) -> 
     let rgb = |v: glam::DVec3| v.to_array();
     let device = context.summary();
     json!({
-        "file": picture.file_name().map(|name| name.to_string_lossy()),
+        "file": file_name(picture),
         "version": env!("CARGO_PKG_VERSION"),
         "device": { "name": device.name, "driver": device.driver, "vulkan": device.api },
         "command": text("command"),

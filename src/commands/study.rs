@@ -10,6 +10,7 @@ use super::job::Job;
 use super::progress;
 use super::render::{check_anti_aliasing, check_layers};
 use super::renderer::{Picture, Renderer};
+use super::sidecar;
 use super::tiled::check_whole;
 use crate::cli::StudyArgs;
 use crate::daylight::place::Place;
@@ -93,7 +94,7 @@ impl Study<'_> {
         let bar = progress(moments.len() as u64, "pictures", self.job.settings.quiet);
         interrupt::listen();
         let (mut renderer, mut cells) = (None, Vec::new());
-        let mut of_first = None;
+        let (mut of_first, mut reports) = (None, Vec::new());
         for moment in moments {
             let picture = self.picture(*moment, &mut renderer)?;
             if picture.drawn.is_interrupted || interrupt::is_interrupted() {
@@ -101,13 +102,27 @@ impl Study<'_> {
                 let what = "pictures were drawn, and no sheet is written";
                 return Err(Error::Interrupted { done, all, what });
             }
+            if self.args.sidecar {
+                let (job, output) = (&self.job, &self.args.output);
+                reports.push(sidecar::report(
+                    job,
+                    &self.context,
+                    output,
+                    &picture.metadata,
+                ));
+            }
             of_first.get_or_insert_with(|| (picture.metadata.clone(), picture.encoding));
             cells.push(cell(&self.job, *moment, picture));
             bar.inc(1);
         }
         self.context.check_validation()?;
         bar.finish_and_clear();
-        self.write(&cells, of_first.unwrap_or((Vec::new(), Encoding::Srgb)))
+        self.write(&cells, of_first.unwrap_or((Vec::new(), Encoding::Srgb)))?;
+        if self.args.sidecar {
+            let output = &self.args.output;
+            sidecar::write(output, &sidecar::of_several(output, "pictures", &reports))?;
+        }
+        Ok(())
     }
 
     fn picture(

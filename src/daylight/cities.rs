@@ -224,7 +224,10 @@ mod tests {
         }
         // Nothing is like it: Oslo is no help.
         let error = named("Roskilde").expect_err("not listed");
-        assert!(error.contains("\"Roskilde\" is none of the 275 listed cities; write LAT,LON"), "{error}");
+        assert!(
+            error.contains("\"Roskilde\" is none of the 275 listed cities; write LAT,LON"),
+            "{error}"
+        );
     }
 
     #[test]

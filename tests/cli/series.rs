@@ -41,6 +41,11 @@ fn scratch() -> tempfile::TempDir {
     tempfile::tempdir().expect("a scratch folder")
 }
 
+fn sidecar(folder: &Path, name: &str) -> serde_json::Value {
+    let text = fs::read_to_string(folder.join(name)).expect(name);
+    serde_json::from_str(&text).expect("JSON")
+}
+
 /// Every file of a folder with its bytes, hidden ones too.
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let entries = fs::read_dir(folder)
@@ -256,20 +261,26 @@ fn films_are_made_of_the_frames_in_their_order() {
         "{error}"
     );
     let path = format!("{}:/usr/bin:/bin", tools.display());
-    let output = run(&path, &format!("{line} -o day.mp4"));
+    let output = run(&path, &format!("{line} -o day.mp4 --sidecar"));
     assert!(
         output.status.success(),
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
+    let frames = &sidecar(folder.path(), "day.mp4.json")["frames"];
+    assert_eq!(frames.as_array().map(Vec::len), Some(2));
+    assert_eq!(frames[1]["place"]["when"], "2026-09-24T17:00:00+02:00");
     let film = |name: &str| fs::read_to_string(folder.path().join(name)).expect("a film");
     assert_eq!(film("day.mp4"), "000000.png\n000001.png\n");
     // The same of shards.
     for shard in ["1/2", "2/2"] {
         assert!(
-            run(&path, &format!("{line} -o f%d.png --shard {shard}"))
-                .status
-                .success()
+            run(
+                &path,
+                &format!("{line} -o f%d.png --sidecar --shard {shard}")
+            )
+            .status
+            .success()
         );
     }
     let output = run(&path, "merge f_2-of-2.shard f_1-of-2.shard -o merged.mp4");
@@ -280,6 +291,7 @@ fn films_are_made_of_the_frames_in_their_order() {
     );
     assert_eq!(film("merged.mp4"), film("day.mp4"));
     let left = contents(folder.path());
+    assert!(left.contains_key("f0.png.json") && left.contains_key("f1.png.json"));
     assert!(
         left.keys().all(|name| !name.starts_with('.')),
         "{:?}",
@@ -292,8 +304,11 @@ fn a_study_is_one_sheet_of_all_days_and_hours() {
     let folder = scratch();
     let line =
         format!("study colonnade --dates 3-21,2026-12-21 --hours 9,12:30,17 --samples 1 {SMALL}");
-    let said = succeed(folder.path(), &format!("{line} -o sheet.png"));
+    let said = succeed(folder.path(), &format!("{line} -o sheet.png --sidecar"));
     assert!(said.contains(", 6 pictures"), "{said}");
+    let pictures = &sidecar(folder.path(), "sheet.png.json")["pictures"];
+    assert_eq!(pictures.as_array().map(Vec::len), Some(6));
+    assert_eq!(pictures[4]["place"]["when"], "2026-12-21T12:30:00+01:00");
     let of_sheet = texts(&folder.path().join("sheet.png"));
     assert_eq!(of_sheet["dates"], "3-21,2026-12-21");
     assert_eq!(of_sheet["hours"], "09:00,12:30,17:00");

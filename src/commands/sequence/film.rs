@@ -5,6 +5,13 @@ use std::process::{Command, Stdio};
 
 use crate::error::{Error, Result};
 
+/// Whether frames are to be made a film.
+pub(super) fn is_film(output: &Path) -> bool {
+    output
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("mp4"))
+}
+
 /// The program.
 const FFMPEG: &str = "ffmpeg";
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::film::{check_ffmpeg, folder_of, write_film};
+use super::film::{check_ffmpeg, folder_of, is_film, write_film};
 use crate::cli::MergeArgs;
 use crate::commands::merge::{FileBeside, Parts};
 use crate::error::{Error, Result};
@@ -53,10 +53,6 @@ pub(super) struct DrawnShard {
 /// # Errors
 /// One line with the shards whose frames are missing or changed, or the film cannot be made.
 pub(in crate::commands) fn merge(parts: &Parts, args: &MergeArgs) -> Result<()> {
-    let is_film = |path: &Path| {
-        path.extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("mp4"))
-    };
     if let Some(output) = &args.output {
         check_writable(output)?;
         if !is_film(output) {

@@ -4,12 +4,13 @@ mod film;
 mod frames;
 mod merged;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use chrono::{DateTime, FixedOffset};
+use serde_json::Value;
 
-use self::film::{check_ffmpeg, folder_of, write_film};
+use self::film::{check_ffmpeg, folder_of, is_film, write_film};
 use self::frames::FrameNames;
 pub(super) use self::merged::merge;
 use self::merged::{DrawnFrame, DrawnShard};
@@ -19,6 +20,7 @@ use super::merge::{JobKey, Kind, write_part};
 use super::progress;
 use super::render::{check_anti_aliasing, check_layers};
 use super::renderer::Renderer;
+use super::sidecar;
 use super::tiled::check_whole;
 use crate::cli::{Expose, SequenceArgs};
 use crate::daylight::colour::luminance;
@@ -27,7 +29,7 @@ use crate::daylight::sky::Daylight;
 use crate::error::{Error, Result};
 use crate::gpu::Context;
 use crate::options::{OptionValues, Options, OptionsError};
-use crate::output::{check_writable, is_exr, print};
+use crate::output::{Metadata, check_writable, is_exr, print};
 use crate::sensors::Shard;
 
 /// Illuminance of open ground below which the exposure follows no further, lux: starlight.
@@ -78,6 +80,7 @@ pub fn run(args: &SequenceArgs, options: &OptionValues) -> Result<()> {
         context,
         renderer: None,
         drawn: Vec::new(),
+        reports: Vec::new(),
     }
     .run(&target)
 }
@@ -92,10 +95,7 @@ struct Target {
 impl Target {
     fn new(args: &SequenceArgs) -> Result<Self> {
         let output = &args.output;
-        if output
-            .extension()
-            .is_none_or(|e| !e.eq_ignore_ascii_case("mp4"))
-        {
+        if !is_film(output) {
             let names = FrameNames::parse(output)?;
             return Ok(Self { names, film: None });
         }
@@ -157,6 +157,8 @@ struct Sequence<'a> {
     context: Arc<Context>,
     renderer: Option<Renderer>,
     drawn: Vec<DrawnFrame>,
+    /// How the frames of a film were made, if that is to be told.
+    reports: Vec<Value>,
 }
 
 impl Sequence<'_> {
@@ -178,6 +180,10 @@ impl Sequence<'_> {
         if let Some(folder) = target.film.as_ref().filter(|_| done > 0) {
             let pattern = folder.path().join("%06d.png");
             write_film(&pattern, self.args.fps, &self.args.output)?;
+            if self.args.sidecar {
+                let (film, frames) = (&self.args.output, &self.reports);
+                sidecar::write(film, &sidecar::of_several(film, "frames", frames))?;
+            }
         }
         if done < all {
             let what = if target.film.is_some() {
@@ -260,9 +266,23 @@ impl Sequence<'_> {
             return Ok(false);
         };
         self.context.check_validation()?;
+        if self.args.sidecar {
+            self.tell_how(&file, &saved.metadata)?;
+        }
         self.drawn
             .push(DrawnFrame::new(number, &file, saved.summary)?);
         Ok(true)
+    }
+
+    /// Writes the sidecar of a frame, or keeps it for that of the film.
+    fn tell_how(&mut self, frame: &Path, metadata: &Metadata) -> Result<()> {
+        let (job, film) = (&self.job, &self.args.output);
+        if is_film(film) {
+            self.reports
+                .push(sidecar::report(job, &self.context, film, metadata));
+            return Ok(());
+        }
+        sidecar::write(frame, &sidecar::report(job, &self.context, frame, metadata))
     }
 
     /// EV100 of the job's frame.

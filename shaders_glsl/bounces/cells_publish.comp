@@ -121,6 +121,7 @@ Sum published(uint slot) {
 
 void main() {
     uint index = gl_GlobalInvocationID.x;
+    if (index == 0u) seen_count = 0u; // of the next round
     if (index >= live_count) return;
     uint slot = live[index];
     // A cell that is not published yet may be new.

@@ -29,7 +29,7 @@ const uint KEPT_ROUNDS = 256u;
 uint take_over(Key key) {
     uint oldest = key.bucket;
     for (uint i = 1u; i < BUCKET; ++i) if (stamps[key.bucket + i] < stamps[oldest]) oldest = key.bucket + i;
-    if (stamps[oldest] + KEPT_ROUNDS > scene.frame) return NONE;
+    if (round_of(stamps[oldest]) + KEPT_ROUNDS > scene.frame) return NONE;
     uint before = prints[oldest];
     if (atomicCompSwap(prints[oldest], before, key.print) != before) return NONE;
     for (uint i = 0u; i < CONTESTS; ++i) contests[oldest * CONTESTS + i] = 0xffffffffu;
@@ -53,15 +53,21 @@ uint claim_slot(Key key) {
     return take_over(key);
 }
 
+/// Notes that a path meets a cell. Each cell in view is counted once.
+void meet(uint slot, bool is_seen) {
+    uint now = stamp(scene.frame, is_seen);
+    if (atomicMax(stamps[slot], now) < now && is_seen) atomicAdd(seen_count, 1u);
+}
+
 /// The slot of the cell of a point, created if there is none, and the contest for it; NONE if the table is full there.
-uint claim(vec3 p, vec3 n, int level, out uint contest) {
+uint claim(vec3 p, vec3 n, int level, bool is_seen, out uint contest) {
     float edge = cell_edge(level);
     ivec3 at = ivec3(floor(in_grid(p, n, edge)));
     uint side = dominant(n);
     for (uint sibling = 0u; sibling < SIBLINGS; ++sibling) {
         uint slot = claim_slot(cell_key(at, side, level, sibling));
         if (slot == NONE) return NONE;
-        stamps[slot] = scene.frame;
+        meet(slot, is_seen);
         uint print = prints[slot];
         if ((print & DIVIDED) != 0u && !is_on_side(walls[slot], p)) continue;
         contest = (print & (ANCHORED | DIVIDED)) == ANCHORED ? WALL : 0u;
@@ -78,10 +84,10 @@ bool is_divided(vec3 p, vec3 n, vec3 anchor, float edge) {
 }
 
 /// A point of a path enters a contest of its cell.
-void enter(uint index, vec3 p, vec3 n, uint hash) {
+void enter(uint index, vec3 p, vec3 n, bool is_seen, uint hash) {
     int level = candidate_level(p, hash);
     uint contest;
-    uint slot = claim(p, n, level, contest);
+    uint slot = claim(p, n, level, is_seen, contest);
     if (slot == NONE) return;
     // What does not see the anchor asks for a wall.
     if (contest == WALL && !is_divided(p, n, points[slot * POINTS].position, cell_edge(level))) contest = 0u;
@@ -103,7 +109,7 @@ void main() {
         if (hit.distance == FAR) return;
         Surface surface = surface_of(hit, origin, toward);
         state = tea(state, i);
-        enter(path * PATH_POINTS + i, surface.position, surface.normal, state);
+        enter(path * PATH_POINTS + i, surface.position, surface.normal, i == 0u, state);
         origin = surface.position;
         toward = cosine_direction(surface.normal, vec2(rnd(state), rnd(state)));
     }

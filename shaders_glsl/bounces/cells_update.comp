@@ -24,6 +24,7 @@ layout(push_constant, scalar) uniform Push {
     uint ends_in_cell; // whether a path takes the bounces of the cell at its end: all bounces instead of as many as segments
     uint paths;        // in all: few cells get several each; of many each gets one in turn
     uint first;        // of the live cells whose turn it is; NONE: all get at least one
+    uint seen;         // besides, for the cells in view
     float most;        // paths that the old means count for: few after a change of the light
     vec3 sky_change;   // factor on the old means of the sky
     vec3 bounce_change; // factor on the old means of the bounces
@@ -90,6 +91,14 @@ void add_path(inout Sum sum, uint slot, uint print) {
     sum.samples = k;
 }
 
+/// Paths of a cell in this round. The light of cells in view is seen itself, that of others as part of a mean over many.
+uint paths_of(uint slot) {
+    if (sums[slot].samples >= float(ENOUGH)) return 0u;
+    uint paths = clamp(push.paths / live_count, 1u, MOST_PATHS);
+    bool is_seen = stamps[slot] == stamp(scene.frame, true);
+    return is_seen ? paths + min(push.seen / seen_count, MOST_SEEN_PATHS) : paths;
+}
+
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index >= live_count) return;
@@ -105,7 +114,7 @@ void main() {
     sum.bounce *= push.bounce_change;
     sum.sky_gradient *= luminance(push.sky_change);
     sum.bounce_gradient *= luminance(push.bounce_change);
-    uint paths = sum.samples < float(ENOUGH) ? clamp(push.paths / live_count, 1u, MOST_PATHS) : 0u;
+    uint paths = paths_of(slot);
     for (uint i = 0u; i < paths; ++i) add_path(sum, slot, print & ~FLAGS);
     sums[slot] = sum;
 }

@@ -29,13 +29,15 @@ const uint CONTESTS = 2u;
 const uint WALL = 1u;
 // Most paths of a cell in a round.
 const uint MOST_PATHS = 16u;
+// Most of those in view besides.
+const uint MOST_SEEN_PATHS = 64u;
 // Points of a path that creates cells.
 const uint PATH_POINTS = 4u;
 
 // A stage declares the buffers that it uses: a device may have no more than four for a stage.
 
-// What is in each slot, the round in which paths last met it, and the slots in use.
-#define TABLE layout(set = 0, binding = 1, scalar) buffer Table { uint prints[SLOTS]; uint stamps[SLOTS]; uint live_count; uint live[SLOTS]; }
+// What is in each slot, its stamp, the slots in use, and how many cells are in view of this round.
+#define TABLE layout(set = 0, binding = 1, scalar) buffer Table { uint prints[SLOTS]; uint stamps[SLOTS]; uint seen_count; uint live_count; uint live[SLOTS]; }
 // Points and walls of cells.
 #define PLACES layout(set = 0, binding = 2, scalar) buffer Places { Point points[SLOTS * POINTS]; uvec2 walls[SLOTS]; }
 // The contests for them, and who takes part.
@@ -46,6 +48,16 @@ const uint PATH_POINTS = 4u;
 /// The hidden neighbours and the level in a word.
 uint hidden_pack(uint hidden, int level) {
     return hidden | uint(level) << 8;
+}
+
+/// The stamp of a cell that paths from the eye meet in a round: at their first point, where it is in view, or later. Stamps grow.
+uint stamp(uint round, bool is_seen) {
+    return round << 1 | uint(is_seen);
+}
+
+/// The round of a stamp.
+uint round_of(uint stamp) {
+    return stamp >> 1;
 }
 
 /// Whether it is the turn of live cell number `index` of `count`: `paths` of them from `first` on; NONE: of all.

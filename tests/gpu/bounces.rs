@@ -98,6 +98,29 @@ fn the_same_seed_makes_the_same_light() {
     }
 }
 
+/// Few cells are in view, many beyond: those in view have no more noise than in a picture of the whole room.
+#[test]
+fn a_single_frame_of_a_small_part_of_a_room_is_right() {
+    let mut device = Device::new();
+    let (scene, day, whole) = (rooms(&matt(0.6)), clear_day(150.0, 60.0), inside(false));
+    let view = Camera {
+        fov_deg: 3.0,
+        ..camera(whole.eye.to_array(), [0.3, 0.0, -1.5])
+    };
+    let mut light =
+        |set: FrameSettings| mean(&device.picture(&scene, showing(Show::Sky, set), &day, &view));
+    let right = light(converged(32, 18, 64));
+    for seed in 0..6 {
+        let mut set = single(32, 18);
+        set.sampling.dome.seed = seed;
+        let ratio = light(set) / right;
+        println!(
+            "seed {seed}: sky of a single frame over that of the converged picture {ratio:.3}"
+        );
+        assert!((ratio - 1.0).abs() < 0.15, "{seed}: {ratio}");
+    }
+}
+
 #[test]
 fn the_addends_with_bounces_sum_to_the_picture() {
     let mut device = Device::new();

@@ -43,8 +43,9 @@ const SUM_BYTES: u32 = 56;
 /// Most paths from the eye in a round.
 const PATHS: u32 = 1 << 12;
 
-/// Paths from the cells in a round, unless there are more cells.
-const UPDATES: u32 = 1 << 14;
+/// Paths from the cells in a round, unless there are more cells; and those from cells in view besides.
+const UPDATES: u32 = 1 << 13;
+const SEEN_UPDATES: u32 = 1 << 13;
 
 /// Edge of the smallest cells, metres, in scenes larger than a room.
 const CELL: f32 = 0.25;
@@ -130,6 +131,7 @@ gpu_struct! {
         ends_in_cell: u32,
         paths: u32,
         first: u32,
+        seen: u32,
         most: f32,
         sky_change: Vec3,
         bounce_change: Vec3,
@@ -242,8 +244,8 @@ impl Cells {
                 &tree.constants_with_emitters(),
             )?,
             publish: pipeline("cells: publish", &shaders::CELLS_PUBLISH_COMP, &[])?,
-            // Prints, rounds, the number of live cells, the cells.
-            table: buffer("table of cells", 3 * SLOTS + 1)?,
+            // Prints, stamps, the numbers of cells in view and of live ones, these.
+            table: buffer("table of cells", 3 * SLOTS + 2)?,
             places: buffer(
                 "points and walls of cells",
                 SLOTS * (POINTS * POINT_BYTES + WALL_BYTES) / 4,
@@ -317,6 +319,7 @@ impl Cells {
             let mut update = update_push(self.held.as_ref(), &held, around.tree.is_emissive());
             if let Some(paths) = paths {
                 update.paths = paths;
+                update.seen = 0;
                 update.first = self.round.wrapping_mul(paths);
             }
             self.held = Some(held.clone());
@@ -438,6 +441,7 @@ fn update_push(old: Option<&Held>, new: &Held, is_emissive: bool) -> UpdatePush 
         ends_in_cell,
         paths: UPDATES,
         first: u32::MAX,
+        seen: SEEN_UPDATES,
         most: kept.map_or(f32::MAX, |paths| paths as f32),
         sky_change: factor(|day| day.sky_irradiance_up),
         bounce_change: if is_emissive {

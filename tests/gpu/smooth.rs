@@ -161,43 +161,6 @@ fn what_comes_into_view_has_no_ghost() {
     );
 }
 
-/// Bright bars on a dark wall, as wide as the gaps between them, some five pixels, and a little aslant.
-fn bars() -> Scene {
-    let wall = Model::default().quad(
-        [-20.0, -20.0, -3.0],
-        [40.0, 0.0, 0.0],
-        [0.0, 40.0, 0.0],
-        &matt(0.1),
-    );
-    let bar = |model: Model, i: i32| {
-        let left = 0.6 * i as f32;
-        model.quad(
-            [left, -10.0, -2.99],
-            [0.3, 0.0, 0.0],
-            [1.0, 20.0, 0.0],
-            &matt(0.9),
-        )
-    };
-    (-20..20).fold(wall, bar).build()
-}
-
-#[test]
-fn what_moves_by_parts_of_a_pixel_stays_sharp() {
-    let mut device = Device::new();
-    let (scene, day) = (bars(), constant_sky(8000.0));
-    // Steps of half a pixel, where a linear lookup blurs most: by more than a single sample errs.
-    let view = |step: i32| aside(0.032 * step as f32);
-    let truth = truth(&mut device, &scene, &day, &view(23));
-    let mut error = |aa| {
-        let mut frame = frame(&mut device, &scene, with(aa));
-        let pictures = (0..24).map(|step| moved(&mut device, &mut frame, &day, &view(step)));
-        pictures.last().map(|last| last.apart(&truth))
-    };
-    let [off, taa] = [AntiAliasing::Off, AntiAliasing::Taa].map(|aa| error(aa).expect("a frame"));
-    println!("rms and greatest error: off {off:?}, taa {taa:?}");
-    assert!(taa.0 < off.0, "{off:?} {taa:?}");
-}
-
 #[test]
 fn a_pan_keeps_an_even_plane_even() {
     let mut device = Device::new();

@@ -112,11 +112,12 @@ impl Sample {
         }
     }
 
-    /// The sample of frame number `number` of a moving view: another point of the pixels, and the sun's centre.
+    /// The sample of frame number `number` of a moving view: another point of the pixels, and the sun's centre. The points are Sobol's: those of an
+    /// additive sequence, as [`sampling::r2`] is, fall into step with an even motion.
     pub fn moving(daylight: &Daylight, number: u32) -> Self {
         let sun = daylight.direct_light().direction.as_vec3();
         Self {
-            jitter: offset(Filter::Box, sampling::r2(number)),
+            jitter: offset(Filter::Box, sampling::sobol(number)),
             phase: sampling::radical_inverse(number) as f32,
             sharpen: MOVING_SHARPEN,
             ..Self::central(sun)

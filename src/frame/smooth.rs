@@ -5,6 +5,8 @@
 
 use std::sync::Arc;
 
+use glam::Vec2;
+
 use super::FrameSettings;
 use super::sample::Sample;
 use crate::daylight::colour::luminance;
@@ -231,6 +233,7 @@ impl Smooth {
             depths: [depth, drawn.gbuffer.depth_before().unwrap_or(depth)],
             before: &passes.pictures[old],
             motion,
+            jitter: before.map_or(Vec2::ZERO, |before| before.view.jitter),
             is_lit_alike: before.is_some_and(|before| before.light == *light),
             number: self.number,
         };

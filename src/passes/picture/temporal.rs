@@ -28,6 +28,8 @@ gpu_struct! {
         to_depth: f32,
         same: f32,
         shift: f32,
+        jitter: Vec2,
+        axis: Vec2,
     }
 }
 
@@ -41,6 +43,8 @@ pub struct Inputs<'a> {
     pub before: &'a Image,
     /// Where surfaces were in the picture before; `None`: it does not count.
     pub motion: Option<Reprojection>,
+    /// Offset of the sample of the frame before in the pixel, pixels ([`View::jitter`](crate::passes::view::View::jitter)).
+    pub jitter: Vec2,
     /// Whether the light is that of the picture before.
     pub is_lit_alike: bool,
     /// Number of the frame.
@@ -95,6 +99,12 @@ impl Temporal {
                 .motion
                 .map_or(-2.0, |motion| (SAME / motion.parallax).min(2.0)),
             shift: shift(inputs.number),
+            jitter: inputs.jitter / size,
+            axis: if inputs.number.is_multiple_of(2) {
+                Vec2::X
+            } else {
+                Vec2::Y
+            },
         };
         let [same_light, other_light] = &self.pipelines;
         let pipeline = if inputs.is_lit_alike {

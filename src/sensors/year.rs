@@ -345,12 +345,13 @@ impl<'a> Block<'a> {
         sensors.for_each(|((sums, vertices), start)| {
             let patches = &mut sums.patches[replicate * patches..(replicate + 1) * patches];
             let suns = &mut sums.suns[replicate * suns..(replicate + 1) * suns];
-            for (vertex, cell) in vertices.iter().zip(&cells.of_vertex[start..]) {
-                let light = &lit[*cell as usize];
-                for (patch, weight) in &light.sky {
-                    patches[*patch as usize] += grey((vertex.weight * *weight).as_dvec3());
+            let cells = &cells.of_vertex[start..start + vertices.len()];
+            for (cell, weight) in together(vertices, cells, lit.len()) {
+                let light = &lit[cell];
+                for (patch, share) in &light.sky {
+                    patches[*patch as usize] += grey((weight * *share).as_dvec3());
                 }
-                add(suns, &light.suns, vertex.weight, channels);
+                add(suns, &light.suns, weight, channels);
             }
         });
     }
@@ -432,6 +433,16 @@ impl<'a> Block<'a> {
         };
         measured.iter().map(of).collect()
     }
+}
+
+/// The cells of some vertices, each once, and the sum of the weights of these.
+fn together(vertices: &[Vertex], cells: &[u32], count: usize) -> Vec<(usize, Vec3)> {
+    let mut weights = vec![Vec3::ZERO; count];
+    for (vertex, cell) in vertices.iter().zip(cells) {
+        weights[*cell as usize] += vertex.weight;
+    }
+    let cells = weights.into_iter().enumerate();
+    cells.filter(|(_, weight)| *weight != Vec3::ZERO).collect()
 }
 
 /// Paths of a replicate and sensor in the first round toward an error: what rooms need, so that few rounds do; errors decide about more.

@@ -351,6 +351,16 @@ impl DaylightArgs {
         self.metrics.clone()
     }
 
+    /// Whether the light of every hour of a weather file counts.
+    pub fn needs_hours(&self) -> bool {
+        let has_blinds = self.blinds != Blinds::None;
+        self.asked_metrics()
+            .iter()
+            .any(|metric| metric.needs_hours())
+            || self.keeps_hours()
+            || has_blinds
+    }
+
     /// Whether the illuminances of every hour are kept.
     pub fn keeps_hours(&self) -> bool {
         self.ill.is_some() || self.heat.is_some() || self.report.is_some()

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
+use wide::f32x8;
 
 use super::grey_sky::Distribution;
 use super::patches::Patches;
@@ -65,7 +66,9 @@ impl LitHour {
 /// What turns an hour into luminances of patches.
 #[derive(Debug, Clone)]
 pub struct PatchedSky {
-    centres: Vec<DVec3>,
+    /// Middles of the patches above the horizon, eight at a time; the last ones are repeated.
+    centres: Vec<[f32x8; 3]>,
+    /// Weights of these patches in the illuminance of a horizontal plane, sr.
     weights: Vec<f64>,
     ground_albedo: f64,
 }
@@ -73,9 +76,15 @@ pub struct PatchedSky {
 impl PatchedSky {
     /// For these patches, over ground that reflects `ground_albedo`, 0..=1.
     pub fn new(patches: &Patches, ground_albedo: f64) -> Self {
+        let centres = &patches.centres()[1..];
+        let eight = |first: usize| {
+            let of = |lane: usize| centres[(first + lane).min(centres.len() - 1)].as_vec3();
+            let lanes: [Vec3; 8] = std::array::from_fn(of);
+            [0, 1, 2].map(|axis| f32x8::new(lanes.map(|centre| centre[axis])))
+        };
         Self {
-            centres: patches.centres(),
-            weights: patches.horizontal_weights(),
+            centres: (0..centres.len()).step_by(8).map(eight).collect(),
+            weights: patches.horizontal_weights()[1..].to_vec(),
             ground_albedo,
         }
     }
@@ -83,32 +92,55 @@ impl PatchedSky {
     /// Luminance of every patch, cd/m²: that of its middle, all scaled so that together they give a horizontal plane the light of the sky;
     /// of patch 0 that of the ground below the horizon.
     pub fn luminances(&self, hour: &LitHour) -> Vec<f32> {
-        let form = |centre: &DVec3| {
-            let chi = centre.dot(hour.sky_sun).clamp(-1.0, 1.0).acos();
-            let d = &hour.distribution;
-            (d.gradation(centre.y) * d.indicatrix(chi)).max(0.0)
+        let sun = hour.sky_sun.as_vec3();
+        let Distribution {
+            gradation,
+            indicatrix,
+            least_cosine,
+        } = hour.distribution;
+        let ([a, b, g], [k, c, d, e]) = (gradation.map(|v| v as f32), indicatrix.map(|v| v as f32));
+        let form = |[x, y, z]: [f32x8; 3]| {
+            let fall = (b / y.max(f32x8::splat(least_cosine as f32))).exp() * a;
+            let cosine = x * sun.x + y * sun.y + z * sun.z;
+            let [u, v, w] = [x - sun.x, y - sun.y, z - sun.z];
+            // From the chord: the arc cosine has few digits near the sun.
+            let chord = (u * u + v * v + w * w).sqrt();
+            let chi = (0.5 * chord).min(f32x8::ONE).asin() * 2.0;
+            let indicatrix = (chi * d).exp() * c + cosine * cosine * e + k;
+            ((fall + y * g + 1.0) * indicatrix).max(f32x8::ZERO)
         };
         self.scaled(form, hour.sky_lux, hour.global_lux())
     }
 
     /// The same for the overcast sky of the CIE that gives open ground `lux`.
     pub fn overcast(&self, lux: f64) -> Vec<f32> {
-        self.scaled(|centre| 1.0 + 2.0 * centre.y, lux, lux)
+        self.scaled(|[_, y, _]| y * 2.0 + 1.0, lux, lux)
     }
 
-    fn scaled(&self, form: impl Fn(&DVec3) -> f64, sky_lux: f64, global_lux: f64) -> Vec<f32> {
-        let mut values: Vec<f64> = self.centres[1..].iter().map(form).collect();
-        let weights = &self.weights[1..];
-        let sum: f64 = values.iter().zip(weights).map(|(v, w)| v * w).sum();
+    fn scaled(
+        &self,
+        form: impl Fn([f32x8; 3]) -> f32x8,
+        sky_lux: f64,
+        global_lux: f64,
+    ) -> Vec<f32> {
+        let ground = self.ground_albedo * global_lux / PI;
+        let mut luminances = vec![ground as f32];
+        let formed = self
+            .centres
+            .iter()
+            .flat_map(|lanes| form(*lanes).to_array());
+        luminances.extend(formed.take(self.weights.len()));
+        let values = &mut luminances[1..];
+        let weighted = values.iter().zip(&self.weights);
+        let sum: f64 = weighted.map(|(v, w)| f64::from(*v) * w).sum();
         if sum > 0.0 {
-            values.iter_mut().for_each(|value| *value *= sky_lux / sum);
+            let scale = (sky_lux / sum) as f32;
+            values.iter_mut().for_each(|value| *value *= scale);
         } else {
             // A formula that is nowhere positive: a uniform sky.
-            values.fill(sky_lux / PI);
+            values.fill((sky_lux / PI) as f32);
         }
-        let ground = self.ground_albedo * global_lux / PI;
-        let all = std::iter::once(ground).chain(values);
-        all.map(|value| value as f32).collect()
+        luminances
     }
 }
 

@@ -11,6 +11,9 @@ const MINUTES: i64 = 1;
 /// The same of a year.
 const MINUTES_OF_YEAR: i64 = 10;
 
+/// How much the sun rises in a minute at most, degrees: by the turn of the earth, at the equator.
+const FASTEST_DEG: f64 = 0.26;
+
 /// When hours of sun are counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SunDate {
@@ -156,9 +159,11 @@ impl Site {
         let mut suns = Vec::new();
         for day in days {
             let midnight = day.and_time(NaiveTime::MIN);
-            for at in 0..24 * 60 / step {
+            let mut at = 0;
+            while at < 24 * 60 / step {
                 // The middle of the step. A fixed clock has every time once.
                 let local = midnight + Duration::seconds(60 * at * step + 30 * step);
+                at += 1;
                 let Some(moment) = self.zone.from_local_datetime(&local).single() else {
                     continue;
                 };
@@ -166,6 +171,8 @@ impl Site {
                 if sun.elevation_deg > least {
                     suns.push(direction(sun.azimuth_deg, sun.elevation_deg));
                 }
+                // At night no sun is missed until it can be up again.
+                at += (-sun.elevation_deg / (FASTEST_DEG * step as f64)).max(0.0) as i64;
             }
         }
         Ok(Some(DatedSuns {

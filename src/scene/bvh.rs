@@ -4,6 +4,7 @@
 //! depth-first with skip links, so that occlusion rays need no stack (Smits 1998, "Efficiency issues for ray tracing"). Triangle
 //! intersection: Möller and Trumbore 1997. All in `f32`.
 
+mod bundle;
 mod stored;
 
 use std::thread;
@@ -13,6 +14,7 @@ use glam::{Vec3, Vec3A};
 
 use crate::scene::{Bounds, Scene};
 
+pub use bundle::{Blocker, Bundle, LANES};
 pub use stored::FlatBvh;
 
 /// Most triangles of a leaf.
@@ -221,8 +223,8 @@ impl Ray {
 }
 
 impl Triangle {
-    /// Möller and Trumbore 1997, "Fast, minimum storage ray/triangle intersection", both sides.
-    fn meet(&self, ray: &Ray, near: f32, far: f32) -> Option<Hit> {
+    /// Where a ray meets it between `near` and `far`: Möller and Trumbore 1997, "Fast, minimum storage ray/triangle intersection", both sides.
+    pub fn meet(&self, ray: &Ray, near: f32, far: f32) -> Option<Hit> {
         let p = ray.direction.cross(self.edge2);
         let inverse = self.edge1.dot(p).recip();
         let s = ray.origin - self.corner;
@@ -434,7 +436,7 @@ mod tests {
     }
 
     /// Small triangles at pseudo-random places of the unit cube.
-    fn cloud(count: u32) -> Vec<Triangle> {
+    pub(super) fn cloud(count: u32) -> Vec<Triangle> {
         let point = |i: u32| {
             let xy = r2(i);
             Vec3::new(xy.x, xy.y, (i as f32 * 0.618_034).fract())
@@ -451,7 +453,7 @@ mod tests {
         (0..count).map(triangle).collect()
     }
 
-    fn rays(count: u32) -> impl Iterator<Item = Ray> {
+    pub(super) fn rays(count: u32) -> impl Iterator<Item = Ray> {
         (0..count).map(|i| {
             let (a, b) = (r2(2 * i + 1), r2(5 * i + 3));
             let direction = Vec3::new(b.x - 0.5, b.y - 0.5, a.x - a.y);

@@ -44,7 +44,7 @@ use serde::{Deserialize, Serialize};
 
 pub use bounds::Bounds;
 pub use bundled::{BUNDLED, bundled, bundled_name};
-pub use bvh::{Bvh, Hit, LEAF_TRIANGLES, Node, Ray, Triangle};
+pub use bvh::{Blocker, Bundle, Bvh, Hit, LANES, LEAF_TRIANGLES, Node, Ray, Triangle};
 pub use camera::{Camera, DEFAULT_FOV_DEG};
 pub use culling::bodies::{Bodies, Body};
 pub use culling::clusters::{Cluster, Clusters, Solid};

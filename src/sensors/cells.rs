@@ -1,27 +1,31 @@
 //! Light of sun and sky on surfaces: paths that are reflected near each other share it.
 //!
 //! Binder, Fricke & Keller 2019, "Massively parallel path space filtering": points are grouped by cells of space and by their normals. Here a
-//! group takes the light of one of its points, drawn with a probability proportional to its weight, so that the expected sum is right: of
-//! every sun of the year, and of patches of the sky by rays. Cells are small beside the distance from the sensor and lie anew in every round
+//! group takes the light of some of its points, drawn with a probability proportional to their weight, so that the expected sum is right: of
+//! every sun of the year, and of patches of the sky by rays. Rays are traced eight at a time, each bundle from another of these points. Cells are small beside the distance from the sensor and lie anew in every round
 //! of paths: their borders average out.
 
 use std::collections::HashMap;
-
-use std::f64::consts::PI;
+use std::f32::consts::PI;
 
 use glam::{Vec3, Vec3A};
 
-use super::numbers::Numbers;
-use super::surface::TracedScene;
-use super::walk::{Vertex, outside};
+use super::hemisphere::{Hemisphere, outside};
+use super::suns::Suns;
+use super::surface::{TracedScene, before, lanes_of};
+use super::walk::Vertex;
 use super::year_light::YearLight;
 use crate::daylight::sampling::{rnd, tea};
+use crate::scene::{Blocker, LANES};
 
 /// Edge of a cell, relative to the distance from the sensor at which its size begins.
-const RELATIVE_EDGE: f32 = 0.15;
+const RELATIVE_EDGE: f32 = 0.2;
 
-/// Rays to the sky from the point of a cell.
-const SKY_RAYS: u32 = 64;
+/// Rays to the sky from the points of a cell: the square of this.
+const SKY_SIDE: u32 = 8;
+
+/// Points that stand for a cell: bundles of rays begin at one after the other.
+const POINTS: usize = 16;
 
 /// Distances from the sensor between which cells grow, metres, as powers of two.
 const LEVELS: (f32, f32) = (0.0, 14.0);
@@ -32,12 +36,15 @@ const NORMAL_STEPS: f32 = 4.0;
 /// Where a point belongs: size, place and normal.
 type Key = ([i32; 4], [i8; 3]);
 
+/// Vertices that stand for a cell.
+pub(super) type Standing = [u32; POINTS];
+
 /// Groups of vertices.
 pub(super) struct Cells {
     /// The cell of each vertex.
     pub of_vertex: Vec<u32>,
-    /// The vertex that stands for each cell.
-    pub stands_for: Vec<u32>,
+    /// The vertices that stand for each cell, some of them more than once.
+    pub standing: Vec<Standing>,
 }
 
 impl Cells {
@@ -47,27 +54,39 @@ impl Cells {
         let mut random = || rnd(&mut state) as f32;
         let shift = Vec3A::new(random(), random(), random());
         let mut cells: HashMap<Key, u32> = HashMap::new();
-        let (mut of_vertex, mut stands_for) = (Vec::with_capacity(vertices.len()), Vec::new());
+        let mut of_vertex = Vec::with_capacity(vertices.len());
         let mut weights: Vec<f32> = Vec::new();
-        for (at, vertex) in vertices.iter().enumerate() {
-            let next = stands_for.len() as u32;
+        for vertex in vertices {
+            let next = weights.len() as u32;
             let cell = *cells.entry(key(vertex, shift, coarser)).or_insert(next);
-            let weight = vertex.weight.element_sum();
             if cell == next {
-                weights.push(weight);
-                stands_for.push(at as u32);
-            } else {
-                let sum = &mut weights[cell as usize];
-                *sum += weight;
-                if random() * *sum < weight {
-                    stands_for[cell as usize] = at as u32;
-                }
+                weights.push(0.0);
             }
+            weights[cell as usize] += vertex.weight.element_sum();
             of_vertex.push(cell);
+        }
+        // Systematic sampling: the points of a cell are where its running sum of weights passes equal steps from a random start.
+        let mut places: Vec<(f32, usize)> = weights.iter().map(|_| (-random(), 0)).collect();
+        let mut standing = vec![[0; POINTS]; weights.len()];
+        for (at, (vertex, cell)) in vertices.iter().zip(&of_vertex).enumerate() {
+            let cell = *cell as usize;
+            let (place, drawn) = &mut places[cell];
+            *place += POINTS as f32 * vertex.weight.element_sum() / weights[cell];
+            while *drawn < POINTS && *place > *drawn as f32 {
+                standing[cell][*drawn] = at as u32;
+                *drawn += 1;
+            }
+        }
+        for (standing, (_, drawn)) in standing.iter_mut().zip(places) {
+            // Rounding may leave out the last one.
+            let last = standing[drawn.max(1) - 1];
+            standing[drawn..].fill(last);
+            // A bundle begins at each of them with the same probability.
+            standing.rotate_left((POINTS as f32 * random()) as usize % POINTS);
         }
         Self {
             of_vertex,
-            stands_for,
+            standing,
         }
     }
 }
@@ -81,7 +100,7 @@ fn key(vertex: &Vertex, shift: Vec3A, coarser: f32) -> Key {
     ([level as i32, x, y, z], normal.to_array().map(|v| v as i8))
 }
 
-/// Light on the point of a cell.
+/// Light on the points of a cell.
 pub(super) struct CellLight {
     /// Illuminance by suns that give a unit at normal incidence: of each sun in turn, for one channel, or for R, G and B.
     pub suns: Vec<f32>,
@@ -90,17 +109,17 @@ pub(super) struct CellLight {
 }
 
 impl CellLight {
-    /// At a vertex: without reflection, through panes. `channels` of suns are 1 or 3.
+    /// At the vertices that stand for a cell: without reflection, through panes. `channels` of suns are 1 or 3.
     pub fn new(
         scene: &TracedScene,
-        vertex: &Vertex,
+        points: &[&Vertex; POINTS],
         light: &YearLight,
         channels: usize,
         seed: u32,
     ) -> Self {
         Self {
-            suns: sunlight(scene, vertex, &light.suns.directions, channels),
-            sky: skylight(scene, vertex, light, seed),
+            suns: sunlight(scene, points, &light.suns, channels),
+            sky: skylight(scene, points, light, seed),
         }
     }
 }
@@ -108,31 +127,54 @@ impl CellLight {
 /// Rays to the sky with the density cos θ/π.
 fn skylight(
     scene: &TracedScene,
-    vertex: &Vertex,
+    points: &[&Vertex; POINTS],
     light: &YearLight,
     seed: u32,
 ) -> Vec<(u32, Vec3)> {
-    let (from, normal) = (vertex.position, vertex.normal);
     let mut found = Vec::new();
-    for index in 0..SKY_RAYS {
-        let mut numbers = Numbers::new(index, seed, 1);
-        if let Some((direction, through)) = outside(scene, from, normal, &mut numbers) {
-            let weight = through * (PI / f64::from(SKY_RAYS));
-            found.push((light.patches.index(direction) as u32, weight.as_vec3()));
-        }
+    let (mut state, mut blocker) = (seed, Blocker::default());
+    let mut hemisphere = Hemisphere::new(points[0].normal, SKY_SIDE);
+    let share = PI / hemisphere.side().pow(2) as f32;
+    for (at, tile) in hemisphere.tiles().enumerate() {
+        let point = points[2 * at % POINTS];
+        hemisphere.turn(point.normal);
+        let bundle = hemisphere.bundle(tile, &mut state);
+        let random = (&mut state, &mut blocker);
+        outside(
+            scene,
+            point.position,
+            &bundle,
+            random,
+            |direction, through| {
+                let patch = light.patches.index(direction.as_dvec3());
+                found.push((patch as u32, share * through));
+            },
+        );
     }
     found
 }
 
 /// See [`CellLight::suns`].
-fn sunlight(scene: &TracedScene, vertex: &Vertex, suns: &[Vec3], channels: usize) -> Vec<f32> {
-    let mut light = vec![0.0; channels * suns.len()];
-    for (at, sun) in suns.iter().enumerate() {
-        let cosine = vertex.normal.dot(*sun);
-        if cosine > 0.0 {
-            let through = scene.passing(vertex.position, *sun, f32::INFINITY) * f64::from(cosine);
-            for (channel, value) in through.to_array().iter().take(channels).enumerate() {
-                light[channel * suns.len() + at] = *value as f32;
+fn sunlight(
+    scene: &TracedScene,
+    points: &[&Vertex; POINTS],
+    suns: &Suns,
+    channels: usize,
+) -> Vec<f32> {
+    let (count, mut blocker) = (suns.directions.len(), Blocker::default());
+    let mut light = vec![0.0; channels * count];
+    for (at, bundle) in suns.bundles.iter().enumerate() {
+        let point = points[at % POINTS];
+        let cosines = bundle.dot(point.normal);
+        let lit = before(&cosines) & bundle.all();
+        if lit == 0 {
+            continue;
+        }
+        let (open, through) = scene.passing_each(point.position, (bundle, lit), &mut blocker);
+        for lane in lanes_of(open) {
+            let values = cosines[lane] * through[lane];
+            for (channel, value) in values.to_array().iter().take(channels).enumerate() {
+                light[channel * count + LANES * at + lane] = *value;
             }
         }
     }

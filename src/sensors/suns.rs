@@ -11,6 +11,7 @@ use glam::Vec3;
 use crate::daylight::lit_hours::LitHour;
 use crate::daylight::sun_position::direction;
 use crate::daylight::weather::Weather;
+use crate::scene::{Bundle, LANES};
 
 /// Days from one of the suns to the next of the same hour.
 const DAYS: u32 = 8;
@@ -23,6 +24,8 @@ const LOWEST_DEG: f64 = 0.1;
 pub(super) struct Suns {
     /// Unit vectors toward them.
     pub directions: Vec<Vec3>,
+    /// The same, eight neighbours at a time.
+    pub bundles: Vec<Bundle>,
     /// Of each lit hour with sun the two suns between which it lies, and the share of the second.
     pub of_hour: Vec<Option<([usize; 2], f32)>>,
 }
@@ -62,10 +65,31 @@ impl Suns {
                 ([before, after], share)
             })
         });
-        let of_hour = of_hour.collect();
-        Self {
+        let mut suns = Self {
+            of_hour: of_hour.collect(),
             directions,
-            of_hour,
+            bundles: Vec::new(),
+        };
+        suns.order(numbers);
+        suns
+    }
+
+    /// Puts them into bundles of neighbours: by the hour of the clock, then by elevation.
+    fn order(&mut self, numbers: BTreeMap<(i64, u32), usize>) {
+        let height = |number: usize| self.directions[number].y;
+        let mut order: Vec<(i64, usize)> = numbers
+            .into_iter()
+            .map(|((hour, _), number)| (hour, number))
+            .collect();
+        order.sort_by(|a, b| a.0.cmp(&b.0).then(height(a.1).total_cmp(&height(b.1))));
+        let mut place = vec![0; order.len()];
+        for (at, (_, number)) in order.iter().enumerate() {
+            place[*number] = at;
         }
+        let ordered = order.iter().map(|(_, number)| self.directions[*number]);
+        self.directions = ordered.collect();
+        self.bundles = self.directions.chunks(LANES).map(Bundle::new).collect();
+        let hours = self.of_hour.iter_mut().flatten();
+        hours.for_each(|(suns, _)| *suns = suns.map(|sun| place[sun]));
     }
 }

@@ -5,9 +5,12 @@ use std::cell::Cell;
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
+use super::panes::{Pane, panes};
 use crate::daylight::colour::luminance;
-use crate::daylight::glass::{internal_transmittance, pane};
-use crate::scene::{Bvh, Emitters, Encoding, Hit, Material, Ray, Reflectances, Scene, Texture};
+use crate::scene::{
+    Blocker, Bundle, Bvh, Emitters, Encoding, Hit, LANES, Material, Ray, Reflectances, Scene,
+    Texture,
+};
 
 /// A scene as paths see it.
 pub struct TracedScene<'a> {
@@ -17,8 +20,10 @@ pub struct TracedScene<'a> {
     material_of: Vec<u32>,
     /// Whether any surface has holes.
     has_cut_outs: bool,
-    /// What one passage through the glass of each material leaves, linear RGB, if it is a pane; empty without any.
-    panes: Vec<Option<DVec3>>,
+    /// The pane of each material, if it is one; empty without any.
+    panes: Vec<Option<Pane>>,
+    /// The hierarchy of the panes alone.
+    bvh_of_panes: Bvh,
     /// [`Scene::glass_slabs`].
     slabs: Vec<bool>,
     emitters: Emitters,
@@ -82,6 +87,9 @@ impl<'a> TracedScene<'a> {
             material_of: scene.triangle_materials(),
             has_cut_outs: scene.materials.iter().any(|m| m.alpha_cutoff.is_some()),
             panes: panes(&scene.materials),
+            bvh_of_panes: Bvh::of(scene, |part| {
+                scene.materials[part.material as usize].glass.is_some()
+            }),
             slabs: scene.glass_slabs(),
             scene,
         }
@@ -154,8 +162,7 @@ impl<'a> TracedScene<'a> {
 
     /// Whether panes colour the light that passes.
     pub(super) fn is_tinted(&self) -> bool {
-        let mut panes = self.panes.iter().flatten();
-        panes.any(|pane| pane.max_element() - pane.min_element() > 1e-6)
+        self.panes.iter().flatten().any(Pane::is_tinted)
     }
 
     /// Whether any surface emits light.
@@ -237,18 +244,65 @@ impl<'a> TracedScene<'a> {
         self.bvh.any(&ray, 0.0, far, |hit| self.is_solid(hit))
     }
 
-    /// What a pane that is hit lets through and mirrors, linear RGB; `None` for other surfaces.
-    fn pane(&self, hit: &Hit, direction: Vec3) -> Option<[DVec3; 2]> {
+    /// Of the rays `lanes` of a bundle from `origin` those that reach the sky straight on, and what panes leave of their light, linear RGB.
+    pub(super) fn passing_each(
+        &self,
+        origin: Vec3,
+        (bundle, lanes): (&Bundle, u32),
+        blocker: &mut Blocker,
+    ) -> (u32, [Vec3; LANES]) {
+        let mut through = [Vec3::ONE; LANES];
+        let open = self
+            .bvh
+            .open(origin, (bundle, lanes), blocker, |triangle, met| {
+                let is_pane = self.pane_of(triangle.number).is_some();
+                if !is_pane && !self.has_cut_outs {
+                    return met;
+                }
+                let mut stopped = 0;
+                for lane in lanes_of(met) {
+                    let direction = bundle.direction(lane);
+                    let ray = Ray { origin, direction };
+                    let Some(hit) = triangle.meet(&ray, 0.0, f32::INFINITY) else {
+                        continue;
+                    };
+                    match self.pane(&hit, direction) {
+                        Some([passed, _]) => through[lane] *= passed.as_vec3(),
+                        None => stopped |= u32::from(self.is_solid(&hit)) << lane,
+                    }
+                }
+                stopped
+            });
+        (open, through)
+    }
+
+    /// Of the rays `lanes` of a bundle from `origin` those that meet a pane of glass, whatever hides it.
+    pub(super) fn meet_panes(&self, origin: Vec3, bundle: &Bundle, lanes: u32) -> u32 {
+        let open = self.bvh_of_panes.open(
+            origin,
+            (bundle, lanes),
+            &mut Blocker::default(),
+            |_, met| met,
+        );
+        lanes & !open
+    }
+
+    /// The pane of a triangle, if it is one.
+    fn pane_of(&self, triangle: u32) -> Option<&Pane> {
         if self.panes.is_empty() {
             return None;
         }
-        let internal = self.panes[self.material_of[hit.triangle as usize] as usize]?;
-        let cosine = f64::from(self.normal(hit).dot(direction));
+        self.panes[self.material_of[triangle as usize] as usize].as_ref()
+    }
+
+    /// What a pane that is hit lets through and mirrors, linear RGB; `None` for other surfaces.
+    fn pane(&self, hit: &Hit, direction: Vec3) -> Option<[DVec3; 2]> {
+        let pane = self.pane_of(hit.triangle)?;
+        let cosine = self.normal(hit).dot(direction);
         if cosine > 0.0 && self.slabs[hit.triangle as usize] {
             return Some([DVec3::ONE, DVec3::ZERO]);
         }
-        let shares = internal.to_array().map(|i| pane(i, cosine));
-        Some([0, 1].map(|i| DVec3::from(shares.map(|share| share[i]))))
+        Some(pane.at(cosine).map(Vec3::as_dvec3))
     }
 
     fn material(&self, hit: &Hit) -> &Material {
@@ -317,14 +371,21 @@ impl<'a> TracedScene<'a> {
     }
 }
 
-/// What one passage through the glass of each material leaves, if it is a pane; empty without any.
-fn panes(materials: &[Material]) -> Vec<Option<DVec3>> {
-    if materials.iter().all(|material| material.glass.is_none()) {
-        return Vec::new();
-    }
-    let internal = |glass: [f32; 3]| glass.map(|v| internal_transmittance(f64::from(v)));
-    let of = |material: &Material| material.glass.map(|glass| DVec3::from(internal(glass)));
-    materials.iter().map(of).collect()
+/// The set of the rays whose cosine with a normal is above 0.
+pub(super) fn before(cosines: &[f32; LANES]) -> u32 {
+    let each = cosines.iter().enumerate();
+    each.fold(0, |set, (lane, cosine)| {
+        set | u32::from(*cosine > 0.0) << lane
+    })
+}
+
+/// The numbers of the rays of a set.
+pub(super) fn lanes_of(mut set: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = set.trailing_zeros() as usize;
+        set &= set.wrapping_sub(1);
+        (lane < LANES).then_some(lane)
+    })
 }
 
 fn emitters(scene: &Scene) -> Emitters {

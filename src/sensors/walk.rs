@@ -32,18 +32,6 @@ fn met(scene: &TracedScene, from: Vec3, normal: Vec3, numbers: &mut Numbers) -> 
     scene.first(from, direction.as_vec3(), || numbers.next())
 }
 
-/// The direction in which such a ray leaves the scene, if it does, and what panes let through.
-pub(super) fn outside(
-    scene: &TracedScene,
-    from: Vec3,
-    normal: Vec3,
-    numbers: &mut Numbers,
-) -> Option<(DVec3, DVec3)> {
-    let met = met(scene, from, normal, numbers);
-    let is_outside = met.point.is_none() && met.through != DVec3::ZERO;
-    is_outside.then(|| (met.direction.as_dvec3(), met.through))
-}
-
 /// Follows path `index` of a replicate over at most `bounces` surfaces and gives the points where it is reflected.
 ///
 /// With directions of the density cos θ/π a bounce multiplies by ρ_d (see [`super::path`]). Each surface ends the path with the probability

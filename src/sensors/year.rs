@@ -10,19 +10,21 @@
 use std::f64::consts::PI;
 
 use glam::Vec3;
-use ndarray::Array2;
+use ndarray::{Array2, ArrayView2, s};
 use rayon::prelude::*;
 
-use super::cells::{CellLight, Cells};
-use super::numbers::{Numbers, seed};
+use super::cells::{CellLight, Cells, Standing};
+use super::hemisphere::{Hemisphere, outside};
+use super::numbers::seed;
 use super::shard::Shard;
 use super::surface::{TracedScene, lifted};
-use super::walk::{Vertex, outside, walk};
+use super::walk::{Vertex, walk};
 use super::year_light::{YearLight, grey};
 use super::{Accuracy, Sensor};
 use crate::daylight::colour::LUMINANCE_WEIGHTS;
 use crate::daylight::metrics::Measures;
 use crate::daylight::sampling::tea;
+use crate::scene::Blocker;
 
 /// Sensors of a block.
 pub const BLOCK: usize = 256;
@@ -30,20 +32,26 @@ pub const BLOCK: usize = 256;
 /// Independent estimates, from which standard errors come.
 const REPLICATES: usize = 8;
 
-/// Paths of a replicate and sensor in the first round.
-const FIRST_ROUND: u32 = 256;
+/// Least paths of a replicate and sensor.
+const LEAST_PATHS: u32 = 256;
+
+/// Paths of a replicate and sensor that bring a room to about one point of daylight autonomy.
+const PATHS_OF_A_POINT: f64 = 2048.0;
 
 /// Rays to what the sensor sees, for each path.
-const RAYS: u32 = 8;
+const RAYS: u32 = 4;
 
-/// Most of a later one: their points are kept while the sunlight on them is found.
-const MOST_ROUND: u32 = 1024;
+/// Most of a round: their points are kept while the sunlight on them is found. Long rounds share the light of more points.
+const MOST_ROUND: u32 = 2048;
 
 /// Sensors whose errors tell together how many paths one of them needs, itself among them.
 const NEIGHBOURS: usize = 5;
 
 /// How many times more paths a sensor gets at once: its error after few is a guess.
 const MOST_TIMES: f64 = 16.0;
+
+/// Sensors whose sums are multiplied with the light of the year at once.
+const TOGETHER: usize = 16;
 
 /// Most numbers of sunlight that are held at a time, 4 bytes each; with more, cells are larger.
 const MOST_SUNLIGHT: usize = 1 << 25;
@@ -99,6 +107,10 @@ pub struct Year {
 
 /// Measures a year at all sensors. The same seed gives the same numbers, whatever the number of cores.
 pub fn measure_year(sensors: &[Sensor], run: &YearRun) -> Year {
+    if run.wanted.contains(&true) {
+        // Here, where all cores share the work.
+        run.light.skies();
+    }
     let mut year = Year::default();
     let blocks = sensors.chunks(BLOCK).enumerate();
     for (number, block) in blocks.filter(|(number, _)| run.shard.takes(*number)) {
@@ -161,9 +173,14 @@ impl<'a> Block<'a> {
     /// Sensors that err more get more paths: the errors of all become alike, for as many paths as would bring the mean square down alone.
     fn measured(mut self, done: usize) -> Option<(Vec<SensorYear>, f64)> {
         let accuracy = &self.run.accuracy;
-        let most = (accuracy.max_paths / REPLICATES as u32).max(FIRST_ROUND);
+        let most = (accuracy.max_paths / REPLICATES as u32).max(LEAST_PATHS);
         let is_wanted = self.run.wanted.contains(&true);
-        let mut aims = vec![if is_wanted { FIRST_ROUND } else { 0 }; self.sensors.len()];
+        let first = if is_wanted {
+            first_round(accuracy.relative_error).min(most)
+        } else {
+            0
+        };
+        let mut aims = vec![first; self.sensors.len()];
         loop {
             while self
                 .traced
@@ -178,10 +195,7 @@ impl<'a> Block<'a> {
                     break;
                 }
             }
-            let measured: Vec<SensorYear> = (0..self.sensors.len())
-                .into_par_iter()
-                .map(|at| self.sensor_year(at))
-                .collect();
+            let measured = self.sensor_years();
             let errors = self.errors(&measured);
             let error = largest_mean(&errors);
             (self.run.progress)(done, Some(error));
@@ -267,12 +281,17 @@ impl<'a> Block<'a> {
             .map(|((at, (sensor, sums)), (traced, paths))| {
                 let (from, to) = (*traced, traced + paths);
                 let seed = seed(run.accuracy.seed, (first + at) as u32, replicate as u32);
-                see(
-                    sensor,
-                    run,
-                    [RAYS * from, RAYS * to, seed],
-                    &mut sums.patches[range.clone()],
-                );
+                if from < to {
+                    // Not the numbers of the paths.
+                    let seed = tea::<8>(seed, !from);
+                    see(
+                        sensor,
+                        run,
+                        to - from,
+                        seed,
+                        &mut sums.patches[range.clone()],
+                    );
+                }
                 let mut vertices = Vec::new();
                 for index in from..to {
                     walk(
@@ -304,16 +323,17 @@ impl<'a> Block<'a> {
         let mut coarser = 1.0;
         let cells = loop {
             let cells = Cells::new(&all, seed, coarser);
-            if cells.stands_for.len() <= most || coarser > 1e6 {
+            if cells.standing.len() <= most || coarser > 1e6 {
                 break cells;
             }
             coarser *= 2.0;
         };
-        let lit = |(at, vertex): (usize, &u32)| {
+        let lit = |(at, standing): (usize, &Standing)| {
             let seed = tea::<8>(seed, at as u32);
-            CellLight::new(scene, &all[*vertex as usize], light, channels, seed)
+            let points = standing.map(|vertex| &all[vertex as usize]);
+            CellLight::new(scene, &points, light, channels, seed)
         };
-        let lit: Vec<CellLight> = cells.stands_for.par_iter().enumerate().map(lit).collect();
+        let lit: Vec<CellLight> = cells.standing.par_iter().enumerate().map(lit).collect();
         let mut starts = Vec::with_capacity(vertices.len());
         let mut start = 0;
         for list in vertices {
@@ -325,29 +345,54 @@ impl<'a> Block<'a> {
         sensors.for_each(|((sums, vertices), start)| {
             let patches = &mut sums.patches[replicate * patches..(replicate + 1) * patches];
             let suns = &mut sums.suns[replicate * suns..(replicate + 1) * suns];
-            for (vertex, cell) in vertices.iter().zip(&cells.of_vertex[start..]) {
-                let light = &lit[*cell as usize];
-                for (patch, weight) in &light.sky {
-                    patches[*patch as usize] += grey((vertex.weight * *weight).as_dvec3());
+            let cells = &cells.of_vertex[start..start + vertices.len()];
+            for (cell, weight) in together(vertices, cells, lit.len()) {
+                let light = &lit[cell];
+                for (patch, share) in &light.sky {
+                    patches[*patch as usize] += grey((weight * *share).as_dvec3());
                 }
-                add(suns, &light.suns, vertex.weight, channels);
+                add(suns, &light.suns, weight, channels);
             }
         });
     }
 
-    /// What the paths so far tell of a sensor.
-    fn sensor_year(&self, at: usize) -> SensorYear {
-        let (run, direct, traced) = (self.run, &self.direct[at], self.traced[at]);
-        let exposed_hours = run.measures.exposed_hours(direct);
-        if traced == 0 {
-            return SensorYear {
-                exposed_hours,
-                ..SensorYear::default()
+    /// What the paths so far tell of all sensors.
+    fn sensor_years(&self) -> Vec<SensorYear> {
+        let all: Vec<usize> = (0..self.sensors.len()).collect();
+        let years = all.par_chunks(TOGETHER).flat_map_iter(|group| {
+            let is_traced = group.iter().any(|at| self.traced[*at] > 0);
+            let lux = is_traced.then(|| {
+                let of = |values: fn(&Sums) -> &Vec<f32>| {
+                    let values = group.iter().flat_map(move |at| values(&self.sums[*at]));
+                    values.copied().collect::<Vec<f32>>()
+                };
+                let (patches, suns) = (of(|sums| &sums.patches), of(|sums| &sums.suns));
+                self.run.light.indirect(&patches, &suns)
+            });
+            let of = move |(place, at): (usize, &usize)| match &lux {
+                Some(lux) => {
+                    let rows = REPLICATES * place..REPLICATES * (place + 1);
+                    self.sensor_year(*at, lux.slice(s![rows, ..]))
+                }
+                None => self.untraced(*at),
             };
+            group.iter().enumerate().map(of).collect::<Vec<_>>()
+        });
+        years.collect()
+    }
+
+    /// A sensor of which the direct sun alone is known.
+    fn untraced(&self, at: usize) -> SensorYear {
+        SensorYear {
+            exposed_hours: self.run.measures.exposed_hours(&self.direct[at]),
+            ..SensorYear::default()
         }
-        let sums = &self.sums[at];
-        let mut lux = run.light.indirect(&sums.patches, &sums.suns, REPLICATES);
-        lux /= traced as f32;
+    }
+
+    /// What the paths so far tell of a sensor: its sums times the light of the year, a row for each replicate.
+    fn sensor_year(&self, at: usize, sums: ArrayView2<f32>) -> SensorYear {
+        let (run, direct, traced) = (self.run, &self.direct[at], self.traced[at]);
+        let lux = &sums / traced as f32;
         let (values, errors) = jackknife(&lux, |lux| {
             // The last column is that of the overcast sky.
             let (hours, factor) = lux.split_at(direct.len());
@@ -365,9 +410,9 @@ impl<'a> Block<'a> {
         SensorYear {
             values,
             errors,
-            exposed_hours,
             lux: hours,
             paths: traced * REPLICATES as u32,
+            ..self.untraced(at)
         }
     }
 
@@ -390,6 +435,22 @@ impl<'a> Block<'a> {
     }
 }
 
+/// The cells of some vertices, each once, and the sum of the weights of these.
+fn together(vertices: &[Vertex], cells: &[u32], count: usize) -> Vec<(usize, Vec3)> {
+    let mut weights = vec![Vec3::ZERO; count];
+    for (vertex, cell) in vertices.iter().zip(cells) {
+        weights[*cell as usize] += vertex.weight;
+    }
+    let cells = weights.into_iter().enumerate();
+    cells.filter(|(_, weight)| *weight != Vec3::ZERO).collect()
+}
+
+/// Paths of a replicate and sensor in the first round toward an error: what rooms need, so that few rounds do; errors decide about more.
+fn first_round(error: f64) -> u32 {
+    let paths = PATHS_OF_A_POINT * (0.01 / error).powi(2);
+    paths.clamp(LEAST_PATHS.into(), MOST_ROUND.into()) as u32
+}
+
 /// The largest of the root mean squares over the sensors.
 fn largest_mean(errors: &[Vec<f64>]) -> f64 {
     let count = errors.first().map_or(0, Vec::len);
@@ -400,17 +461,24 @@ fn largest_mean(errors: &[Vec<f64>]) -> f64 {
     (0..count).map(mean).fold(0.0, f64::max)
 }
 
-/// Adds what a sensor sees of sky and ground by rays of some numbers.
-fn see(sensor: &Sensor, run: &YearRun, [from, to, seed]: [u32; 3], patches: &mut [f32]) {
+/// Adds what a sensor sees of sky and ground, for `paths` paths: by rays of its own.
+fn see(sensor: &Sensor, run: &YearRun, paths: u32, seed: u32, patches: &mut [f32]) {
     let start = lifted(sensor.position, sensor.normal);
-    // Not the numbers of the paths.
-    let seed = tea::<8>(seed, 1);
-    for index in from..to {
-        let mut numbers = Numbers::new(index, seed, 1);
-        if let Some((direction, through)) = outside(run.scene, start, sensor.normal, &mut numbers) {
-            let weight = through * (PI / f64::from(RAYS));
-            patches[run.light.patches.index(direction)] += grey(weight);
-        }
+    let (mut state, mut blocker) = (seed, Blocker::default());
+    let hemisphere = Hemisphere::new(sensor.normal, f64::from(RAYS * paths).sqrt() as u32);
+    let weight = PI * f64::from(paths) / f64::from(hemisphere.side().pow(2));
+    for tile in hemisphere.tiles() {
+        let bundle = hemisphere.bundle(tile, &mut state);
+        outside(
+            run.scene,
+            start,
+            &bundle,
+            (&mut state, &mut blocker),
+            |direction, through| {
+                let patch = run.light.patches.index(direction.as_dvec3());
+                patches[patch] += grey(through.as_dvec3() * weight);
+            },
+        );
     }
 }
 

@@ -1,17 +1,20 @@
 //! The light of a year, in the form that coefficients of sensors are multiplied with.
 
+use std::sync::OnceLock;
+
 use glam::{DVec2, DVec3, Vec3};
 use ndarray::{Array2, ArrayView2, linalg::general_mat_mul};
 use rayon::prelude::*;
 
 use super::Sensor;
 use super::suns::Suns;
-use super::surface::{TracedScene, lifted};
+use super::surface::{TracedScene, before, lanes_of, lifted};
 use crate::daylight::colour::luminance;
 use crate::daylight::lit_hours::{LitHour, PatchedSky, lit_hours};
 use crate::daylight::patches::Patches;
 use crate::daylight::sunlight::on_disc;
 use crate::daylight::weather::Weather;
+use crate::scene::{Blocker, Bundle, LANES};
 
 /// Reinhart's subdivision of the sky: patches of 3°. The luminance of Perez' sky changes by less than 1 % of its mean within one.
 const MULTIPLIER: usize = 4;
@@ -33,8 +36,9 @@ pub struct YearLight {
     pub hours: Vec<LitHour>,
     pub(super) patches: Patches,
     pub(super) suns: Suns,
-    /// Luminances of the patches: a row for each hour, and a last one of the overcast sky of the CIE that gives open ground 100 lux.
-    skies: Array2<f32>,
+    ground_albedo: f64,
+    /// See [`YearLight::skies`].
+    skies: OnceLock<Array2<f32>>,
 }
 
 impl YearLight {
@@ -52,75 +56,80 @@ impl YearLight {
 
     fn of(hours: Vec<LitHour>, suns: Suns, ground_albedo: f64) -> Self {
         let patches = Patches::new(MULTIPLIER);
-        let sky = PatchedSky::new(&patches, ground_albedo);
-        let count = patches.count();
-        let mut skies = vec![0.0; (hours.len() + 1) * count];
-        let rows = skies.par_chunks_mut(count).enumerate();
-        rows.for_each(|(at, row)| {
-            row.copy_from_slice(&match hours.get(at) {
-                Some(hour) => sky.luminances(hour),
-                None => sky.overcast(100.0),
-            });
-        });
         Self {
-            // The shape is that of the vector.
-            skies: Array2::from_shape_vec((hours.len() + 1, count), skies).unwrap_or_default(),
+            skies: OnceLock::new(),
+            ground_albedo,
             suns,
             hours,
             patches,
         }
     }
 
-    /// Illuminance of a sensor by the sun alone, unreflected, in each lit hour, lux: by the whole disc where an edge crosses it.
-    pub(super) fn direct_sun(&self, sensor: &Sensor, scene: &TracedScene) -> Vec<f32> {
-        let from = lifted(sensor.position, sensor.normal);
-        let one = |toward: Vec3| -> f64 {
-            let cosine = sensor.normal.dot(toward);
-            if cosine <= 0.0 || toward.y <= 0.0 {
-                return 0.0;
-            }
-            let through = scene.passing(from, toward, f32::INFINITY);
-            luminance(through) * f64::from(cosine)
-        };
-        let of = |hour: &LitHour| {
-            let centre = hour.sun.as_vec3();
-            let is_lit = hour.sun_lux > 0.0 && sensor.normal.dot(centre) > -0.01;
-            if !is_lit {
-                return 0.0;
-            }
-            let few = FEW.map(|at| one(on_disc(centre, at)));
-            let (least, most) = (
-                few[0].min(few[1]).min(few[2]),
-                few[0].max(few[1]).max(few[2]),
-            );
-            if most == 0.0 {
-                return 0.0;
-            }
-            // The cosine and the glass alone change by less than this over the disc, but at grazing incidence.
-            let is_whole = least > 0.95 * most;
-            let share = if is_whole {
-                one(centre)
-            } else {
-                let sum: f64 = (0..MANY)
-                    .map(|i| one(on_disc(centre, crate::daylight::sampling::sobol(i))))
-                    .sum();
-                sum / f64::from(MANY)
-            };
-            (share * hour.sun_lux) as f32
-        };
-        self.hours.iter().map(of).collect()
+    /// Luminances of the patches: a row for each hour, and a last one of the overcast sky of the CIE that gives open ground 100 lux. They are computed
+    /// when they are first asked for.
+    pub(super) fn skies(&self) -> &Array2<f32> {
+        self.skies.get_or_init(|| {
+            let sky = PatchedSky::new(&self.patches, self.ground_albedo);
+            let count = self.patches.count();
+            let mut skies = vec![0.0; (self.hours.len() + 1) * count];
+            let rows = skies.par_chunks_mut(count).enumerate();
+            rows.for_each(|(at, row)| {
+                row.copy_from_slice(&match self.hours.get(at) {
+                    Some(hour) => sky.luminances(hour),
+                    None => sky.overcast(100.0),
+                });
+            });
+            // The shape is that of the vector.
+            Array2::from_shape_vec((self.hours.len() + 1, count), skies).unwrap_or_default()
+        })
     }
 
-    /// Illuminances by the sky, in all its ways, and by reflected sun, lux: a row for each replicate, a column for each lit hour and a last
-    /// one for the overcast sky, in percent of its open ground.
-    pub(super) fn indirect(&self, patches: &[f32], suns: &[f32], replicates: usize) -> Array2<f32> {
-        let mut lux = Array2::zeros((replicates, self.skies.nrows()));
-        let shape = (replicates, self.patches.count());
-        if let Ok(coefficients) = ArrayView2::from_shape(shape, patches) {
-            general_mat_mul(1.0, &coefficients, &self.skies.t(), 0.0, &mut lux);
+    /// Illuminance of a sensor by the sun alone, unreflected, in each lit hour, lux: by the whole disc where an edge crosses it.
+    pub(super) fn direct_sun(&self, sensor: &Sensor, scene: &TracedScene) -> Vec<f32> {
+        let suns = |hour: &LitHour| hour.sun.as_vec3();
+        let is_lit = |hour: &LitHour| hour.sun_lux > 0.0 && sensor.normal.dot(suns(hour)) > -0.01;
+        let candidates: Vec<usize> = (0..self.hours.len())
+            .filter(|at| is_lit(&self.hours[*at]))
+            .collect();
+        let of_disc = |at: &usize| FEW.map(|place| on_disc(suns(&self.hours[*at]), place));
+        let few: Vec<Vec3> = candidates.iter().flat_map(of_disc).collect();
+        let few = sunlit(sensor, scene, &few);
+        let (mut whole, mut cut) = (Vec::new(), Vec::new());
+        for (at, few) in candidates.iter().zip(few.chunks(FEW.len())) {
+            let least = few.iter().copied().fold(f64::INFINITY, f64::min);
+            let most = few.iter().copied().fold(0.0, f64::max);
+            // The cosine and the glass alone change by less than this over the disc, but at grazing incidence.
+            if least > 0.95 * most {
+                whole.push(*at);
+            } else if most > 0.0 {
+                cut.push(*at);
+            }
         }
-        let count = suns.len() / replicates;
-        for (mut row, suns) in lux.rows_mut().into_iter().zip(suns.chunks(count.max(1))) {
+        let mut lux = vec![0.0; self.hours.len()];
+        let centres: Vec<Vec3> = whole.iter().map(|at| suns(&self.hours[*at])).collect();
+        for (at, share) in whole.iter().zip(sunlit(sensor, scene, &centres)) {
+            lux[*at] = (share * self.hours[*at].sun_lux) as f32;
+        }
+        for at in cut {
+            let point = |i| on_disc(suns(&self.hours[at]), crate::daylight::sampling::sobol(i));
+            let points: Vec<Vec3> = (0..MANY).map(point).collect();
+            let sum: f64 = sunlit(sensor, scene, &points).iter().sum();
+            lux[at] = (sum / f64::from(MANY) * self.hours[at].sun_lux) as f32;
+        }
+        lux
+    }
+
+    /// Illuminances by the sky, in all its ways, and by reflected sun, lux: a row for each of the rows of coefficients of patches and suns, a column for
+    /// each lit hour and a last one for the overcast sky, in percent of its open ground.
+    pub(super) fn indirect(&self, patches: &[f32], suns: &[f32]) -> Array2<f32> {
+        let skies = self.skies();
+        let rows = patches.len() / self.patches.count();
+        let mut lux = Array2::zeros((rows, skies.nrows()));
+        if let Ok(coefficients) = ArrayView2::from_shape((rows, self.patches.count()), patches) {
+            general_mat_mul(1.0, &coefficients, &skies.t(), 0.0, &mut lux);
+        }
+        let count = self.suns.directions.len().max(1);
+        for (mut row, suns) in lux.rows_mut().into_iter().zip(suns.chunks(count)) {
             for ((hour, of), lux) in self.hours.iter().zip(&self.suns.of_hour).zip(&mut row) {
                 if let Some(([before, after], share)) = of {
                     let mean = suns[*before] + share * (suns[*after] - suns[*before]);
@@ -130,6 +139,22 @@ impl YearLight {
         }
         lux
     }
+}
+
+/// Illuminance of a sensor by a unit of light from each of these directions, above the horizon, as far as it arrives.
+fn sunlit(sensor: &Sensor, scene: &TracedScene, directions: &[Vec3]) -> Vec<f64> {
+    let from = lifted(sensor.position, sensor.normal);
+    let (mut light, mut blocker) = (vec![0.0; directions.len()], Blocker::default());
+    for (light, directions) in light.chunks_mut(LANES).zip(directions.chunks(LANES)) {
+        let bundle = Bundle::new(directions);
+        let (cosines, heights) = (bundle.dot(sensor.normal), bundle.dot(Vec3::Y));
+        let lit = before(&cosines) & before(&heights) & bundle.all();
+        let (open, through) = scene.passing_each(from, (&bundle, lit), &mut blocker);
+        for lane in lanes_of(open) {
+            light[lane] = luminance(through[lane].as_dvec3()) * f64::from(cosines[lane]);
+        }
+    }
+    light
 }
 
 /// Luminance of weights, channel by channel: Y of linear BT.709.

@@ -115,8 +115,8 @@ impl Given {
     ) -> Result<T> {
         let (settings, all, weather) = (&self.settings, &self.sensors, self.weather.as_ref());
         let light = match weather {
-            Some(weather) => YearLight::new(weather, settings.ground_albedo),
-            None => YearLight::overcast(settings.ground_albedo),
+            Some(weather) if args.needs_hours() => YearLight::new(weather, settings.ground_albedo),
+            _ => YearLight::overcast(settings.ground_albedo),
         };
         let mut measures = measures(args, weather, &light)?;
         check_pictures(args, &measures, all.len())?;

@@ -29,6 +29,9 @@ const uint CONTESTS = 2u;
 const uint WALL = 1u;
 // Most paths of a cell in a round.
 const uint MOST_PATHS = 16u;
+// Paths until which a cell is young, and those that it gets in each round until then: its light is mostly noise.
+const float YOUNG = 32.0;
+const uint YOUNG_PATHS = 4u;
 // Points of a path that creates cells.
 const uint PATH_POINTS = 4u;
 

@@ -27,6 +27,8 @@ layout(push_constant, scalar) uniform Push {
 
 // Paths after which the smoothing fades out.
 const float SMOOTHED = 512.0;
+// Paths for which the light of larger cells counts: a new cell begins with it, as lookups did before.
+const float PRIOR = 16.0;
 
 /// The slot of the cell of a point at a place of the grid, or NONE.
 uint slot_at(ivec3 at, uint side, int level, vec3 p) {
@@ -61,6 +63,14 @@ void add(inout Mean mean, Sum sum, float weight) {
     mean.weight += weight;
 }
 
+void add(inout Mean mean, Mean other, float weight) {
+    mean.sky += weight * other.sky;
+    mean.bounce += weight * other.bounce;
+    mean.sky_gradient += weight * other.sky_gradient;
+    mean.bounce_gradient += weight * other.bounce_gradient;
+    mean.weight += weight;
+}
+
 void scale(inout Mean mean, float factor) {
     mean.sky *= factor;
     mean.bounce *= factor;
@@ -86,15 +96,20 @@ Mean smoothed(Sum own, vec3 p, vec3 n, int level) {
     return mean;
 }
 
-/// The light of the cells of a level around a point: a quadratic B-spline, as wide as the tent and the interpolation of lookups.
-Mean interpolated(vec3 p, vec3 n, int level) {
+/// The light of the cells of a level around a point that the one of the point sees: a quadratic B-spline, as wide as the tent and the
+/// interpolation of lookups. `has_own`: there is a cell of the point.
+Mean interpolated(vec3 p, vec3 n, int level, out bool has_own) {
     uint side = dominant(n), axis = side % 3u;
     vec3 place = turned(in_grid(p, n, cell_edge(level)), axis), slope = turned(n, axis);
     vec2 f = fract(place.xy) - 0.5;
     vec2 w[3] = vec2[](0.5 * (0.5 - f) * (0.5 - f), 0.75 - f * f, 0.5 * (0.5 + f) * (0.5 + f));
+    uint own = slot_at(cell_beside(place, slope, -f, axis), side, level, p);
+    has_own = own != NONE;
+    uint hidden = has_own ? sums[own].hidden : 0u;
     Mean mean = NO_LIGHT;
     for (int i = 0; i < 9; ++i) {
         ivec2 k = ivec2(i % 3, i / 3);
+        if ((hidden & neighbour_bit(k - 1)) != 0u) continue;
         uint slot = slot_at(cell_beside(place, slope, vec2(k - 1) - f, axis), side, level, p);
         if (slot != NONE) add(mean, sums[slot], w[k.x].x * w[k.y].y * sums[slot].samples);
     }
@@ -108,9 +123,17 @@ Sum published(uint slot) {
     int level = int(own.hidden >> 8);
     vec3 p = anchor.position, n = normal_unpack(anchor.normal);
     Mean fine = smoothed(own, p, n, level);
+    bool has_own;
+    if (fine.weight < SMOOTHED) {
+        Mean prior = interpolated(p, n, level + LARGER, has_own);
+        if (has_own && prior.weight > 0.0) {
+            scale(prior, 1.0 / prior.weight);
+            add(fine, prior, PRIOR);
+        }
+    }
     scale(fine, fine.weight > 0.0 ? 1.0 / fine.weight : 0.0);
     // At its outer end a level continues as the next.
-    Mean coarse = interpolated(p, n, level + 1);
+    Mean coarse = interpolated(p, n, level + 1, has_own);
     float share = smoothstep(1.0 - BAND, 1.0, level_at(distance(p, scene.eye)) - float(level));
     if (coarse.weight > 0.0) {
         scale(coarse, share / coarse.weight);
@@ -124,9 +147,9 @@ void main() {
     if (index == 0u) seen_count = 0u; // of the next round
     if (index >= live_count) return;
     uint slot = live[index];
-    // A cell that is not published yet may be new.
-    bool is_new = sums[slot].samples <= float(MOST_PATHS);
-    if (!is_new && !is_due(index, live_count, push.first, push.paths)) return;
+    // What is young got paths, and so did what has just ceased to be.
+    bool is_young = sums[slot].samples < YOUNG + float(MOST_PATHS);
+    if (!is_young && !is_due(index, live_count, push.first, push.paths)) return;
     ivec3 texel = ivec3(slot_texel(slot), 0);
     Sum sum = published(slot);
     uint word = uint(sum.samples) | (sum.hidden & 0xffu) << SAMPLE_BITS;

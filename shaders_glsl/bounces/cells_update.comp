@@ -30,6 +30,8 @@ layout(push_constant, scalar) uniform Push {
     vec3 bounce_change; // factor on the old means of the bounces
 } push;
 
+// Paths after which the weights of bounces grow with the cube of their number; those of the first one grow in proportion to it.
+const float FORGETS = 128.0;
 // Paths after which a cell is not updated any more.
 const uint ENOUGH = 4096u;
 
@@ -81,9 +83,11 @@ void add_path(inout Sum sum, uint slot, uint print) {
         bounce = emission_of_ray(surface, dot(n, toward), toward, hit.distance) + path_light(surface, state);
     }
     if (EMITTERS > 0u && push.segments > 0u) bounce += emission_of_point(point.position, n, n, scrambled_sobol(number, tea(scene.seed, print)));
-    // Later paths end in better cells: the weights of their light grow with the cube of their number.
+    // Later paths end in better cells: the weights of their light grow with a power of their number. A low one has less noise, a high one
+    // forgets the start sooner.
     float k = sum.samples + 1.0;
-    float late = 4.0 * k / ((k + 1.0) * (k + 1.0));
+    float power = mix(1.0, 3.0, min(k / FORGETS, 1.0));
+    float late = (power + 1.0) / (k + power);
     sum.sky = mix(sum.sky, sky, 1.0 / k);
     sum.sky_gradient = mix(sum.sky_gradient, gradient_of(luminance(sky), toward, n), 1.0 / k);
     sum.bounce = mix(sum.bounce, bounce, late);
@@ -92,9 +96,9 @@ void add_path(inout Sum sum, uint slot, uint print) {
 }
 
 /// Paths of a cell in this round. The light of cells in view is seen itself, that of others as part of a mean over many.
-uint paths_of(uint slot) {
+uint paths_of(uint slot, bool is_young) {
     if (sums[slot].samples >= float(ENOUGH)) return 0u;
-    uint paths = clamp(push.paths / live_count, 1u, MOST_PATHS);
+    uint paths = clamp(push.paths / live_count, is_young ? YOUNG_PATHS : 1u, MOST_PATHS);
     bool is_seen = stamps[slot] == stamp(scene.frame, true);
     return is_seen ? paths + min(push.seen / seen_count, MOST_SEEN_PATHS) : paths;
 }
@@ -104,9 +108,9 @@ void main() {
     if (index >= live_count) return;
     uint slot = live[index];
     Sum sum = sums[slot];
-    // New cells do not wait for their turn.
-    bool is_new = sum.samples == 0.0;
-    if (!is_new && !is_due(index, live_count, push.first, push.paths)) return;
+    // Young cells do not wait for their turn.
+    bool is_young = sum.samples < YOUNG;
+    if (!is_young && !is_due(index, live_count, push.first, push.paths)) return;
     uint print = prints[slot];
     if ((print & ANCHORED) == 0u) return;
     sum.samples = min(sum.samples, push.most);
@@ -114,7 +118,7 @@ void main() {
     sum.bounce *= push.bounce_change;
     sum.sky_gradient *= luminance(push.sky_change);
     sum.bounce_gradient *= luminance(push.bounce_change);
-    uint paths = paths_of(slot);
+    uint paths = paths_of(slot, is_young);
     for (uint i = 0u; i < paths; ++i) add_path(sum, slot, print & ~FLAGS);
     sums[slot] = sum;
 }

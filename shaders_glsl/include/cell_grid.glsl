@@ -28,10 +28,13 @@ int cell_level(float distance) {
 // Last part of a level in which its cells blend into those of the next.
 const float BAND = 0.3;
 
+// How many levels larger those cells are that candidates create beside the ones of their place.
+const int LARGER = 2;
+
 /// Level of the cell for a candidate: some are for larger cells, which stand in where small ones are missing or blend into them.
 int candidate_level(vec3 p, uint hash) {
     float mixed_level = level_at(distance(p, scene.eye)) + BAND * float(hash >> 24) / 255.0;
-    return int(mixed_level) + ((hash & 0x700u) == 0u ? 2 : 0);
+    return int(mixed_level) + ((hash & 0x700u) == 0u ? LARGER : 0);
 }
 
 float cell_edge(int level) {

@@ -31,6 +31,9 @@ const uint WALL = 1u;
 const uint MOST_PATHS = 16u;
 // Most of those in view besides.
 const uint MOST_SEEN_PATHS = 64u;
+// Paths until which a cell is young, and those that it gets in each round until then: its light is mostly noise.
+const float YOUNG = 32.0;
+const uint YOUNG_PATHS = 4u;
 // Points of a path that creates cells.
 const uint PATH_POINTS = 4u;
 

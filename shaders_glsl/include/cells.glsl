@@ -79,9 +79,9 @@ Cached cached(vec3 p, vec3 n) {
     return light;
 }
 
-/// The light at a point, interpolated between the four cells of its surface around it. Cells beyond a wall do not count.
-Cached interpolated(vec3 p, vec3 n) {
-    int level = cell_level(distance(p, scene.eye));
+/// Adds the light of the four cells of a level around a point, interpolated, and returns its weight: `scale` if there is a cell of the
+/// point, which tells what is beyond a wall and does not count, and less without, or with `needs_own` nothing.
+float add_interpolated(inout Cached light, float scale, vec3 p, vec3 n, int level, bool needs_own) {
     float edge = cell_edge(level);
     uint side = dominant(n), axis = side % 3u;
     vec3 place = turned(in_grid(p, n, edge), axis), slope = turned(n, axis);
@@ -94,9 +94,11 @@ Cached interpolated(vec3 p, vec3 n) {
     }
     // The cell that the point is in.
     ivec2 own = ivec2(greaterThanEqual(f, vec2(0.5)));
-    uint hidden = (own.y == 0 ? own.x == 0 ? states[0].texel.w : states[1].texel.w : own.x == 0 ? states[2].texel.w : states[3].texel.w) >> SAMPLE_BITS;
+    uint word = own.y == 0 ? own.x == 0 ? states[0].texel.w : states[1].texel.w : own.x == 0 ? states[2].texel.w : states[3].texel.w;
+    if (word == 0u && needs_own) return 0.0;
+    uint hidden = word >> SAMPLE_BITS;
     vec3 sky = vec3(0.0), bounce = vec3(0.0);
-    float sum = 0.0;
+    float sum = 0.0, around = 0.0;
     for (int i = 0; i < 4; ++i) {
         ivec2 corner = ivec2(i & 1, i >> 1);
         vec2 w = mix(1.0 - f, f, vec2(corner));
@@ -107,7 +109,21 @@ Cached interpolated(vec3 p, vec3 n) {
         sky += weight * sky_of(states[i], n);
         bounce += weight * bounce_of(states[i], n);
         sum += weight;
+        if (samples > 0.0) around += w.x * w.y;
     }
-    if (sum < 1e-4) return cached(p, n);
-    return Cached(sky / sum, bounce / sum, true);
+    if (sum < 1e-5) return 0.0;
+    float found = scale * (word != 0u ? 1.0 : around);
+    light.sky += found / sum * sky;
+    light.bounce += found / sum * bounce;
+    return found;
+}
+
+/// The light at a point, interpolated between the cells around it. Until there is a cell of its own, those of larger ones fill the gap.
+Cached interpolated(vec3 p, vec3 n) {
+    int level = cell_level(distance(p, scene.eye));
+    Cached light = Cached(vec3(0.0), vec3(0.0), false);
+    float sum = 0.0;
+    for (int i = 0; i <= COARSER && sum < 1.0; ++i) sum += add_interpolated(light, 1.0 - sum, p, n, level + i, i > 0);
+    if (sum == 0.0) return light;
+    return Cached(light.sky / sum, light.bounce / sum, true);
 }

@@ -148,3 +148,67 @@ fn on_a_walk_the_light_is_right() {
         }
     }
 }
+
+/// The 99.9 % quantile, over pixels and frames, of what the logarithm of the luminance jumps by: its second difference in time. Much
+/// darker light than the mean does not count.
+fn largest_jumps(pictures: &[Picture]) -> f64 {
+    let floor = 0.02 * pictures.iter().map(mean).sum::<f64>() / pictures.len() as f64;
+    let log = |picture: &Picture| -> Vec<f64> {
+        let values = picture.pixels();
+        values.map(|(_, l)| (luminance(l) + floor).ln()).collect()
+    };
+    let logs: Vec<Vec<f64>> = pictures.iter().map(log).collect();
+    let mut jumps: Vec<f64> = logs
+        .windows(3)
+        .flat_map(|three| {
+            let pixels = 0..three[0].len();
+            pixels.map(|i| (three[0][i] - 2.0 * three[1][i] + three[2][i]).abs())
+        })
+        .collect();
+    jumps.sort_by(f64::total_cmp);
+    jumps[(jumps.len() - 1) * 999 / 1000]
+}
+
+/// A roof on thirty-six posts.
+fn hall() -> Scene {
+    let (stone, floor) = (matt(0.6), matt(0.4));
+    let model = Model::default().ground(16.0, &floor);
+    let model = model.square([0.0, 3.5, 0.0], 6.0, &stone);
+    (0..36)
+        .fold(model, |model, i| {
+            let (x, z) = (2.0 * (i % 6) as f32 - 5.0, 2.0 * (i / 6) as f32 - 5.0);
+            let (edge, up) = (0.4, [0.0, 3.5, 0.0]);
+            model
+                .quad([x, 0.0, z + edge], [edge, 0.0, 0.0], up, &stone)
+                .quad([x + edge, 0.0, z], [-edge, 0.0, 0.0], up, &stone)
+                .quad([x, 0.0, z], [0.0, 0.0, edge], up, &stone)
+                .quad([x + edge, 0.0, z + edge], [0.0, 0.0, -edge], up, &stone)
+        })
+        .build()
+}
+
+/// The camera turns to what it has not seen and stops there. As nothing moves any more, all that changes are the cells.
+#[test]
+fn what_comes_into_view_does_not_jump() {
+    let mut device = Device::new();
+    let (scene, day) = (hall(), clear_day(150.0, 40.0));
+    let turned = |steps: u32| {
+        let (sin, cos) = (10.0 * steps as f32).to_radians().sin_cos();
+        camera([0.9, 1.7, 7.0], [0.9 + 5.0 * sin, 1.5, 7.0 - 5.0 * cos])
+    };
+    let set = moving(Show::Sky);
+    let mut frame = device.run(|rec| Frame::new(rec, &scene, set).expect("a frame"));
+    previews(&mut device, &mut frame, &day, &turned(14), 20);
+    for steps in (1..14).rev() {
+        previews(&mut device, &mut frame, &day, &turned(steps), 1);
+    }
+    let pictures: Vec<Picture> = (0..12)
+        .map(|_| {
+            previews(&mut device, &mut frame, &day, &turned(0), 1);
+            device.picture_of(&frame)
+        })
+        .collect();
+    let jumps = largest_jumps(&pictures);
+    println!("99.9 % of the pixels jump by less than {jumps:.3}");
+    assert!(jumps < 1.4, "{jumps}");
+}

@@ -30,8 +30,6 @@ layout(push_constant, scalar) uniform Push {
     vec3 bounce_change; // factor on the old means of the bounces
 } push;
 
-// Paths after which the weights of bounces grow with the cube of their number; those of the first one grow in proportion to it.
-const float FORGETS = 128.0;
 // Paths after which a cell is not updated any more.
 const uint ENOUGH = 4096u;
 
@@ -83,11 +81,9 @@ void add_path(inout Sum sum, uint slot, uint print) {
         bounce = emission_of_ray(surface, dot(n, toward), toward, hit.distance) + path_light(surface, state);
     }
     if (EMITTERS > 0u && push.segments > 0u) bounce += emission_of_point(point.position, n, n, scrambled_sobol(number, tea(scene.seed, print)));
-    // Later paths end in better cells: the weights of their light grow with a power of their number. A low one has less noise, a high one
-    // forgets the start sooner.
+    // Later paths end in better cells: the weights of their light grow with the cube of their number.
     float k = sum.samples + 1.0;
-    float power = mix(1.0, 3.0, min(k / FORGETS, 1.0));
-    float late = (power + 1.0) / (k + power);
+    float late = 4.0 * k / ((k + 1.0) * (k + 1.0));
     sum.sky = mix(sum.sky, sky, 1.0 / k);
     sum.sky_gradient = mix(sum.sky_gradient, gradient_of(luminance(sky), toward, n), 1.0 / k);
     sum.bounce = mix(sum.bounce, bounce, late);
@@ -98,7 +94,9 @@ void add_path(inout Sum sum, uint slot, uint print) {
 /// Paths of a cell in this round. The light of cells in view is seen itself, that of others as part of a mean over many.
 uint paths_of(uint slot, bool is_young) {
     if (sums[slot].samples >= float(ENOUGH)) return 0u;
-    uint paths = clamp(push.paths / live_count, is_young ? YOUNG_PATHS : 1u, MOST_PATHS);
+    // A round of all cells has fewer paths than a turn would give to young ones: it is one of many.
+    uint least = is_young && push.first != NONE ? YOUNG_PATHS : 1u;
+    uint paths = clamp(push.paths / live_count, least, MOST_PATHS);
     bool is_seen = stamps[slot] == stamp(scene.frame, true);
     return is_seen ? paths + min(push.seen / seen_count, MOST_SEEN_PATHS) : paths;
 }

@@ -124,7 +124,7 @@ Sum published(uint slot) {
     vec3 p = anchor.position, n = normal_unpack(anchor.normal);
     Mean fine = smoothed(own, p, n, level);
     bool has_own;
-    if (fine.weight < SMOOTHED) {
+    if (own.samples < 2.0 * YOUNG) {
         Mean prior = interpolated(p, n, level + LARGER, has_own);
         if (has_own && prior.weight > 0.0) {
             scale(prior, 1.0 / prior.weight);

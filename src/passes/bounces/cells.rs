@@ -45,7 +45,7 @@ const PATHS: u32 = 1 << 12;
 
 /// Paths from the cells in a round, unless there are more cells; and those from cells in view besides.
 const UPDATES: u32 = 1 << 13;
-const SEEN_UPDATES: u32 = 1 << 13;
+const SEEN_UPDATES: u32 = 1 << 12;
 
 /// Edge of the smallest cells, metres, in scenes larger than a room.
 const CELL: f32 = 0.25;

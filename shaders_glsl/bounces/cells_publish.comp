@@ -55,20 +55,16 @@ struct Mean {
 
 const Mean NO_LIGHT = Mean(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
 
-void add(inout Mean mean, Sum sum, float weight) {
-    mean.sky += weight * sum.sky;
-    mean.bounce += weight * sum.bounce;
-    mean.sky_gradient += weight * sum.sky_gradient;
-    mean.bounce_gradient += weight * sum.bounce_gradient;
-    mean.weight += weight;
-}
-
 void add(inout Mean mean, Mean other, float weight) {
     mean.sky += weight * other.sky;
     mean.bounce += weight * other.bounce;
     mean.sky_gradient += weight * other.sky_gradient;
     mean.bounce_gradient += weight * other.bounce_gradient;
     mean.weight += weight;
+}
+
+void add(inout Mean mean, Sum sum, float weight) {
+    add(mean, Mean(sum.sky, sum.bounce, sum.sky_gradient, sum.bounce_gradient, 1.0), weight);
 }
 
 void scale(inout Mean mean, float factor) {

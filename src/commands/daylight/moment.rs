@@ -37,7 +37,7 @@ const COLUMNS: [&str; 7] = [
 /// Fails when the grid or the model cannot be read, or when options are invalid.
 pub fn run(args: &DaylightArgs, options: &OptionValues) -> Result<()> {
     if args.plan_of.is_some() {
-        let what = "--plan-of is for metrics; the plan of a moment shows all light".to_owned();
+        let what = "--plan-of is for metrics; the plan of a moment shows all light";
         return Err(Error::usage(what));
     }
     args.files().try_for_each(|path| check_writable(path))?;

@@ -168,4 +168,30 @@ mod tests {
             "{zenith}"
         );
     }
+
+    #[test]
+    fn eight_patches_at_once_have_the_luminances_of_the_formula() {
+        let weather =
+            Weather::parse(crate::daylight::weather::BUNDLED[0].1, false).expect("a year");
+        let patches = Patches::new(4);
+        let (centres, weights) = (patches.centres(), patches.horizontal_weights());
+        let sky = PatchedSky::new(&patches, 0.2);
+        let mut worst = 0.0_f64;
+        for hour in lit_hours(&weather).iter().step_by(37) {
+            let form = |centre: &DVec3| {
+                let chi = centre.dot(hour.sky_sun).clamp(-1.0, 1.0).acos();
+                let of = &hour.distribution;
+                (of.gradation(centre.y) * of.indicatrix(chi)).max(0.0)
+            };
+            let form: Vec<f64> = centres[1..].iter().map(form).collect();
+            let sum: f64 = form.iter().zip(&weights[1..]).map(|(v, w)| v * w).sum();
+            let mean = hour.sky_lux / PI;
+            for (found, form) in sky.luminances(hour)[1..].iter().zip(&form) {
+                let off = f64::from(*found) - form * hour.sky_lux / sum;
+                worst = worst.max(off.abs() / mean);
+            }
+        }
+        println!("largest difference, of the sky's mean: {worst:.1e}");
+        assert!(worst < 1e-4, "{worst}");
+    }
 }

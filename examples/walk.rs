@@ -80,6 +80,7 @@ impl Walk {
             ..FrameSettings::default()
         };
         (settings.lighting.ambient, settings.bounces) = (options.ambient, options.bounces);
+        settings.refine = options.refine;
         settings = settings.with_occlusion(SsaoSettings {
             radius: options.ao_radius as f32,
             ..settings.ssao

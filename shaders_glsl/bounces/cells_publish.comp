@@ -83,9 +83,10 @@ Mean smoothed(Sum own, vec3 p, vec3 n, int level) {
     Mean mean = NO_LIGHT;
     add(mean, own, own.samples);
     for (int i = 0; i < 8; ++i) {
+        if ((own.hidden & 1u << i) != 0u) continue;
         vec2 way = floor(place.xy) + vec2(NEIGHBOURS[i]) + 0.5 - place.xy;
         uint neighbour = slot_at(cell_beside(place, slope, way, axis), side, level, p);
-        if (neighbour == NONE || (own.hidden & 1u << i) != 0u) continue;
+        if (neighbour == NONE) continue;
         // A tent: half beside, a quarter at the corners.
         add(mean, sums[neighbour], spread * sums[neighbour].samples * ((i & 1) == 0 ? 0.5 : 0.25));
     }
@@ -129,23 +130,23 @@ Sum published(uint slot) {
     }
     scale(fine, fine.weight > 0.0 ? 1.0 / fine.weight : 0.0);
     // At its outer end a level continues as the next.
-    Mean coarse = interpolated(p, n, level + 1, has_own);
     float share = smoothstep(1.0 - BAND, 1.0, level_at(distance(p, scene.eye)) - float(level));
-    if (coarse.weight > 0.0) {
-        scale(coarse, share / coarse.weight);
-        scale(fine, 1.0 - share);
-    } else scale(coarse, 0.0);
-    return Sum(fine.sky + coarse.sky, fine.bounce + coarse.bounce, fine.sky_gradient + coarse.sky_gradient, fine.bounce_gradient + coarse.bounce_gradient, own.samples, own.hidden);
+    if (share > 0.0) {
+        Mean coarse = interpolated(p, n, level + 1, has_own);
+        if (coarse.weight > 0.0) {
+            scale(fine, 1.0 - share);
+            add(fine, coarse, share / coarse.weight);
+        }
+    }
+    return Sum(fine.sky, fine.bounce, fine.sky_gradient, fine.bounce_gradient, own.samples, own.hidden);
 }
 
-void main() {
-    uint index = gl_GlobalInvocationID.x;
-    if (index == 0u) seen_count = 0u; // of the next round
-    if (index >= live_count) return;
+/// Publishes live cell number `index`.
+void publish(uint index) {
     uint slot = live[index];
     // What is young got paths, and so did what has just ceased to be.
     bool is_young = sums[slot].samples < YOUNG + float(MOST_PATHS);
-    if (!is_young && !is_due(index, live_count, push.first, push.paths)) return;
+    if (!is_young && !is_seen(stamps[slot], scene.frame) && !is_due(index, live_count, push.first, push.paths)) return;
     ivec3 texel = ivec3(slot_texel(slot), 0);
     Sum sum = published(slot);
     uint word = uint(sum.samples) | (sum.hidden & 0xffu) << SAMPLE_BITS;
@@ -153,4 +154,10 @@ void main() {
     uvec2 gradients = uvec2(gradient_pack(sum.sky_gradient, luminance(sum.sky), sum.samples), gradient_pack(sum.bounce_gradient, luminance(sum.bounce), sum.samples));
     imageStore(cell_planes, texel, uvec4(walls[slot], gradients));
     contests[slot * CONTESTS] = 0xffffffffu;
+}
+
+void main() {
+    uint first = gl_GlobalInvocationID.x;
+    if (first == 0u) seen_count = 0u; // of the next round
+    for (uint index = first; index < live_count; index += gl_NumWorkGroups.x * gl_WorkGroupSize.x) publish(index);
 }

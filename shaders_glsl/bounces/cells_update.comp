@@ -92,31 +92,37 @@ void add_path(inout Sum sum, uint slot, uint print) {
 }
 
 /// Paths of a cell in this round. The light of cells in view is seen itself, that of others as part of a mean over many.
-uint paths_of(uint slot, bool is_young) {
-    if (sums[slot].samples >= float(ENOUGH)) return 0u;
-    // A round of all cells has fewer paths than a turn would give to young ones: it is one of many.
-    uint least = is_young && push.first != NONE ? YOUNG_PATHS : 1u;
-    uint paths = clamp(push.paths / live_count, least, MOST_PATHS);
-    bool is_seen = stamps[slot] == stamp(scene.frame, true);
-    return is_seen ? paths + min(push.seen / seen_count, MOST_SEEN_PATHS) : paths;
+uint paths_of(float samples, bool has_turn, bool is_in_view) {
+    if (samples >= float(ENOUGH)) return 0u;
+    // Young cells do not wait for their turn.
+    bool is_young = samples < YOUNG;
+    uint paths = 0u;
+    if (is_young || has_turn) {
+        // A round of all cells has fewer paths than a turn would give to young ones: it is one of many.
+        uint least = is_young && push.first != NONE ? YOUNG_PATHS : 1u;
+        paths = clamp(push.paths / live_count, least, MOST_PATHS);
+    }
+    return is_in_view ? paths + min(push.seen / seen_count, MOST_SEEN_PATHS) : paths;
 }
 
-void main() {
-    uint index = gl_GlobalInvocationID.x;
-    if (index >= live_count) return;
+/// Adds the paths of live cell number `index`.
+void update(uint index) {
     uint slot = live[index];
     Sum sum = sums[slot];
-    // Young cells do not wait for their turn.
-    bool is_young = sum.samples < YOUNG;
-    if (!is_young && !is_due(index, live_count, push.first, push.paths)) return;
+    bool has_turn = is_due(index, live_count, push.first, push.paths);
+    bool is_in_view = is_seen(stamps[slot], scene.frame);
     uint print = prints[slot];
-    if ((print & ANCHORED) == 0u) return;
+    if (!has_turn && !is_in_view && sum.samples >= YOUNG || (print & ANCHORED) == 0u) return;
     sum.samples = min(sum.samples, push.most);
     sum.sky *= push.sky_change;
     sum.bounce *= push.bounce_change;
     sum.sky_gradient *= luminance(push.sky_change);
     sum.bounce_gradient *= luminance(push.bounce_change);
-    uint paths = paths_of(slot, is_young);
+    uint paths = paths_of(sum.samples, has_turn, is_in_view);
     for (uint i = 0u; i < paths; ++i) add_path(sum, slot, print & ~FLAGS);
     sums[slot] = sum;
+}
+
+void main() {
+    for (uint index = gl_GlobalInvocationID.x; index < live_count; index += gl_NumWorkGroups.x * gl_WorkGroupSize.x) update(index);
 }

@@ -63,6 +63,11 @@ uint round_of(uint stamp) {
     return stamp >> 1;
 }
 
+/// Whether a cell with this stamp is in view of a round.
+bool is_seen(uint stamped, uint round) {
+    return stamped == stamp(round, true);
+}
+
 /// Whether it is the turn of live cell number `index` of `count`: `paths` of them from `first` on; NONE: of all.
 bool is_due(uint index, uint count, uint first, uint paths) {
     return first == NONE || (index + count - first % count) % count < paths;

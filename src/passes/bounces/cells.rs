@@ -40,6 +40,11 @@ const WALL_BYTES: u32 = 8;
 const CANDIDATE_BYTES: u32 = 28;
 const SUM_BYTES: u32 = 56;
 
+/// Invocations of a pass over the live cells, each of which takes several cells in turn: how many are live the host does not know. A software
+/// device takes a while for each work group that has nothing to do.
+const INVOCATIONS: u32 = SLOTS;
+const INVOCATIONS_OF_SOFTWARE: u32 = 1 << 11;
+
 /// Most paths from the eye in a round.
 const PATHS: u32 = 1 << 12;
 
@@ -167,6 +172,8 @@ pub struct Cells {
     sums: Buffer,
     cells: Image,
     planes: Image,
+    /// Of the passes over the live cells.
+    invocations: u32,
     held: Option<Held>,
     /// Rounds so far.
     round: u32,
@@ -257,6 +264,11 @@ impl Cells {
             sums: buffer("sums of cells", SLOTS * SUM_BYTES / 4)?,
             cells: image("cells")?,
             planes: image("cells: walls and gradients")?,
+            invocations: if context.summary().is_software() {
+                INVOCATIONS_OF_SOFTWARE
+            } else {
+                INVOCATIONS
+            },
             held: None,
             round: 0,
             filled_for: None,
@@ -318,9 +330,10 @@ impl Cells {
         for _ in 0..rounds {
             let mut update = update_push(self.held.as_ref(), &held, around.tree.is_emissive());
             if let Some(paths) = paths {
-                update.paths = paths;
-                update.seen = 0;
-                update.first = self.round.wrapping_mul(paths);
+                // What is in view is seen itself, in proportion to its share of the picture; the others light it.
+                update.seen = paths / 2;
+                update.paths = paths - update.seen;
+                update.first = self.round.wrapping_mul(update.paths);
             }
             self.held = Some(held.clone());
             self.seed(recorder, around, seeds);
@@ -396,7 +409,7 @@ impl Cells {
             .storage_mut("Places", &self.places)
             .storage_mut("Sums", &self.sums)
             .push(push)
-            .dispatch_over([self.most_live(), 1, 1]);
+            .dispatch_over([self.invocations, 1, 1]);
     }
 
     fn publish(&self, recorder: &mut Recorder, around: &Surroundings<'_>, update: &UpdatePush) {
@@ -413,12 +426,7 @@ impl Cells {
             .storage_mut("Sums", &self.sums)
             .store("cells", &self.cells)
             .store("cell_planes", &self.planes)
-            .dispatch_over([self.most_live(), 1, 1]);
-    }
-
-    /// Largest possible number of live cells.
-    fn most_live(&self) -> u32 {
-        SLOTS.min((self.round + 1).saturating_mul(PATHS * PATH_POINTS))
+            .dispatch_over([self.invocations, 1, 1]);
     }
 }
 

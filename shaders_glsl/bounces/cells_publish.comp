@@ -21,8 +21,8 @@ layout(set = 0, binding = 8, rgba32ui) uniform writeonly uimage2DArray cells;
 layout(set = 0, binding = 9, rgba32ui) uniform writeonly uimage2DArray cell_planes;
 
 layout(push_constant, scalar) uniform Push {
-    uint paths; // as those of the update
-    uint first;
+    uint first; // as those of the update
+    uint turns;
 } push;
 
 // Paths after which the smoothing fades out.
@@ -146,7 +146,7 @@ void publish(uint index) {
     uint slot = live[index];
     // What is young got paths, and so did what has just ceased to be.
     bool is_young = sums[slot].samples < YOUNG + float(MOST_PATHS);
-    if (!is_young && !is_seen(stamps[slot], scene.frame) && !is_due(index, live_count, push.first, push.paths)) return;
+    if (!is_young && !is_seen(stamps[slot], scene.frame) && !is_due(index, live_count, push.first, push.turns)) return;
     ivec3 texel = ivec3(slot_texel(slot), 0);
     Sum sum = published(slot);
     uint word = uint(sum.samples) | (sum.hidden & 0xffu) << SAMPLE_BITS;

@@ -23,8 +23,10 @@ layout(push_constant, scalar) uniform Push {
     uint segments;     // of a path at most; 0: no bounces
     uint ends_in_cell; // whether a path takes the bounces of the cell at its end: all bounces instead of as many as segments
     uint paths;        // in all: few cells get several each; of many each gets one in turn
-    uint first;        // of the live cells whose turn it is; NONE: all get at least one
-    uint seen;         // besides, for the cells in view
+    uint first;        // of the live cells whose turn it is
+    uint turns;        // number of them
+    uint young;        // paths of a young cell at least
+    uint seen;         // paths besides, for the cells in view
     float most;        // paths that the old means count for: few after a change of the light
     vec3 sky_change;   // factor on the old means of the sky
     vec3 bounce_change; // factor on the old means of the bounces
@@ -97,11 +99,7 @@ uint paths_of(float samples, bool has_turn, bool is_in_view) {
     // Young cells do not wait for their turn.
     bool is_young = samples < YOUNG;
     uint paths = 0u;
-    if (is_young || has_turn) {
-        // A round of all cells has fewer paths than a turn would give to young ones: it is one of many.
-        uint least = is_young && push.first != NONE ? YOUNG_PATHS : 1u;
-        paths = clamp(push.paths / live_count, least, MOST_PATHS);
-    }
+    if (is_young || has_turn) paths = clamp(push.paths / live_count, is_young ? push.young : 1u, MOST_PATHS);
     return is_in_view ? paths + min(push.seen / seen_count, MOST_SEEN_PATHS) : paths;
 }
 
@@ -109,7 +107,7 @@ uint paths_of(float samples, bool has_turn, bool is_in_view) {
 void update(uint index) {
     uint slot = live[index];
     Sum sum = sums[slot];
-    bool has_turn = is_due(index, live_count, push.first, push.paths);
+    bool has_turn = is_due(index, live_count, push.first, push.turns);
     bool is_in_view = is_seen(stamps[slot], scene.frame);
     uint print = prints[slot];
     if (!has_turn && !is_in_view && sum.samples >= YOUNG || (print & ANCHORED) == 0u) return;

@@ -31,9 +31,8 @@ const uint WALL = 1u;
 const uint MOST_PATHS = 16u;
 // Most of those in view besides.
 const uint MOST_SEEN_PATHS = 64u;
-// Paths until which a cell is young, and those that it gets in each round until then: its light is mostly noise.
+// Paths until which a cell is young: its light is mostly noise.
 const float YOUNG = 32.0;
-const uint YOUNG_PATHS = 4u;
 // Points of a path that creates cells.
 const uint PATH_POINTS = 4u;
 
@@ -68,7 +67,8 @@ bool is_seen(uint stamped, uint round) {
     return stamped == stamp(round, true);
 }
 
-/// Whether it is the turn of live cell number `index` of `count`: `paths` of them from `first` on; NONE: of all.
-bool is_due(uint index, uint count, uint first, uint paths) {
-    return first == NONE || (index + count - first % count) % count < paths;
+/// Whether it is the turn of live cell number `index` of `count`: `turns` of them from `first` on. That of all is so many turns, not a branch:
+/// lavapipe compiles a shader anew for each value of a uniform that alone decides one.
+bool is_due(uint index, uint count, uint first, uint turns) {
+    return (index + count - first % count) % count < turns;
 }

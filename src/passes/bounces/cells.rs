@@ -52,6 +52,9 @@ const PATHS: u32 = 1 << 12;
 const UPDATES: u32 = 1 << 13;
 const SEEN_UPDATES: u32 = 1 << 12;
 
+/// Paths of a young cell in a round of a moving view.
+const YOUNG_PATHS: u32 = 4;
+
 /// Edge of the smallest cells, metres, in scenes larger than a room.
 const CELL: f32 = 0.25;
 /// Smallest number of cells along the diagonal of a scene.
@@ -136,6 +139,8 @@ gpu_struct! {
         ends_in_cell: u32,
         paths: u32,
         first: u32,
+        turns: u32,
+        young: u32,
         seen: u32,
         most: f32,
         sky_change: Vec3,
@@ -146,8 +151,8 @@ gpu_struct! {
 gpu_struct! {
     /// The cells to publish.
     pub struct PublishPush: push of CELLS_PUBLISH_COMP {
-        paths: u32,
         first: u32,
+        turns: u32,
     }
 }
 
@@ -333,7 +338,9 @@ impl Cells {
                 // What is in view is seen itself, in proportion to its share of the picture; the others light it.
                 update.seen = paths / 2;
                 update.paths = paths - update.seen;
-                update.first = self.round.wrapping_mul(update.paths);
+                update.turns = update.paths;
+                update.first = self.round.wrapping_mul(update.turns);
+                update.young = YOUNG_PATHS;
             }
             self.held = Some(held.clone());
             self.seed(recorder, around, seeds);
@@ -416,8 +423,8 @@ impl Cells {
         recorder
             .pass("cells: publish", &self.publish)
             .push(&PublishPush {
-                paths: update.paths,
                 first: update.first,
+                turns: update.turns,
             })
             .uniform("scene", &self.block(around.view, around.daylight))
             .storage_mut("Table", &self.table)
@@ -448,7 +455,10 @@ fn update_push(old: Option<&Held>, new: &Held, is_emissive: bool) -> UpdatePush 
         segments,
         ends_in_cell,
         paths: UPDATES,
-        first: u32::MAX,
+        first: 0,
+        turns: u32::MAX,
+        // A round of all cells is one of many.
+        young: 1,
         seen: SEEN_UPDATES,
         most: kept.map_or(f32::MAX, |paths| paths as f32),
         sky_change: factor(|day| day.sky_irradiance_up),

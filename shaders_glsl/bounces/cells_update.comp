@@ -109,8 +109,9 @@ void update(uint index) {
     Sum sum = sums[slot];
     bool has_turn = is_due(index, live_count, push.first, push.turns);
     bool is_in_view = is_seen(stamps[slot], scene.frame);
+    if (!has_turn && !is_in_view && sum.samples >= YOUNG) return;
     uint print = prints[slot];
-    if (!has_turn && !is_in_view && sum.samples >= YOUNG || (print & ANCHORED) == 0u) return;
+    if ((print & ANCHORED) == 0u) return;
     sum.samples = min(sum.samples, push.most);
     sum.sky *= push.sky_change;
     sum.bounce *= push.bounce_change;

@@ -236,7 +236,7 @@ impl Frame {
         shadow.fit(geometry, &view, sample.sun_direction, sample.texel);
 
         // None of these passes reads another's images, so without a barrier in between they may overlap.
-        rec.prepare(self.gbuffer.surfaces().images().chain(shadow.target()));
+        rec.prepare(self.gbuffer.targets().chain(shadow.target()));
         let sky = self.sky_cube.record(rec, daylight);
         if let Some(cube) = &mut self.sky_prefiltered {
             cube.record(rec, &sky);

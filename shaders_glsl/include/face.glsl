@@ -8,7 +8,12 @@
 const float SLOPE_SCALE = 256.0;
 const float MAX_SLOPE = 100.0;
 
-/// View-space normal of the face at a pixel, on the viewer's side. `slopes`: from `face_slopes`; `ray`: x and y of the pixel's
+/// Relative changes of depth from pixel to pixel, as two halves.
+uint slopes_pack(vec2 slopes) {
+    return packHalf2x16(clamp(slopes, -MAX_SLOPE, MAX_SLOPE) * SLOPE_SCALE);
+}
+
+/// View-space normal of the face at a pixel, on the viewer's side. `slopes`: from `slopes_pack`; `ray`: x and y of the pixel's
 /// ray with z = -1; `pixels_per_ray`: pixels per unit of x and of y.
 vec3 face_normal(uint slopes, vec2 ray, vec2 pixels_per_ray) {
     return normal_of_slopes(unpackHalf2x16(slopes) / SLOPE_SCALE * pixels_per_ray, ray);

@@ -14,5 +14,5 @@ vec3 facing_normal(vec3 shading_normal, vec3 from_eye, float slack) {
 /// Relative change of depth from pixel to pixel, as two halves.
 uint face_slopes() {
     vec2 slopes = vec2(dFdx(gl_FragCoord.z), dFdy(gl_FragCoord.z)) / gl_FragCoord.z;
-    return packHalf2x16(clamp(slopes, -MAX_SLOPE, MAX_SLOPE) * SLOPE_SCALE);
+    return slopes_pack(slopes);
 }

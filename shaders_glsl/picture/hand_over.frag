@@ -1,28 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "display_values.glsl"
+#include "hand_over.glsl"
 
-// From the smoothed picture of a moving view to that of a view at rest, in display values.
-
-layout(location = 0) out vec4 picture; // rgb: display values; a: as many frames as count
-
-layout(set = 0, binding = 0) uniform sampler2D display; // of the view at rest
-layout(set = 0, binding = 1) uniform sampler2D before;  // of the moving view
-
-layout(push_constant, scalar) uniform Push {
-    float share; // of the moving view, 0..1
-    float shift; // of the rounding, 0..1
-} push;
+layout(location = 0) out vec4 picture; // see hand_over.glsl
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec3 c = texelFetch(display, pixel, 0).rgb;
-    // Without a picture before, its contents are undefined.
-    if (push.share > 0.0) {
-        vec3 held = texelFetch(before, pixel, 0).rgb;
-        vec3 mean = mix(light_of_display(c), light_of_display(held), push.share);
-        c = rounded(display_of_light(mean), gl_FragCoord.xy, push.shift);
-    }
-    picture = vec4(c, MOST_FRAMES / FRAMES);
+    picture = handed_over(gl_FragCoord.xy);
 }

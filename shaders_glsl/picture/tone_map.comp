@@ -4,13 +4,8 @@
 // HALF: linear display values of an HDR screen.
 // Variant: HALF
 #include "fullscreen_compute.glsl"
+#include "display_format.glsl"
 #include "tone_map.glsl"
-
-#ifdef HALF
-#define DISPLAY_FORMAT rgba16f
-#else
-#define DISPLAY_FORMAT rgba8
-#endif
 
 layout(set = 0, binding = 40, DISPLAY_FORMAT) uniform writeonly image2DArray display;
 

@@ -131,7 +131,10 @@ impl Smooth {
         let is_linear = settings.tone.peak.is_some();
         let format = ToneMap::format(&settings.tone);
         let size = settings.size.to_array();
-        let picture = |name| Image::new(context, &ImageDesc::flat(name, format, size));
+        let picture = |name| {
+            let desc = ImageDesc::flat(name, format, size);
+            Image::new(context, &desc.target_by(context.route()))
+        };
         let moving = || {
             Ok(match settings.anti_aliasing() {
                 AntiAliasing::Off => None,

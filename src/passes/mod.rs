@@ -93,7 +93,7 @@ fn screen_by(
     }
 }
 
-/// A full-screen pipeline with one render target, by fragments alone: anti-aliasing of display values, and presenting, whose images cannot be stored to.
+/// A full-screen pipeline with one render target, by fragments alone: morphological anti-aliasing, and presenting, whose images cannot be stored to.
 fn fullscreen(
     context: &Arc<Context>,
     name: &str,

@@ -231,6 +231,11 @@ impl Context {
         &self.summary
     }
 
+    /// Size of the largest storage buffer that shaders can read as a whole, bytes.
+    pub fn largest_storage_buffer(&self) -> u64 {
+        self.limits.max_storage_buffer_range.into()
+    }
+
     /// Whether pipeline statistics are available.
     pub(in crate::gpu) fn counts_work(&self) -> bool {
         self.summary.has(Optional::PipelineStatistics)

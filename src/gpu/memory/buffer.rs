@@ -15,9 +15,9 @@ use crate::gpu::record::access::{self, BufferAccess, MemoryBarrier};
 /// Usage of a buffer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BufferKind {
-    /// Vertex data in device memory.
+    /// Vertex data in device memory, also read by shaders.
     Vertex,
-    /// Index data in device memory.
+    /// Index data in device memory, also read by shaders.
     Index,
     /// Storage buffer in device memory.
     Storage,
@@ -32,16 +32,17 @@ pub enum BufferKind {
 impl BufferKind {
     const fn usage(self) -> vk::BufferUsageFlags {
         let target = vk::BufferUsageFlags::TRANSFER_DST;
+        let stored = vk::BufferUsageFlags::from_raw(
+            target.as_raw() | vk::BufferUsageFlags::STORAGE_BUFFER.as_raw(),
+        );
         match self {
             Self::Vertex => vk::BufferUsageFlags::from_raw(
-                target.as_raw() | vk::BufferUsageFlags::VERTEX_BUFFER.as_raw(),
+                stored.as_raw() | vk::BufferUsageFlags::VERTEX_BUFFER.as_raw(),
             ),
             Self::Index => vk::BufferUsageFlags::from_raw(
-                target.as_raw() | vk::BufferUsageFlags::INDEX_BUFFER.as_raw(),
+                stored.as_raw() | vk::BufferUsageFlags::INDEX_BUFFER.as_raw(),
             ),
-            Self::Storage => vk::BufferUsageFlags::from_raw(
-                target.as_raw() | vk::BufferUsageFlags::STORAGE_BUFFER.as_raw(),
-            ),
+            Self::Storage => stored,
             Self::Staging => vk::BufferUsageFlags::TRANSFER_SRC,
             Self::ReadBack => target,
             Self::Uniform => vk::BufferUsageFlags::UNIFORM_BUFFER,

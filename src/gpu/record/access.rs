@@ -32,9 +32,9 @@ pub enum ImageAccess {
 pub enum BufferAccess {
     /// Target of a copy.
     CopyTarget,
-    /// Vertex attributes of a draw.
+    /// Vertex attributes of a draw; what copies have written is visible to shaders too.
     Vertex,
-    /// Indices of a draw.
+    /// Indices of a draw; what copies have written is visible to shaders too.
     Index,
     /// Read as a storage buffer by a shader.
     StorageRead,
@@ -135,11 +135,17 @@ const fn buffer_row(of: BufferAccess) -> (Stage, Access, Access) {
     match of {
         BufferAccess::CopyTarget => (Stage::TRANSFER, Access::NONE, Access::TRANSFER_WRITE),
         BufferAccess::Vertex => (
-            Stage::VERTEX_ATTRIBUTE_INPUT,
-            Access::VERTEX_ATTRIBUTE_READ,
+            Stage::from_raw(Stage::VERTEX_ATTRIBUTE_INPUT.as_raw() | STORAGE_READING.as_raw()),
+            Access::from_raw(
+                Access::VERTEX_ATTRIBUTE_READ.as_raw() | Access::SHADER_STORAGE_READ.as_raw(),
+            ),
             Access::NONE,
         ),
-        BufferAccess::Index => (Stage::INDEX_INPUT, Access::INDEX_READ, Access::NONE),
+        BufferAccess::Index => (
+            Stage::from_raw(Stage::INDEX_INPUT.as_raw() | STORAGE_READING.as_raw()),
+            Access::from_raw(Access::INDEX_READ.as_raw() | Access::SHADER_STORAGE_READ.as_raw()),
+            Access::NONE,
+        ),
         BufferAccess::StorageRead => (STORAGE_READING, Access::SHADER_STORAGE_READ, Access::NONE),
         BufferAccess::StorageWrite => (
             Stage::COMPUTE_SHADER,

@@ -2,15 +2,17 @@
 
 use std::sync::Arc;
 
-use crate::gpu::{Context, Format, Image, Load, Pipeline, Recorder, Result, Sampler, shaders};
+use crate::gpu::{
+    Context, Depth, Format, Image, Load, Pipeline, Recorder, Result, Sampler, shaders,
+};
 use crate::gpu_struct;
 
-use crate::passes::fullscreen;
 use crate::passes::picture::temporal;
+use crate::passes::{Screen, screen};
 
 gpu_struct! {
     /// Weight of the moving view's picture.
-    pub struct Push: push of HAND_OVER_FRAG {
+    pub struct Push: push of HAND_OVER_FRAG, HAND_OVER_COMP, HAND_OVER_COMP_HALF {
         share: f32,
         shift: f32,
     }
@@ -28,9 +30,24 @@ impl HandOver {
     /// Fails when the device cannot create the resources.
     pub fn new(context: &Arc<Context>, format: Format, is_linear: bool) -> Result<Self> {
         let constants = [("LINEAR", is_linear.into())];
-        let shader = &shaders::HAND_OVER_FRAG;
-        let pipeline = fullscreen(context, "hand over", shader, format, &constants)?;
-        Ok(Self { pipeline })
+        let shaders = Screen {
+            fragment: &shaders::HAND_OVER_FRAG,
+            compute: if is_linear {
+                &shaders::HAND_OVER_COMP_HALF
+            } else {
+                &shaders::HAND_OVER_COMP
+            },
+        };
+        Ok(Self {
+            pipeline: screen(
+                context,
+                "hand over",
+                shaders,
+                &[format],
+                Depth::Off,
+                &constants,
+            )?,
+        })
     }
 
     /// Draws `display` with the given share of `before`, 0..=1. With 0 it is a copy.
@@ -49,7 +66,7 @@ impl HandOver {
                 share,
                 shift: temporal::shift(number),
             })
-            .color(target, Load::Discard)
-            .draw();
+            .output("picture", target, Load::Discard)
+            .fill();
     }
 }

@@ -9,18 +9,20 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
-use crate::gpu::{Context, Format, Image, Load, Pipeline, Recorder, Result, Sampler, shaders};
+use crate::gpu::{
+    Context, Depth, Format, Image, Load, Pipeline, Recorder, Result, Sampler, shaders,
+};
 use crate::gpu_struct;
 
-use crate::passes::fullscreen;
 use crate::passes::view::Reprojection;
+use crate::passes::{Screen, screen};
 
 /// Motion between two surfaces up to which they count as one, pixels.
 const SAME: f32 = 0.125;
 
 gpu_struct! {
     /// Motion since the picture before, and how much it counts.
-    pub struct Push: push of TEMPORAL_FRAG {
+    pub struct Push: push of TEMPORAL_FRAG, TEMPORAL_COMP, TEMPORAL_COMP_HALF {
         to_u: [f32; 4],
         to_v: [f32; 4],
         to_w: [f32; 4],
@@ -70,14 +72,16 @@ impl Temporal {
     pub fn new(context: &Arc<Context>, format: Format, is_linear: bool) -> Result<Self> {
         let pipeline = |is_bounded: bool| {
             let constants = [("LINEAR", is_linear.into()), ("BOUNDED", is_bounded.into())];
-            let shader = &shaders::TEMPORAL_FRAG;
-            fullscreen(
-                context,
-                "temporal anti-aliasing",
-                shader,
-                format,
-                &constants,
-            )
+            let shaders = Screen {
+                fragment: &shaders::TEMPORAL_FRAG,
+                compute: if is_linear {
+                    &shaders::TEMPORAL_COMP_HALF
+                } else {
+                    &shaders::TEMPORAL_COMP
+                },
+            };
+            let name = "temporal anti-aliasing";
+            screen(context, name, shaders, &[format], Depth::Off, &constants)
         };
         Ok(Self {
             pipelines: [pipeline(false)?, pipeline(true)?],
@@ -119,7 +123,7 @@ impl Temporal {
             .sample("before", inputs.before, Sampler::Linear)
             .sample("depth_before", inputs.depths[1], Sampler::Nearest)
             .push(&push)
-            .color(target, Load::Discard)
-            .draw();
+            .output("picture", target, Load::Discard)
+            .fill();
     }
 }

@@ -167,6 +167,11 @@ pub(in crate::passes) struct Run {
 }
 
 impl Run {
+    /// Number of its first triangle in the index buffer.
+    pub fn first_triangle(&self) -> u32 {
+        self.first / 3
+    }
+
     /// Draws it.
     pub fn draw(&self, draws: &mut Draws<'_, '_>) {
         draws.faces(self.faces);

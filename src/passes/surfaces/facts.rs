@@ -22,6 +22,8 @@ pub struct Facts {
     pub is_rough: bool,
     /// Triangles of all opaque casters without holes.
     pub casting_triangles: usize,
+    /// Whether surfaces without maps are drawn by the numbers of their triangles, see `triangles.rs`.
+    pub is_numbered: bool,
 }
 
 impl Facts {

@@ -14,6 +14,7 @@ use crate::gpu_struct;
 use crate::passes::surfaces::culling::Cull;
 use crate::passes::surfaces::facts::Facts;
 use crate::passes::surfaces::geometry::{Bound, EmissionSource, Geometry, Kind};
+use crate::passes::surfaces::triangles::Triangles;
 use crate::passes::view::View;
 
 gpu_struct! {
@@ -75,8 +76,16 @@ fn depth_image(context: &Arc<Context>, size: [u32; 2]) -> Result<Image> {
 }
 
 impl Surfaces {
-    fn new(context: &Arc<Context>, size: [u32; 2], targets: &[Format]) -> Result<Self> {
-        let image = |name, format| Image::new(context, &ImageDesc::flat(name, format, size));
+    fn new(
+        context: &Arc<Context>,
+        size: [u32; 2],
+        targets: &[Format],
+        is_stored: bool,
+    ) -> Result<Self> {
+        let image = |name, format| {
+            let desc = ImageDesc::flat(name, format, size);
+            Image::new(context, &if is_stored { desc.stored() } else { desc })
+        };
         let target = |i: usize, name| {
             let format = targets.get(i);
             format.map(|format| image(name, *format)).transpose()
@@ -121,6 +130,19 @@ impl Surfaces {
         )
     }
 
+    /// Adds the images but depth as those that a compute pass writes.
+    pub(super) fn stored_by<'r>(&'r self, pass: Pass<'r>) -> Pass<'r> {
+        let targets = [
+            ("normal_material", Some(&self.normal_material)),
+            ("albedo", self.albedo.as_ref()),
+            ("emission", self.emission.as_ref()),
+        ];
+        let images = targets
+            .into_iter()
+            .filter_map(|(name, image)| Some((name, image?)));
+        images.fold(pass, |pass, (name, image)| pass.store(name, image))
+    }
+
     /// Adds the images as attachments of a pass.
     fn attach<'r>(&'r self, pass: Pass<'r>, load: Load) -> Pass<'r> {
         let images = std::iter::once(&self.normal_material).chain(&self.albedo);
@@ -159,6 +181,8 @@ struct Targets {
 
 /// The G-buffer pass and its images.
 pub struct Gbuffer {
+    /// Surfaces without maps, where their triangles are numbered.
+    triangles: Option<Triangles>,
     /// For surfaces without maps whose normals match their winding, the most common case.
     untextured: Pipeline,
     /// For other surfaces that are not detailed, by kind.
@@ -247,7 +271,8 @@ impl Gbuffer {
         (faces, keeps): (bool, bool),
     ) -> Result<Self> {
         // One target of several words: on a software device the number of targets costs more than the amount written.
-        let mut formats = vec![if faces {
+        // Compute shaders store the wider format on every device.
+        let mut formats = vec![if faces || facts.is_numbered {
             Format::R32G32B32A32_UINT
         } else {
             Format::R32G32_UINT
@@ -268,7 +293,11 @@ impl Gbuffer {
             untextured: targets.pipeline(context, Kind::default(), true)?,
             textured: pipelines(false).collect::<Result<_>>()?,
             detailed: pipelines(true).collect::<Result<_>>()?,
-            surfaces: Surfaces::new(context, size, &targets.formats)?,
+            triangles: facts
+                .is_numbered
+                .then(|| Triangles::new(context, size, targets.formats.len(), faces))
+                .transpose()?,
+            surfaces: Surfaces::new(context, size, &targets.formats, facts.is_numbered)?,
             depth_before: keeps.then(|| depth_image(context, size)).transpose()?,
         })
     }
@@ -283,6 +312,18 @@ impl Gbuffer {
     /// Depth before the last [`Gbuffer::turn`], if it is kept.
     pub fn depth_before(&self) -> Option<&Image> {
         self.depth_before.as_ref()
+    }
+
+    /// The images that are drawn first.
+    pub fn targets(&self) -> impl Iterator<Item = &Image> {
+        let (numbers, surfaces) = match &self.triangles {
+            Some(triangles) => (Some([triangles.target(), &self.surfaces.depth]), None),
+            None => (None, Some(self.surfaces.images())),
+        };
+        numbers
+            .into_iter()
+            .flatten()
+            .chain(surfaces.into_iter().flatten())
     }
 
     /// The images as last drawn.
@@ -305,17 +346,28 @@ impl Gbuffer {
         };
         let has_emission = self.surfaces.emission.is_some();
         let bind = |draws: &mut Draws<'_, '_>, bound: &Bound<'_>| bind(draws, bound, has_emission);
-        let pass = recorder.pass("G-buffer", &self.untextured);
-        self.surfaces
-            .attach(pass.uniform("camera", &camera), Load::Clear([0.0; 4]))
-            .draws(|draws| {
-                geometry.draw_untextured(draws, &cull, bind);
-                let mut current = None;
-                geometry.draw_textured(draws, &cull, |draws, bound| {
-                    switch(draws, &self.textured, &mut current, bound.kind);
-                    bind(draws, bound);
-                });
-            });
+        match &self.triangles {
+            None => {
+                let pass = recorder.pass("G-buffer", &self.untextured);
+                let pass = pass.uniform("camera", &camera);
+                self.surfaces
+                    .attach(pass, Load::Clear([0.0; 4]))
+                    .draws(|draws| {
+                        geometry.draw_untextured(draws, &cull, bind);
+                        self.draw_textured(draws, geometry, &cull, bind);
+                    });
+            }
+            Some(triangles) => {
+                triangles.record(recorder, geometry, view, &self.surfaces);
+                if self.textured.keys().any(|kind| *kind != Kind::default()) {
+                    let pass = recorder.pass("G-buffer, maps", &self.untextured);
+                    let pass = pass.uniform("camera", &camera);
+                    self.surfaces
+                        .attach(pass, Load::Keep)
+                        .draws(|draws| self.draw_textured(draws, geometry, &cull, bind));
+                }
+            }
+        }
         if let Some((_, first)) = self.detailed.first_key_value() {
             let pass = recorder.pass("G-buffer, details", first);
             self.surfaces
@@ -331,6 +383,21 @@ impl Gbuffer {
                 });
         }
         &self.surfaces
+    }
+
+    /// Draws surfaces with maps that are not detailed, and what else the first pass has left.
+    fn draw_textured<'r>(
+        &'r self,
+        draws: &mut Draws<'_, 'r>,
+        geometry: &Geometry,
+        cull: &Cull,
+        bind: impl Fn(&mut Draws<'_, '_>, &Bound<'_>),
+    ) {
+        let mut current = None;
+        geometry.draw_textured(draws, cull, |draws, bound| {
+            switch(draws, &self.textured, &mut current, bound.kind);
+            bind(draws, bound);
+        });
     }
 }
 

@@ -8,12 +8,13 @@ use glam::Vec3;
 
 use crate::daylight::glass::internal_transmittance;
 use crate::gpu::{
-    Buffer, BufferKind, Draws, Image, Outside, Recorder, Result, Sampler, upload_buffer,
+    Buffer, BufferKind, Draws, Image, Outside, Pass, Recorder, Result, Sampler, upload_buffer,
 };
 use crate::scene::{self, Bounds, Cluster, Layout, Scene, Texture, Wrap};
 
 use crate::passes::surfaces::culling::{Cull, Runs};
 use crate::passes::surfaces::facts::Facts;
+use crate::passes::surfaces::triangles::{are_numbered, material_numbers};
 use crate::passes::surfaces::upload::{surface, upload, upload_details, upload_materials, white};
 use crate::passes::view::View;
 
@@ -130,6 +131,8 @@ pub struct Geometry {
     normals: Buffer,
     texcoords: Buffer,
     indices: Buffer,
+    /// Of each triangle, where they are numbered.
+    material_numbers: Option<Buffer>,
     /// In index order.
     clusters: Vec<Cluster>,
     /// Colours and tangents, if any part is detailed.
@@ -171,8 +174,19 @@ impl Geometry {
         let clusters = layout.into_owned().clusters;
         let casting = joined_ranges(parts.iter().filter(|p| p.casts && !p.kind.cut_out));
         let cast = casting.iter().flat_map(|r| &clusters[r.clone()]);
+        let largest = size_of_val(scene.positions.as_slice()).max(size_of_val(&*indices));
+        let plain = || parts.iter().any(|p| p.kind == Kind::default());
+        let is_numbered = are_numbered(recorder.context(), largest as u64) && plain();
+        let material_numbers = is_numbered
+            .then(|| {
+                let numbers = material_numbers(&parts, &clusters, indices.len() / 3);
+                let (name, bytes) = ("materials of triangles", bytemuck::cast_slice(&numbers));
+                upload_buffer(recorder, name, BufferKind::Storage, bytes)
+            })
+            .transpose()?;
         let facts = Facts {
             has_panes: !panes.is_empty(),
+            is_numbered,
             casting_triangles: cast.map(|cluster| cluster.count as usize / 3).sum(),
             ..facts(scene, &parts, &surfaces)
         };
@@ -199,6 +213,7 @@ impl Geometry {
                 BufferKind::Index,
                 bytemuck::cast_slice(&indices),
             )?,
+            material_numbers,
             clusters,
             details,
             casting,
@@ -290,6 +305,32 @@ impl Geometry {
         self.draw_parts(draws, is_untextured, cull, bind);
     }
 
+    /// Draws positions of all surfaces without maps. `bind` gets the number of the first triangle of each draw.
+    pub fn draw_numbered<'r>(
+        &self,
+        draws: &mut Draws<'_, 'r>,
+        cull: &Cull,
+        mut bind: impl FnMut(&mut Draws<'_, 'r>, u32),
+    ) {
+        draws.geometry(&[&self.positions], &self.indices);
+        for part in self.parts.iter().filter(|p| p.kind == Kind::default()) {
+            for run in Runs::new(&self.clusters[part.clusters.clone()], cull) {
+                bind(draws, run.first_triangle());
+                run.draw(draws);
+            }
+        }
+    }
+
+    /// Binds indices, positions, normals and numbers of materials for shaders that look triangles up by their number.
+    pub fn bound_to<'r>(&'r self, pass: Pass<'r>) -> Pass<'r> {
+        // Without numbers nothing is looked up, but the binding must be written.
+        let numbers = self.material_numbers.as_ref().unwrap_or(&self.indices);
+        pass.storage("Indices", &self.indices)
+            .storage("Positions", &self.positions)
+            .storage("Normals", &self.normals)
+            .storage("MaterialNumbers", numbers)
+    }
+
     /// Draws the other parts that are not detailed. `bind` is called for each new material.
     pub fn draw_textured<'g, 'r>(
         &'g self,
@@ -298,7 +339,10 @@ impl Geometry {
         bind: impl FnMut(&mut Draws<'_, 'r>, &Bound<'g>),
     ) {
         draws.geometry(&self.streams(), &self.indices);
-        let textured = |p: &Part, c: &Cluster| !p.kind.is_detailed() && !is_untextured(p, c);
+        let is_drawn = |p: &Part, c: &Cluster| {
+            (self.facts.is_numbered && p.kind == Kind::default()) || is_untextured(p, c)
+        };
+        let textured = |p: &Part, c: &Cluster| !p.kind.is_detailed() && !is_drawn(p, c);
         self.draw_parts(draws, textured, cull, bind);
     }
 
@@ -412,6 +456,7 @@ fn facts(scene: &Scene, parts: &[Part], surfaces: &[Surface]) -> Facts {
         is_specular: is_rough || surfaces.iter().any(|s| s.is_specular),
         is_rough,
         casting_triangles: 0,
+        is_numbered: false,
     }
 }
 

@@ -4,4 +4,5 @@ pub mod culling;
 pub mod facts;
 pub mod gbuffer;
 pub mod geometry;
+mod triangles;
 pub(in crate::passes) mod upload;

@@ -27,6 +27,8 @@ const float SECTORS = 32.0;
 // Sine of the elevation above the receiving face below which a sample belongs to the face and does not occlude: samples lie at
 // pixel centres, beside the slice, where a plane seen at a grazing angle would look like a horizon.
 const float FLAT = 0.02;
+// Height above that face, of the distance from the eye, below which it may be noise of a rasteriser's depths: a tenth of a pixel.
+const float NOISE = 2e-4;
 // How far every surface reaches behind its front along the view ray, metres: a wall of one brick, 24 cm, or a floor slab. What is
 // thicker hides too little of the sky from the ground behind it; a fence or a wall modelled as a sheet hides a strip that is
 // narrow beside the radius.
@@ -134,7 +136,7 @@ uint blocked_by(vec2 texel, Side side, float half_width, float dither) {
     float h = half_width * distance;
     float front_at = sectors_to(vec2(max(q.x - sign(q.y) * h, 0.0), q.y), side);
     float back_at = sectors_to(vec2(max(q.x + sign(back) * h, 0.0), back), side);
-    bool occludes = r2 < push.radius * push.radius && over_face > 0.0 && over_face * over_face > FLAT * FLAT * r2;
+    bool occludes = r2 < push.radius * push.radius && over_face > -NOISE * p.z && over_face * over_face > FLAT * FLAT * r2;
     return occludes ? between(front_at, back_at, dither) : 0u;
 }
 
@@ -151,7 +153,7 @@ uint blocked_past(vec2 texel, Side side, float dither) {
     float reach = sqrt(b * b + room) - b;
     // The receiver's plane does not occlude itself.
     float over_face = dot(delta, face) + reach * (away.x * dot(face, side.axis) + away.y * dot(face, v));
-    if (over_face <= FLAT * push.radius) return 0u;
+    if (over_face <= FLAT * push.radius - NOISE * p.z) return 0u;
     return between(sectors_to(q, side), sectors_to(q + away * reach, side), dither);
 }
 

@@ -310,7 +310,8 @@ fn a_mirror_shows_the_sky_in_the_mirrored_direction() {
 fn depth_and_normal_of_a_plane_are_known() {
     let mut device = Device::new();
     let scene = Model::default().ground(20.0, &matt(0.5)).build();
-    let mut depths = Worst::new("depth of a plane, relative", 1e-4);
+    // Corners are rounded to a grid of 1/256 of a pixel, which turns the plane.
+    let mut depths = Worst::new("depth of a plane, relative", 1.5e-4);
     // 16 bits per axis: half a step of 2^-15 on the octahedron, stretched by up to sqrt(3) on the sphere.
     let mut normals = Worst::new("normal of a plane against +Y", 1e-4);
     for (eye, target) in [

@@ -141,8 +141,8 @@ fn false_colours_are_those_of_the_cpu(map: ColourMap) {
     let bytes = read_back(&mut device.recorder, tone_map.image())
         .expect("read")
         .bytes;
-    // Half a step for rounding.
-    let mut worst = Worst::new("false colours, 8 bits", 0.51);
+    // Vulkan lets a device round to 8 bits with an error of 0.6 steps.
+    let mut worst = Worst::new("false colours, 8 bits", 0.61);
     for (value, pixel) in values.iter().zip(bytes.chunks_exact(4)) {
         let expected = colours
             .colour(*value)

@@ -369,10 +369,14 @@ mod tests {
         for (next, dst_stage, dst_access) in [
             (
                 BufferAccess::Vertex,
-                Stage::VERTEX_ATTRIBUTE_INPUT,
-                Access::VERTEX_ATTRIBUTE_READ,
+                Stage::VERTEX_ATTRIBUTE_INPUT | shaders,
+                Access::VERTEX_ATTRIBUTE_READ | Access::SHADER_STORAGE_READ,
             ),
-            (BufferAccess::Index, Stage::INDEX_INPUT, Access::INDEX_READ),
+            (
+                BufferAccess::Index,
+                Stage::INDEX_INPUT | shaders,
+                Access::INDEX_READ | Access::SHADER_STORAGE_READ,
+            ),
             (
                 BufferAccess::StorageRead,
                 shaders,

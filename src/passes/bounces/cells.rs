@@ -70,7 +70,7 @@ const SEGMENTS_OF_LAMPS: u32 = 8;
 /// Rounds in which new cells are filled, whatever the budget.
 const FIRST_ROUNDS: u32 = 16;
 
-/// Rounds in the frame in which the light has jumped.
+/// Rounds of all cells after the light has jumped, one a frame: the first shows the new light, with few paths, and the others make it less noisy.
 const JUMP_ROUNDS: u32 = 4;
 
 /// Most paths that the old mean of a cell counts for after a small change of the light.
@@ -182,6 +182,8 @@ pub struct Cells {
     held: Option<Held>,
     /// Rounds so far.
     round: u32,
+    /// Rounds of all cells that the last jump of the light still asks for.
+    owed: u32,
     /// The view of the whole picture for which they were last filled anew.
     filled_for: Option<ViewBlock>,
 }
@@ -276,6 +278,7 @@ impl Cells {
             },
             held: None,
             round: 0,
+            owed: 0,
             filled_for: None,
         })
     }
@@ -289,7 +292,7 @@ impl Cells {
         for image in [&self.cells, &self.planes] {
             recorder.clear(image, [0.0; 4]);
         }
-        self.round = 0;
+        (self.round, self.owed) = (0, 0);
     }
 
     /// Records the work of a frame: creates cells in view and beyond, and adds paths to them. Light that has changed starts from the
@@ -319,19 +322,8 @@ impl Cells {
         }
         let old = self.held.as_ref();
         let change = old.map_or(0.0, |old| change(&old.daylight, around.daylight));
-        let (rounds, seeds, paths) = match work {
-            Work::Anew => (FIRST_ROUNDS, PATHS, None),
-            // What few previews, or none of this light, have begun is filled before it is averaged.
-            Work::Rounds(rounds) => {
-                let missing = FIRST_ROUNDS.saturating_sub(self.round);
-                (rounds.max(missing), PATHS, None)
-            }
-            // All cells follow the light; new ones are filled at once.
-            Work::Paths(_) if change >= 1.0 => (JUMP_ROUNDS, PATHS, None),
-            Work::Paths(_) if change > 0.0 || self.round < FIRST_ROUNDS => (1, PATHS, None),
-            Work::Paths(0) => (0, 0, None),
-            Work::Paths(paths) => (1, (paths / PATH_POINTS).clamp(1, PATHS), Some(paths)),
-        };
+        let (rounds, seeds, paths) = self.work(work, change);
+        self.owed = self.owed.saturating_sub(rounds);
         for _ in 0..rounds {
             let mut update = update_push(self.held.as_ref(), &held, around.tree.is_emissive());
             if let Some(paths) = paths {
@@ -348,6 +340,33 @@ impl Cells {
             self.publish(recorder, around, &update);
             self.round += 1;
         }
+    }
+
+    /// Rounds, paths from the eye in each, and paths from the cells unless every cell gets one. `change` is that of the light, 1 for a jump.
+    fn work(&mut self, work: Work, change: f64) -> (u32, u32, Option<u32>) {
+        if change >= 1.0 && matches!(work, Work::Paths(_)) {
+            self.owed = JUMP_ROUNDS;
+        }
+        let is_owed = self.owed > 0;
+        match work {
+            Work::Anew => (FIRST_ROUNDS, PATHS, None),
+            // What few previews, or none of this light, have begun is filled before it is averaged.
+            Work::Rounds(rounds) => {
+                let missing = FIRST_ROUNDS.saturating_sub(self.round);
+                (rounds.max(missing).max(is_owed.into()), PATHS, None)
+            }
+            // All cells follow the light; new ones are filled at once.
+            Work::Paths(_) if change > 0.0 || is_owed || self.round < FIRST_ROUNDS => {
+                (1, PATHS, None)
+            }
+            Work::Paths(0) => (0, 0, None),
+            Work::Paths(paths) => (1, (paths / PATH_POINTS).clamp(1, PATHS), Some(paths)),
+        }
+    }
+
+    /// Rounds since the cells were last cleared.
+    pub fn rounds(&self) -> u32 {
+        self.round
     }
 
     /// The shader's block.

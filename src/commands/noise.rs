@@ -144,17 +144,17 @@ mod tests {
             assert_eq!(pixels.len(), MOST_PIXELS.min(width * height));
             assert!(pixels.windows(2).all(|pair| pair[0] < pair[1]));
             assert!(pixels.last().is_some_and(|last| *last < width * height));
-            // Bands of a sixteenth of the width and of the height have as many each, but for chance.
+            // Bands of an eighth of the width and of the height have as many each, but for chance.
             let most_off = |band: &dyn Fn(usize) -> usize| {
-                let mut counts = [0.0f64; 16];
+                let mut counts = [0.0f64; 8];
                 pixels.iter().for_each(|p| counts[band(*p)] += 1.0);
-                let mean = pixels.len() as f64 / 16.0;
+                let mean = pixels.len() as f64 / 8.0;
                 let off = counts.iter().map(|count| (count / mean - 1.0).abs());
                 off.fold(0.0, f64::max)
             };
-            if width >= 16 {
-                assert!(most_off(&|p| p % width * 16 / width) < 0.1, "{width}");
-                assert!(most_off(&|p| p / width * 16 / height) < 0.01, "{height}");
+            if width >= 8 {
+                assert!(most_off(&|p| p % width * 8 / width) < 0.1, "{width}");
+                assert!(most_off(&|p| p / width * 8 / height) < 0.01, "{height}");
             }
         }
     }

@@ -52,8 +52,11 @@ const PATHS: u32 = 1 << 12;
 const UPDATES: u32 = 1 << 13;
 const SEEN_UPDATES: u32 = 1 << 12;
 
-/// Paths of a young cell in a round of a moving view.
+/// Paths of a young cell in a round of a moving view; and where all cells are young, as that many of each would make frames long.
 const YOUNG_PATHS: u32 = 4;
+const PATHS_OF_ALL_YOUNG: u32 = 2;
+/// Paths up to which a cell is young, as in `include/cell_table.glsl`.
+const YOUNG: f32 = 32.0;
 
 /// Edge of the smallest cells, metres, in scenes larger than a room.
 const CELL: f32 = 0.25;
@@ -70,7 +73,8 @@ const SEGMENTS_OF_LAMPS: u32 = 8;
 /// Rounds in which new cells are filled, whatever the budget.
 const FIRST_ROUNDS: u32 = 16;
 
-/// Rounds of all cells after the light has jumped, one a frame: the first shows the new light, with few paths, and the others make it less noisy.
+/// Rounds of all cells, one a frame, after a change of the light that leaves them young: the first shows the new light, with few paths, and the
+/// others make it less noisy.
 const JUMP_ROUNDS: u32 = 4;
 
 /// Most paths that the old mean of a cell counts for after a small change of the light.
@@ -184,6 +188,8 @@ pub struct Cells {
     round: u32,
     /// Rounds of all cells that the last jump of the light still asks for.
     owed: u32,
+    /// Paths that the mean of each cell counts for at least, but for cells that are new.
+    grown: f32,
     /// The view of the whole picture for which they were last filled anew.
     filled_for: Option<ViewBlock>,
 }
@@ -279,6 +285,7 @@ impl Cells {
             held: None,
             round: 0,
             owed: 0,
+            grown: 0.0,
             filled_for: None,
         })
     }
@@ -292,7 +299,7 @@ impl Cells {
         for image in [&self.cells, &self.planes] {
             recorder.clear(image, [0.0; 4]);
         }
-        (self.round, self.owed) = (0, 0);
+        (self.round, self.owed, self.grown) = (0, 0, 0.0);
     }
 
     /// Records the work of a frame: creates cells in view and beyond, and adds paths to them. Light that has changed starts from the
@@ -332,8 +339,13 @@ impl Cells {
                 update.paths = paths - update.seen;
                 update.turns = update.paths;
                 update.first = self.round.wrapping_mul(update.turns);
-                update.young = YOUNG_PATHS;
+                update.young = if self.grown < YOUNG {
+                    PATHS_OF_ALL_YOUNG
+                } else {
+                    YOUNG_PATHS
+                };
             }
+            self.grown = self.grown.min(update.most) + update.young as f32;
             self.held = Some(held.clone());
             self.seed(recorder, around, seeds);
             self.update(recorder, around, &update);
@@ -344,7 +356,7 @@ impl Cells {
 
     /// Rounds, paths from the eye in each, and paths from the cells unless every cell gets one. `change` is that of the light, 1 for a jump.
     fn work(&mut self, work: Work, change: f64) -> (u32, u32, Option<u32>) {
-        if change >= 1.0 && matches!(work, Work::Paths(_)) {
+        if change > 0.0 && kept(change) < YOUNG && matches!(work, Work::Paths(_)) {
             self.owed = JUMP_ROUNDS;
         }
         let is_owed = self.owed > 0;
@@ -456,6 +468,11 @@ impl Cells {
     }
 }
 
+/// Paths that the old mean of a cell counts for after a change of the light, above 0.
+fn kept(change: f64) -> f32 {
+    (1.0 / change - 1.0).clamp(0.0, MOST_KEPT) as f32
+}
+
 /// The update that brings cells from the light that they hold to a new one. `is_emissive`: lamps light the scene, and their light
 /// does not follow that of the sky.
 fn update_push(old: Option<&Held>, new: &Held, is_emissive: bool) -> UpdatePush {
@@ -468,8 +485,7 @@ fn update_push(old: Option<&Held>, new: &Held, is_emissive: bool) -> UpdatePush 
     let factor = |of: fn(&Daylight) -> DVec3| {
         changed.map_or(Vec3::ONE, |old| ratio(of(&new.daylight), of(&old.daylight)))
     };
-    let kept =
-        changed.map(|old| (1.0 / change(&old.daylight, &new.daylight) - 1.0).clamp(0.0, MOST_KEPT));
+    let kept = changed.map(|old| kept(change(&old.daylight, &new.daylight)));
     UpdatePush {
         segments,
         ends_in_cell,
@@ -479,7 +495,7 @@ fn update_push(old: Option<&Held>, new: &Held, is_emissive: bool) -> UpdatePush 
         // A round of all cells is one of many.
         young: 1,
         seen: SEEN_UPDATES,
-        most: kept.map_or(f32::MAX, |paths| paths as f32),
+        most: kept.unwrap_or(f32::MAX),
         sky_change: factor(|day| day.sky_irradiance_up),
         bounce_change: if is_emissive {
             Vec3::ONE

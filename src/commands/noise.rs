@@ -6,12 +6,15 @@
 //! the same sequence, so most of that gain is accounted for; the gain between batches is not. All pixels share the directions of the
 //! sky, so with few frames the estimate is itself noisy.
 
+use crate::daylight::sampling::{rnd, tea};
+
 /// Number of batches at which pairs are merged.
 const MOST_BATCHES: usize = 8;
 /// Fewest batches that allow an estimate.
 const FEWEST_BATCHES: usize = 4;
-/// Largest number of pixels used for the estimate.
-const MOST_PIXELS: usize = 1 << 20;
+/// Largest number of pixels used for the estimate: a root mean square of so many errors is itself certain within 1 % or 2 %, and looking at
+/// all pixels of a picture takes longer than a GPU needs for drawing them.
+const MOST_PIXELS: usize = 1 << 15;
 /// Luminance to which pixels are clamped, kcd/m². Only the sun's disc and its reflections are brighter; without the clamp a few
 /// of their pixels would outweigh the rest of the image.
 const BRIGHTEST: f32 = 100.0;
@@ -22,15 +25,28 @@ pub(super) struct Noise {
     size: u32,
     /// Luminance of the cumulative means: over the first batch, the first two, the first three, and so on.
     means: Vec<Vec<f32>>,
+    /// Pixels that are looked at, in rising order.
+    pixels: Vec<usize>,
 }
 
 impl Noise {
-    /// Starts with no frames.
-    pub(super) fn new() -> Self {
+    /// Starts with no frames of a picture of so many pixels.
+    pub(super) fn new(pixels: usize) -> Self {
+        Self::of_some(pixels, MOST_PIXELS)
+    }
+
+    /// The same with another number of pixels at most.
+    fn of_some(pixels: usize, most: usize) -> Self {
         Self {
             size: 1,
             means: Vec::new(),
+            pixels: spread(pixels, most),
         }
+    }
+
+    /// Numbers of the pixels that [`Noise::look`] wants, counted along the rows.
+    pub(super) fn pixels(&self) -> &[usize] {
+        &self.pixels
     }
 
     /// Number of frames after which to call [`Noise::look`] next.
@@ -38,11 +54,10 @@ impl Noise {
         self.size * (self.means.len() as u32 + 1)
     }
 
-    /// Adds the mean of the first [`Noise::next_look`] frames: RGBA, kcd/m².
+    /// Adds the mean of the first [`Noise::next_look`] frames in each of [`Noise::pixels`]: RGBA, kcd/m².
     pub(super) fn look(&mut self, mean: &[[f32; 4]]) {
-        let step = mean.len().div_ceil(MOST_PIXELS).max(1);
         let luminance = |t: &[f32; 4]| 0.2126 * t[0] + 0.7152 * t[1] + 0.0722 * t[2];
-        let seen = mean.iter().step_by(step).map(luminance);
+        let seen = mean.iter().map(luminance);
         self.means.push(seen.map(|l| l.min(BRIGHTEST)).collect());
         if self.means.len() == MOST_BATCHES {
             // Merges pairs of batches: keeps the means over the first two, the first four, and so on.
@@ -81,17 +96,36 @@ impl Noise {
     }
 }
 
+/// At most `most` of `pixels` numbers: one at random of each of as many stretches of equal length. A fixed step would be a pattern of columns where
+/// it divides the width.
+fn spread(pixels: usize, most: usize) -> Vec<usize> {
+    if pixels <= most {
+        return (0..pixels).collect();
+    }
+    let number = |i: usize| {
+        let mut state = tea::<16>(i as u32, pixels as u32);
+        let [start, end] = [i, i + 1].map(|i| i * pixels / most);
+        start + ((end - start) as f64 * rnd(&mut state)) as usize
+    };
+    (0..most).map(number).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::daylight::sampling::{r2, rnd, tea};
+    use crate::daylight::sampling::r2;
 
     /// Estimates after each look, with the number of frames. Pixel `i` of a frame is `frame(index, i)`.
     fn estimates(frames: u32, pixels: usize, frame: impl Fn(u32, usize) -> f32) -> Vec<(u32, f64)> {
-        let (mut noise, mut sums, mut list) = (Noise::new(), vec![0.0f64; pixels], Vec::new());
+        seen(Noise::new(pixels), frames, frame)
+    }
+
+    fn seen(mut noise: Noise, frames: u32, frame: impl Fn(u32, usize) -> f32) -> Vec<(u32, f64)> {
+        let pixels = noise.pixels().to_vec();
+        let (mut sums, mut list) = (vec![0.0f64; pixels.len()], Vec::new());
         for index in 0..frames {
-            for (pixel, sum) in sums.iter_mut().enumerate() {
-                *sum += f64::from(frame(index, pixel));
+            for (pixel, sum) in pixels.iter().zip(&mut sums) {
+                *sum += f64::from(frame(index, *pixel));
             }
             let count = index + 1;
             if noise.next_look() == count {
@@ -101,6 +135,50 @@ mod tests {
             }
         }
         list
+    }
+
+    #[test]
+    fn pixels_are_spread_evenly_over_rows_and_columns() {
+        for [width, height] in [[640, 360], [1280, 720], [1024, 4096], [7, 5]] {
+            let pixels = spread(width * height, MOST_PIXELS);
+            assert_eq!(pixels.len(), MOST_PIXELS.min(width * height));
+            assert!(pixels.windows(2).all(|pair| pair[0] < pair[1]));
+            assert!(pixels.last().is_some_and(|last| *last < width * height));
+            // Bands of an eighth of the width and of the height have as many each, but for chance.
+            let most_off = |band: &dyn Fn(usize) -> usize| {
+                let mut counts = [0.0f64; 8];
+                pixels.iter().for_each(|p| counts[band(*p)] += 1.0);
+                let mean = pixels.len() as f64 / 8.0;
+                let off = counts.iter().map(|count| (count / mean - 1.0).abs());
+                off.fold(0.0, f64::max)
+            };
+            if width >= 8 {
+                assert!(most_off(&|p| p % width * 8 / width) < 0.1, "{width}");
+                assert!(most_off(&|p| p / width * 8 / height) < 0.01, "{height}");
+            }
+        }
+    }
+
+    /// Noise that differs from column to column and from row to row, in a few pixels much more.
+    #[test]
+    fn some_pixels_tell_what_all_do() {
+        const WIDTH: usize = 640;
+        let pixels = WIDTH * 360;
+        let frame = |index: u32, pixel: usize| {
+            let mut state = tea::<4>(index, pixel as u32);
+            let (x, y) = (pixel % WIDTH, pixel / WIDTH);
+            let rare = if (x * 7 + y * 13).is_multiple_of(101) {
+                5.0
+            } else {
+                1.0
+            };
+            let spread = rare * (0.1 + (x % 4) as f64 / 10.0 + (y % 5) as f64 / 20.0);
+            (10.0 + spread * (rnd(&mut state) - 0.5)) as f32
+        };
+        let of = |most| seen(Noise::of_some(pixels, most), 16, frame);
+        for ((frames, some), (_, all)) in of(MOST_PIXELS).into_iter().zip(of(pixels)) {
+            assert!((some / all - 1.0).abs() < 0.04, "{frames}: {some} {all}");
+        }
     }
 
     #[test]
@@ -145,7 +223,7 @@ mod tests {
 
     #[test]
     fn looks_come_at_most_a_quarter_apart_and_batches_stay_few() {
-        let mut noise = Noise::new();
+        let mut noise = Noise::new(3);
         let mut before = 0u32;
         for _ in 0..60 {
             let next = noise.next_look();

@@ -9,7 +9,7 @@ use super::job::Job;
 use super::noise::Noise;
 use crate::error::Result;
 use crate::frame::Frame;
-use crate::gpu::{Recorder, read_back};
+use crate::gpu::{Recorder, read_texels};
 
 /// Fewest samples for which the noise estimate is trusted: few batches may agree by chance.
 const FEWEST: u32 = 32;
@@ -78,7 +78,10 @@ pub(super) fn draw(
     rule: &Rule,
     progress: &Progress,
 ) -> Result<Drawn> {
-    let (mut noise, started) = (Noise::new(), Instant::now());
+    let [width, height] = frame.radiance().size();
+    let (mut noise, started) = (Noise::new(width as usize * height as usize), Instant::now());
+    // Nobody else asks for it before the end.
+    let is_watched = rule.noise.is_some() || progress.is_shown();
     let mut error = None;
     let mut samples = 0;
     while samples < rule.most && !interrupt::is_interrupted() || samples == 0 {
@@ -88,8 +91,11 @@ pub(super) fn draw(
         samples += 1;
         // Frames with a sun each differ by what they are to show.
         if rule.most > 1 && job.suns.is_none() && samples == noise.next_look() {
-            noise.look(&read_back(recorder, frame.radiance())?.rgba());
-            error = noise.relative_error();
+            let seen = read_texels(recorder, frame.radiance(), noise.pixels())?;
+            noise.look(&seen);
+            if is_watched {
+                error = noise.relative_error();
+            }
         }
         progress.show(samples, rule, error, started.elapsed());
         if is_enough(samples, rule, error) {
@@ -98,7 +104,7 @@ pub(super) fn draw(
     }
     Ok(Drawn {
         samples,
-        error,
+        error: noise.relative_error(),
         is_interrupted: samples < rule.most && !is_enough(samples, rule, error),
     })
 }
@@ -156,8 +162,12 @@ impl Progress {
         self.0.finish_and_clear();
     }
 
+    fn is_shown(&self) -> bool {
+        !self.0.is_hidden()
+    }
+
     fn show(&self, samples: u32, rule: &Rule, error: Option<f64>, elapsed: Duration) {
-        if self.0.is_hidden() {
+        if !self.is_shown() {
             return;
         }
         let all = expected(samples, rule, error);

@@ -5,6 +5,7 @@
 //! R = G = B). [`super::cie`] and [`super::perez`] have the numbers.
 
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 use glam::DVec3;
 
@@ -13,6 +14,12 @@ use super::quadrature::gauss_legendre;
 
 /// Rings and columns of half a hemisphere for [`Distribution::illuminance`].
 const NODES: usize = 128;
+static RINGS: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| gauss_legendre(NODES));
+/// Azimuth between two columns.
+const COLUMN: f64 = PI / NODES as f64;
+/// Cosines of the columns' azimuths from the sun.
+static COLUMNS: LazyLock<[f64; NODES]> =
+    LazyLock::new(|| std::array::from_fn(|i| (COLUMN * (i as f64 + 0.5)).cos()));
 
 /// A relative distribution of luminance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,8 +49,13 @@ impl Distribution {
 
     /// f(χ), from the angle from the sun, radians in 0..=π.
     pub fn indicatrix(&self, chi: f64) -> f64 {
+        self.around_sun(chi, chi.cos())
+    }
+
+    /// The same, from the cosine of the angle too.
+    fn around_sun(&self, chi: f64, cos_chi: f64) -> f64 {
         let [k, c, d, e] = self.indicatrix;
-        k + c * (d * chi).exp() + e * chi.cos().powi(2)
+        k + c * (d * chi).exp() + e * cos_chi * cos_chi
     }
 
     /// φ(Z) f(χ); 0 where the formula is negative, as that of Perez is beside the horizon of some skies.
@@ -57,20 +69,17 @@ impl Distribution {
     pub fn illuminance(&self, cos_sun_angle: f64) -> f64 {
         let sin_sun_angle = (1.0 - cos_sun_angle * cos_sun_angle).max(0.0).sqrt();
         // The sky mirrors in the plane of the sun: half of it is enough.
-        let step = PI / NODES as f64;
-        let columns: Vec<f64> = (0..NODES)
-            .map(|i| (step * (i as f64 + 0.5)).cos())
-            .collect();
-        let ring = |(cosine, weight): (f64, f64)| {
+        let ring = |&(cosine, weight): &(f64, f64)| {
             let across = sin_sun_angle * (1.0 - cosine * cosine).sqrt();
-            let chi = |azimuth: &f64| {
-                let cos_chi = cos_sun_angle * cosine + across * azimuth;
-                cos_chi.clamp(-1.0, 1.0).acos()
+            let gradation = self.gradation(cosine);
+            let luminance = |azimuth: &f64| {
+                let cos_chi = (cos_sun_angle * cosine + across * azimuth).clamp(-1.0, 1.0);
+                (gradation * self.around_sun(cos_chi.acos(), cos_chi)).max(0.0)
             };
-            let sum: f64 = columns.iter().map(|c| self.product(cosine, chi(c))).sum();
-            2.0 * step * weight * cosine * sum
+            let sum: f64 = COLUMNS.iter().map(luminance).sum();
+            2.0 * COLUMN * weight * cosine * sum
         };
-        gauss_legendre(NODES).into_iter().map(ring).sum()
+        RINGS.iter().map(ring).sum()
     }
 }
 

@@ -45,9 +45,27 @@ impl Hosek {
 
     /// Radiance in the unit direction `dir`, not below the horizon, as linear BT.709 RGB, cd/m²; not clamped.
     pub fn radiance(&self, dir: DVec3) -> DVec3 {
-        let gamma = angle_between(dir, self.sun_direction);
-        let channel = |i: usize| distribution(&self.coefficients[i], dir.y, gamma);
-        self.mean_radiance * DVec3::new(channel(0), channel(1), channel(2))
+        self.ring(dir.y)(dir)
+    }
+
+    /// [`Self::radiance`] in the directions whose elevation has this sine.
+    pub fn ring(&self, sine: f64) -> impl Fn(DVec3) -> DVec3 {
+        let cos_theta = sine.max(0.0);
+        let Self {
+            sun_direction,
+            coefficients,
+            mean_radiance,
+        } = *self;
+        let parts = coefficients.map(|of| of_zenith_angle(&of, cos_theta));
+        move |dir| {
+            let gamma = angle_between(dir, sun_direction);
+            let cos_gamma = gamma.cos();
+            let channel = |i: usize| {
+                let [factor, added] = parts[i];
+                factor * (added + around_sun(&coefficients[i], gamma, cos_gamma))
+            };
+            mean_radiance * DVec3::new(channel(0), channel(1), channel(2))
+        }
     }
 }
 
@@ -55,12 +73,23 @@ impl Hosek {
 ///
 /// `cos_theta` in 0..=1 (treated as at least 0), `gamma` in radians, 0..=π.
 pub fn distribution(coefficients: &[f64; 9], cos_theta: f64, gamma: f64) -> f64 {
-    let [a, b, c, d, e, f, g, i, h] = *coefficients;
-    let cos_theta = cos_theta.max(0.0);
-    let cos_gamma = gamma.cos();
-    let chi = (1.0 + cos_gamma * cos_gamma) / (1.0 + h * h - 2.0 * h * cos_gamma).powf(1.5);
-    (1.0 + a * (b / (cos_theta + 0.01)).exp())
-        * (c + d * (e * gamma).exp() + f * cos_gamma * cos_gamma + g * chi + i * cos_theta.sqrt())
+    let [factor, added] = of_zenith_angle(coefficients, cos_theta.max(0.0));
+    factor * (added + around_sun(coefficients, gamma, gamma.cos()))
+}
+
+/// What in F depends on θ: a factor, and a term beside [`around_sun`].
+fn of_zenith_angle(&[a, b, _, _, _, _, _, i, _]: &[f64; 9], cos_theta: f64) -> [f64; 2] {
+    [
+        1.0 + a * (b / (cos_theta + 0.01)).exp(),
+        i * cos_theta.sqrt(),
+    ]
+}
+
+/// What in F depends on γ.
+fn around_sun(&[_, _, c, d, e, f, g, _, h]: &[f64; 9], gamma: f64, cos_gamma: f64) -> f64 {
+    let square = 1.0 + h * h - 2.0 * h * cos_gamma;
+    let chi = (1.0 + cos_gamma * cos_gamma) / (square * square.sqrt());
+    c + d * (e * gamma).exp() + f * cos_gamma * cos_gamma + g * chi
 }
 
 #[cfg(test)]

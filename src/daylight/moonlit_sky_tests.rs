@@ -3,6 +3,7 @@
 use super::tests::conditions;
 use super::*;
 use crate::daylight::moon::{MEAN_DISTANCE_KM, Moon};
+use crate::daylight::quadrature::horizontal_irradiance;
 
 /// An atmosphere under a sun in the south and a full moon in the west.
 fn moonlit(sun_deg: f64, moon_deg: f64) -> Daylight {

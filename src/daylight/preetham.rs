@@ -76,10 +76,17 @@ pub fn zenith_chromaticity(turbidity: f64, sun_zenith_angle: f64) -> [f64; 2] {
 ///
 /// `coefficients` are A to E; `cos_theta` is in 0..=1 and treated as at least 1e-6; `gamma` in radians, 0..=π.
 pub fn perez(coefficients: &[f64; 5], cos_theta: f64, gamma: f64) -> f64 {
-    let [a, b, c, d, e] = *coefficients;
-    let cos_gamma = gamma.cos();
-    (1.0 + a * (b / cos_theta.max(1e-6)).exp())
-        * (1.0 + c * (d * gamma).exp() + e * cos_gamma * cos_gamma)
+    gradation(coefficients, cos_theta) * indicatrix(coefficients, gamma, gamma.cos())
+}
+
+/// The factor of F that depends on θ.
+fn gradation(&[a, b, ..]: &[f64; 5], cos_theta: f64) -> f64 {
+    1.0 + a * (b / cos_theta.max(1e-6)).exp()
+}
+
+/// The factor of F that depends on γ.
+fn indicatrix(&[_, _, c, d, e]: &[f64; 5], gamma: f64, cos_gamma: f64) -> f64 {
+    1.0 + c * (d * gamma).exp() + e * cos_gamma * cos_gamma
 }
 
 /// The numbers a shader needs to evaluate a sky of Perez' form: Q = `zenith_over_f` · F(θ, γ) for Q = Y, x, y in this order.
@@ -144,8 +151,26 @@ impl Preetham {
 
     /// Radiance in the unit direction `dir` as linear BT.709 RGB, cd/m²; not clamped.
     pub fn radiance(&self, dir: DVec3) -> DVec3 {
-        let (luminance, x, y) = self.luminance_chromaticity(dir);
-        colour::rgb_from_xyz(colour::xyz_from_xyy(x, y, luminance))
+        self.ring(dir.y)(dir)
+    }
+
+    /// [`Self::radiance`] in the directions whose elevation has this sine.
+    pub fn ring(&self, sine: f64) -> impl Fn(DVec3) -> DVec3 {
+        let PerezSky {
+            coefficients,
+            zenith_over_f,
+        } = self.perez;
+        let gradations = coefficients.map(|of| gradation(&of, sine));
+        let sun = self.sun_direction;
+        move |dir| {
+            let gamma = angle_between(dir, sun);
+            let cos_gamma = gamma.cos();
+            let [luminance, x, y] = std::array::from_fn(|i| {
+                let around_sun = indicatrix(&coefficients[i], gamma, cos_gamma);
+                zenith_over_f[i] * (gradations[i] * around_sun)
+            });
+            colour::rgb_from_xyz(colour::xyz_from_xyy(x, y, luminance))
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 //! Each hemisphere has its own nodes, because the radiance is discontinuous at the horizon.
 
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 use glam::DVec3;
 
@@ -97,7 +98,23 @@ impl SphereQuadrature {
 ///
 /// Within 1e-4 of 512 × 1024 nodes for the skies of this crate.
 pub fn horizontal_irradiance(radiance: impl Fn(DVec3) -> DVec3) -> DVec3 {
-    SphereQuadrature::upper(64, 128).irradiance(DVec3::Y, radiance)
+    irradiance_by_rings(|_| &radiance)
+}
+
+/// The same of a radiance that is given ring by ring: `ring` is asked once for each sine of elevation, so that it can compute there what does
+/// not depend on the azimuth.
+pub fn irradiance_by_rings<F: Fn(DVec3) -> DVec3>(ring: impl Fn(f64) -> F) -> DVec3 {
+    const COLUMNS: usize = 128;
+    static NODES: LazyLock<SphereQuadrature> =
+        LazyLock::new(|| SphereQuadrature::upper(64, COLUMNS));
+    let rings = NODES.nodes.chunks(COLUMNS).map(|nodes| {
+        let radiance = ring(nodes[0].0.y);
+        let lit = nodes
+            .iter()
+            .map(|&(dir, solid)| radiance(dir) * (dir.y * solid));
+        lit.sum::<DVec3>()
+    });
+    rings.sum()
 }
 
 #[cfg(test)]
@@ -126,6 +143,19 @@ mod tests {
         assert!((e - DVec3::splat(PI)).abs().max_element() < 1e-12, "{e}");
         let solid_angle = SphereQuadrature::sphere(8, 16).integrate(|_| DVec3::ONE).x;
         assert!((solid_angle - 4.0 * PI).abs() < 1e-12);
+    }
+
+    #[test]
+    fn rings_are_asked_for_their_own_elevation() {
+        let sky = |dir: DVec3| dir * dir + dir.x;
+        let one_by_one = SphereQuadrature::upper(64, 128).irradiance(DVec3::Y, sky);
+        let found = irradiance_by_rings(|sine| {
+            move |dir: DVec3| {
+                assert_eq!(dir.y, sine);
+                sky(dir)
+            }
+        });
+        assert!((found - one_by_one).abs().max_element() < 1e-14, "{found}");
     }
 
     #[test]

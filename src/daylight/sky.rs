@@ -22,7 +22,7 @@ use super::hosek::Hosek;
 use super::moon::Moonlight;
 use super::perez::AllWeather;
 use super::preetham::Preetham;
-use super::quadrature::horizontal_irradiance;
+use super::quadrature::irradiance_by_rings;
 use super::stars::{MOST_SKY_LUX, PointLight, StarrySky};
 use super::sun_position::direction;
 use super::sunlight::{SUN_SOLID_ANGLE, Sunlight, air_mass, visible_fraction};
@@ -68,9 +68,15 @@ impl Sky {
         match self {
             Self::Grey(sky) => DVec3::splat(sky.horizontal_illuminance),
             Self::Atmosphere(sky) => colour::clip_negative(sky.irradiance_up()),
-            _ => horizontal_irradiance(|dir| colour::clip_negative(self.radiance(dir))),
+            Self::Preetham(sky) => irradiance_by_rings(|sine| clipped(sky.ring(sine))),
+            Self::Hosek(sky) => irradiance_by_rings(|sine| clipped(sky.ring(sine))),
         }
     }
+}
+
+/// A radiance by direction, clipped.
+fn clipped(radiance: impl Fn(DVec3) -> DVec3) -> impl Fn(DVec3) -> DVec3 {
+    move |dir| colour::clip_negative(radiance(dir))
 }
 
 /// Extends a model beyond its valid range and by clouds: sky = clip(model) · `scale` + `clouds` · (1 + 2 sin el)/3 + `night`.

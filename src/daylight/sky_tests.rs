@@ -3,6 +3,7 @@
 use super::*;
 use crate::daylight::atmosphere::air::Air;
 use crate::daylight::perez::Measured;
+use crate::daylight::quadrature::horizontal_irradiance;
 
 const MODELS: [SkyModel; 5] = [
     SkyModel::Preetham,

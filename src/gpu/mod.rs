@@ -32,7 +32,7 @@ pub use device::surface::{Surface, WindowHandles};
 pub use error::{GpuError, Result};
 pub use memory::buffer::{Buffer, BufferKind};
 pub use memory::image::{Image, ImageDesc, ImageKind, Outside, Sampler, Written};
-pub use memory::read_back::{Pixels, Texel, copy_texel, read_back};
+pub use memory::read_back::{Pixels, Texel, copy_texel, read_back, read_texels};
 pub use memory::upload::{upload_buffer, upload_texture};
 pub use pipeline::cache::CacheState;
 pub use pipeline::layout::{GpuStruct, assert_layout};

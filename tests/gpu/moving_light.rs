@@ -4,7 +4,7 @@ use crate::gpu::{Device, Model, Picture, camera, clear_day, matt, settings};
 use skylight::daylight::colour::luminance;
 use skylight::daylight::sky::Daylight;
 use skylight::frame::{Frame, FrameSettings, Visibility};
-use skylight::passes::bounces::cells::Bounces;
+use skylight::passes::bounces::cells::{Bounces, Cells};
 use skylight::passes::light::lighting::{Ambient, Show};
 use skylight::scene::{Camera, Scene};
 
@@ -51,16 +51,78 @@ fn the_light_follows_a_moving_sun_within_four_frames() {
         let mut frame = device.run(|rec| Frame::new(rec, &scene, set).expect("a frame"));
         previews(&mut device, &mut frame, &days[0], &eye, 24);
         for day in &days[1..] {
-            previews(&mut device, &mut frame, day, &eye, 4);
-            let soon = mean(&device.picture_of(&frame));
             let mut other = device.run(|rec| Frame::new(rec, &scene, set).expect("a frame"));
             previews(&mut device, &mut other, day, &eye, 48);
-            let finally = mean(&device.picture_of(&other));
-            println!("{show:?}: {soon:.3} after four frames, {finally:.3} at last");
-            assert!((soon / finally - 1.0).abs() < 0.05, "{show:?}");
+            let finally = device.picture_of(&other);
+            // The first frame already is right on the mean, but for light that was reflected more often; and the noise is less with each.
+            for (count, tolerance) in [(1, 0.1), (2, 0.08), (3, 0.06), (4, 0.05)] {
+                previews(&mut device, &mut frame, day, &eye, 1);
+                let [ratio, median] = errors(&device.picture_of(&frame), &finally);
+                println!("{show:?} after {count}: ratio {ratio:.4}, median error {median:.4}");
+                assert!((ratio - 1.0).abs() < tolerance, "{show:?} after {count}");
+            }
             previews(&mut device, &mut frame, day, &eye, 8);
         }
     }
+}
+
+/// What the first frame after a jump shows is noisier than what follows, and about as bright: the mean over several seeds. Light that was reflected
+/// more often than its paths are long is still the old one's, scaled.
+#[test]
+fn the_first_frame_after_a_jump_is_right_on_the_mean() {
+    const SEEDS: u32 = 6;
+    let mut device = Device::new();
+    let scene = court();
+    let eye = camera([0.0, 2.0, 7.0], [0.0, 1.0, 0.0]);
+    let (old, new) = (clear_day(90.0, 30.0), clear_day(150.0, 50.0));
+    let [mut first, mut last] = [0.0; 2];
+    for seed in 0..SEEDS {
+        let mut set = moving(Show::Bounces);
+        set.sampling.dome.seed = seed;
+        let mut frame = device.run(|rec| Frame::new(rec, &scene, set).expect("a frame"));
+        previews(&mut device, &mut frame, &old, &eye, 24);
+        previews(&mut device, &mut frame, &new, &eye, 1);
+        first += mean(&device.picture_of(&frame));
+        previews(&mut device, &mut frame, &new, &eye, 48);
+        last += mean(&device.picture_of(&frame));
+    }
+    let ratio = first / last;
+    println!("first frame over converged light: {ratio:.4}");
+    assert!((ratio - 1.0).abs() < 0.06);
+}
+
+/// A jump of the light makes no frame long: each has one round of the cells.
+#[test]
+fn a_jump_of_the_light_is_spread_over_four_frames() {
+    let mut device = Device::new();
+    let (scene, set) = (court(), moving(Show::Beauty));
+    let eye = camera([0.0, 2.0, 7.0], [0.0, 1.0, 0.0]);
+    let (old, new, next) = (
+        clear_day(90.0, 30.0),
+        clear_day(200.0, 50.0),
+        clear_day(202.0, 50.0),
+    );
+    let mut frame = device.run(|rec| Frame::new(rec, &scene, set).expect("a frame"));
+    let rounds = |frame: &Frame| frame.cells().map_or(0, Cells::rounds);
+    previews(&mut device, &mut frame, &old, &eye, 24);
+    // A small change meanwhile, and a further jump: neither brings two rounds into a frame.
+    for day in [
+        &new, &new, &next, &next, &old, &next, &next, &next, &next, &next,
+    ] {
+        let before = rounds(&frame);
+        previews(&mut device, &mut frame, day, &eye, 1);
+        assert_eq!(rounds(&frame) - before, 1);
+    }
+    // At rest the rounds that are left are not forgotten, and those of frames 0 and 4 are not added to them.
+    previews(&mut device, &mut frame, &old, &eye, 1);
+    let before = rounds(&frame);
+    let after: Vec<u32> = (0..5)
+        .map(|index| {
+            device.run(|rec| frame.record(rec, &old, &eye, index));
+            rounds(&frame) - before
+        })
+        .collect();
+    assert_eq!(after, [1, 2, 3, 3, 4]);
 }
 
 /// The mean over the pixels of the temporal standard deviation of their luminance, relative to the mean luminance.

@@ -103,25 +103,54 @@ impl Columns {
 
     /// Columns from the radius `r` (km) to the top of the air, km; a ray below the horizon is treated as the one that touches it.
     pub fn to_top(&self, r: f64, mu: f64) -> DVec3 {
-        let [x, y] = coordinates(r, mu);
-        let (i, j) = ((x as usize).min(WIDTH - 2), (y as usize).min(HEIGHT - 2));
-        let (fx, fy) = (x - i as f64, y - j as f64);
-        let at = |i: usize, j: usize| DVec3::from_array(self.entries[j * WIDTH + i].map(f64::from));
-        let row = |j| at(i, j).lerp(at(i + 1, j), fx);
-        row(j).lerp(row(j + 1), fy)
+        self.level(r).to_top(mu)
+    }
+
+    /// The table at the radius `r` (km).
+    pub fn level(&self, r: f64) -> Level<'_> {
+        let row = row(r);
+        Level {
+            r,
+            least: TOP_RADIUS - r,
+            most: horizon_distance(r) + horizon_distance(TOP_RADIUS),
+            row,
+            entries: &self.entries[(row as usize).min(HEIGHT - 2) * WIDTH..],
+        }
     }
 }
 
-/// Where [`Columns`] holds a ray: entry and row, fractional, within the table.
-pub fn coordinates(r: f64, mu: f64) -> [f64; 2] {
-    let horizon = horizon_distance(r);
-    let [least, most] = [TOP_RADIUS - r, horizon + horizon_distance(TOP_RADIUS)];
-    let x = (distance_to_top(r, mu) - least) / (most - least);
-    let y = horizon / horizon_distance(TOP_RADIUS);
-    [
-        x.clamp(0.0, 1.0) * (WIDTH - 1) as f64,
-        y.clamp(0.0, 1.0) * (HEIGHT - 1) as f64,
-    ]
+/// Row, fractional, of [`Columns`] at the radius `r` (km).
+pub fn row(r: f64) -> f64 {
+    let share = horizon_distance(r) / horizon_distance(TOP_RADIUS);
+    share.clamp(0.0, 1.0) * (HEIGHT - 1) as f64
+}
+
+/// [`Columns`] at one radius.
+#[derive(Clone, Copy, Debug)]
+pub struct Level<'t> {
+    r: f64,
+    /// Distances to the top: upward, and past the horizon.
+    least: f64,
+    most: f64,
+    /// Row, fractional.
+    row: f64,
+    /// The table from that row on.
+    entries: &'t [[f32; 3]],
+}
+
+impl Level<'_> {
+    /// As [`Columns::to_top`].
+    pub fn to_top(&self, mu: f64) -> DVec3 {
+        let x = (distance_to_top(self.r, mu) - self.least) / (self.most - self.least);
+        let x = x.clamp(0.0, 1.0) * (WIDTH - 1) as f64;
+        let (i, j) = (
+            (x as usize).min(WIDTH - 2),
+            (self.row as usize).min(HEIGHT - 2),
+        );
+        let at = |i: usize| DVec3::from_array(self.entries[i].map(f64::from));
+        let row = |start: usize| at(start + i).lerp(at(start + i + 1), x - i as f64);
+        row(0).lerp(row(WIDTH), self.row - j as f64)
+    }
 }
 
 /// Distance to the point where a ray from the radius `r` touches the ground, km.

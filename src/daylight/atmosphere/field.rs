@@ -171,6 +171,22 @@ impl Field {
         (mean * sum).max(DVec4::ZERO)
     }
 
+    /// The field at `altitude` km, scattered there by `scattering`.
+    pub fn level(&self, altitude: f64, scattering: [DVec4; 7]) -> Level<'_> {
+        let row = self.grid.row(altitude);
+        let i = (row as usize).min(self.grid.altitudes - 2);
+        let at = Row {
+            texels: [i, i + 1].map(|i| &self.texels[i * self.grid.suns..][..self.grid.suns]),
+            share: row - i as f64,
+            scattering,
+        };
+        Level {
+            grid: self.grid,
+            at,
+            columns: None,
+        }
+    }
+
     /// Irradiance of the ground by scattered light where the sun is at `sun_sine`.
     pub fn ground_irradiance(&self, sun_sine: f64) -> DVec4 {
         let column = self.grid.column(sun_sine);
@@ -178,6 +194,59 @@ impl Field {
         let [low, high] = [wide(self.ground[j]), wide(self.ground[j + 1])];
         let ln = low.lerp(high, column - j as f64);
         DVec4::from_array(ln.to_array().map(f64::exp))
+    }
+}
+
+/// [`Field::scattered`] at one altitude, for suns whose elevations differ little.
+#[derive(Clone, Debug)]
+pub struct Level<'t> {
+    grid: Grid,
+    at: Row<'t>,
+    /// The column of the last sun, and what it and the next one hold here.
+    columns: Option<(usize, [[DVec4; COEFFICIENTS]; 2])>,
+}
+
+impl Level<'_> {
+    /// As [`Field::scattered`], in a direction with the first polynomials `low` ([`basis`]) and the others `high` ([`legendre_3_to_6`]).
+    pub fn scattered(&mut self, sun_sine: f64, low: &[f64; 5], high: &[f64; 4]) -> DVec4 {
+        let column = self.grid.column(sun_sine);
+        let j = (column as usize).min(self.grid.suns - 2);
+        let at = &self.at;
+        let (_, [a, b]) = match &mut self.columns {
+            Some(known) if known.0 == j => known,
+            other => other.insert((j, [at.column(j), at.column(j + 1)])),
+        };
+        let share = column - j as f64;
+        let sum = |of: &[DVec4; COEFFICIENTS]| {
+            let values = low.iter().chain(high).zip(&of[1..]);
+            values.fold(at.scattering[0], |sum, (value, c)| sum + *c * *value)
+        };
+        let (sum, ln) = (sum(a).lerp(sum(b), share), a[0].lerp(b[0], share));
+        (DVec4::from_array(ln.to_array().map(f64::exp)) * sum).max(DVec4::ZERO)
+    }
+}
+
+/// Two rows of the table and what is scattered between them.
+#[derive(Clone, Debug)]
+struct Row<'t> {
+    texels: [&'t [[[f32; 4]; COEFFICIENTS]]; 2],
+    /// Share of the second row.
+    share: f64,
+    scattering: [DVec4; 7],
+}
+
+impl Row<'_> {
+    /// ln J in column `j`, then the other coefficients, scattered.
+    fn column(&self, j: usize) -> [DVec4; COEFFICIENTS] {
+        let [low, high] = self.texels.map(|row| &row[j]);
+        std::array::from_fn(|c| {
+            let here = wide(low[c]).lerp(wide(high[c]), self.share);
+            if c == 0 {
+                here
+            } else {
+                here * self.scattering[DEGREES[c]]
+            }
+        })
     }
 }
 

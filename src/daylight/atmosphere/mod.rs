@@ -17,13 +17,14 @@ pub mod columns;
 pub mod field;
 pub mod medium;
 pub mod path;
+mod ring;
 pub mod scattered_sky;
 pub mod sky_view;
 pub mod solve;
 mod solved;
 
 use std::f64::consts::PI;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use glam::{DVec3, DVec4};
 
@@ -42,6 +43,10 @@ use super::sunlight::{SUN_ANGULAR_RADIUS, visible_fraction};
 pub const VIEW_CELLS: usize = 24;
 /// Cells of a path to the ground, which is shorter.
 pub const GROUND_CELLS: usize = 12;
+
+/// Nodes of the columns toward the sun, and of elevations and azimuths of the sky.
+static SUN_NODES: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| gauss_legendre(64));
+static SKY_NODES: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| gauss_legendre(16));
 
 /// Share of the sun's disc above the horizon of the ground, seen from the radius `r` (km), with its centre at the sine of elevation `sine`.
 pub fn sun_share(r: f64, sine: f64) -> f64 {
@@ -259,8 +264,7 @@ impl Atmosphere {
         let r = self.observer();
         let mu = sine.max(horizon_cosine(r));
         let length = columns::distance_to_top(r, mu);
-        let nodes = gauss_legendre(64);
-        let columns = columns::exact(r, mu, length, self.medium.scale_height, &nodes);
+        let columns = columns::exact(r, mu, length, self.medium.scale_height, &SUN_NODES);
         let transmittance = colour::all_wavelengths().map(|nm| {
             let depth = Medium::new(&self.air, nm).optical_depth(columns);
             each(depth, |d| (-d).exp())
@@ -272,19 +276,21 @@ impl Atmosphere {
     /// clipped.
     pub fn diffuse_illuminance(&self, sun_sine: f64) -> DVec3 {
         let sun_cosine = (1.0 - sun_sine * sun_sine).max(0.0).sqrt();
-        let (elevations, azimuths) = (gauss_legendre(16), gauss_legendre(16));
         let mut sum = DVec4::ZERO;
-        for (x, weight) in &elevations {
+        for (x, weight) in &*SKY_NODES {
             // Points in the square root of the elevation: the sky changes most at the horizon.
             let elevation = 0.5 * PI * x * x;
             let (mu, across) = elevation.sin_cos();
             let share = PI * x * weight * mu * across;
-            for (y, weight) in &azimuths {
-                // Both halves; more points near the sun.
+            let cos_gammas = SKY_NODES.iter().map(|(y, _)| {
+                // More points near the sun.
                 let azimuth = PI * y * y;
-                let share = share * 4.0 * PI * y * weight;
-                let cos_gamma = mu * sun_sine + across * sun_cosine * azimuth.cos();
-                sum += self.transfer(sun_sine, mu, cos_gamma.clamp(-1.0, 1.0), false) * share;
+                (mu * sun_sine + across * sun_cosine * azimuth.cos()).clamp(-1.0, 1.0)
+            });
+            let ring = self.transfers(sun_sine, mu, cos_gammas, false);
+            for (transfer, (y, weight)) in ring.into_iter().zip(&*SKY_NODES) {
+                // Both halves.
+                sum += transfer * (share * 4.0 * PI * y * weight);
             }
         }
         rgb_from_xyz(colour::xyz(sum))

@@ -17,26 +17,32 @@ pub const FAINT: f64 = 3e-5;
 /// than 0.4 % of the night in every direction.
 pub const MOON_TWILIGHT_DEG: f64 = -10.0;
 
-/// A light outside the air, and the whole view of the air that it lights, which is made when it is first looked at.
+/// A light outside the air, and what the air that it lights looks like, which is found when it is first asked for.
 #[derive(Clone)]
 pub struct AirLight {
     /// Unit vector toward the true light.
     pub direction: DVec3,
     /// Illuminance outside the air over the sun's; the spectrum is the sun's.
     pub share: f64,
-    /// Illuminance by the lit air of a horizontal plane that faces up, linear BT.709 RGB, lux, not clipped.
-    pub irradiance_up: DVec3,
+    irradiance_up: Arc<OnceLock<DVec3>>,
     view: Arc<OnceLock<SkyView>>,
 }
 
 impl AirLight {
-    fn new(atmosphere: &Atmosphere, direction: DVec3, share: f64) -> Self {
+    fn new(direction: DVec3, share: f64) -> Self {
         Self {
             direction,
             share,
-            irradiance_up: atmosphere.diffuse_illuminance(direction.y) * share,
+            irradiance_up: Arc::default(),
             view: Arc::default(),
         }
+    }
+
+    /// Illuminance by the lit air of a horizontal plane that faces up, linear BT.709 RGB, lux, not clipped. Found when it is first asked for: a
+    /// picture from the eye's own altitude needs the light, but not this.
+    pub fn irradiance_up(&self, atmosphere: &Atmosphere) -> DVec3 {
+        let find = || atmosphere.diffuse_illuminance(self.direction.y) * self.share;
+        *self.irradiance_up.get_or_init(find)
     }
 
     /// The view of the air under the sun in this direction; this light's is [`Self::share`] of it.
@@ -67,7 +73,7 @@ impl ScatteredSky {
     /// The sky under the true sun in the unit direction `sun`.
     pub fn new(atmosphere: Atmosphere, sun: DVec3) -> Self {
         Self {
-            sun: AirLight::new(&atmosphere, sun, 1.0),
+            sun: AirLight::new(sun, 1.0),
             moon: None,
             atmosphere,
         }
@@ -77,18 +83,18 @@ impl ScatteredSky {
     /// is too [`FAINT`] or too far below the horizon ([`MOON_TWILIGHT_DEG`]).
     #[must_use]
     pub fn with_moon(mut self, direction: DVec3, lux: f64) -> Self {
-        let is_bright = lux > FAINT * colour::luminance(self.sun.irradiance_up);
+        let is_bright = lux > FAINT * colour::luminance(self.sun.irradiance_up(&self.atmosphere));
         let counts = is_bright && direction.y > MOON_TWILIGHT_DEG.to_radians().sin();
         self.moon = counts.then(|| {
             let share = lux / Atmosphere::sun_outside_lux();
-            AirLight::new(&self.atmosphere, direction, share)
+            AirLight::new(direction, share)
         });
         self
     }
 
     /// The light of which the air scatters more: the sun or the moon.
     pub fn brighter(&self) -> &AirLight {
-        let lux = |light: &AirLight| colour::luminance(light.irradiance_up);
+        let lux = |light: &AirLight| colour::luminance(light.irradiance_up(&self.atmosphere));
         let moon = self.moon.as_ref();
         moon.filter(|moon| lux(moon) > lux(&self.sun))
             .unwrap_or(&self.sun)
@@ -99,7 +105,7 @@ impl ScatteredSky {
     pub fn from_altitude(&self, altitude_m: f64) -> Self {
         let mut atmosphere = self.atmosphere.clone();
         atmosphere.air.altitude_m = altitude_m;
-        let seen = |light: &AirLight| AirLight::new(&atmosphere, light.direction, light.share);
+        let seen = |light: &AirLight| AirLight::new(light.direction, light.share);
         Self {
             sun: seen(&self.sun),
             moon: self.moon.as_ref().map(seen),
@@ -125,7 +131,9 @@ impl ScatteredSky {
 
     /// Illuminance of a horizontal plane that faces up, linear BT.709 RGB, lux, not clipped.
     pub fn irradiance_up(&self) -> DVec3 {
-        self.lights().map(|light| light.irradiance_up).sum()
+        self.lights()
+            .map(|light| light.irradiance_up(&self.atmosphere))
+            .sum()
     }
 
     /// Radiance of the ground at sea level, direct light included, linear BT.709 RGB, cd/m², not clipped.

@@ -31,18 +31,22 @@ impl SkyView {
     /// The view under the (true) sun in the unit direction `sun`.
     pub fn new(atmosphere: &Atmosphere, sun: DVec3) -> Self {
         let horizon = horizon_cosine(atmosphere.observer()).asin();
-        let rows = (0..2 * HALF_HEIGHT).flat_map(|j| (0..WIDTH).map(move |i| (i, j)));
         let across = (1.0 - sun.y * sun.y).max(0.0).sqrt();
-        let entry = |(i, j): (usize, usize)| {
+        let row = |j: usize| {
             let (elevation, below) = elevation_of_row(j, horizon);
-            let x = i as f64 / (WIDTH - 1) as f64;
             let (mu, horizontal) = elevation.sin_cos();
-            let cos_gamma = mu * sun.y + horizontal * across * (PI * x * x).cos();
-            let transfer = atmosphere.transfer(sun.y, mu, cos_gamma.clamp(-1.0, 1.0), below);
-            rgb_from_xyz(colour::xyz(transfer))
+            let cos_gammas = (0..WIDTH).map(|i| {
+                let x = i as f64 / (WIDTH - 1) as f64;
+                let cos_gamma = mu * sun.y + horizontal * across * (PI * x * x).cos();
+                cos_gamma.clamp(-1.0, 1.0)
+            });
+            atmosphere.transfers(sun.y, mu, cos_gammas, below)
         };
+        let transfers = (0..2 * HALF_HEIGHT).flat_map(row);
         Self {
-            entries: rows.map(entry).collect(),
+            entries: transfers
+                .map(|transfer| rgb_from_xyz(colour::xyz(transfer)))
+                .collect(),
             horizon,
             toward_sun: toward(sun),
         }

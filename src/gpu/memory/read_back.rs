@@ -127,12 +127,51 @@ fn copy(recorder: &Recorder, image: &Image, target: &Buffer, region: vk::BufferI
 /// # Errors
 /// When device memory is exhausted or the device is lost.
 pub fn read_back(recorder: &mut Recorder, image: &Image) -> Result<Pixels> {
+    let target = downloaded(recorder, image)?;
+    Ok(Pixels {
+        size: image.size(),
+        layers: image.layers(),
+        channels: shape(image.format()).0,
+        bytes: target.bytes()[..bytes_of(image)].to_vec(),
+        format: image.format(),
+    })
+}
+
+/// The texels of an image with these numbers, counted along its rows: their first four channels, as [`Pixels::rgba`] has them. As [`read_back`],
+/// without copying the others once more.
+///
+/// # Errors
+/// When device memory is exhausted or the device is lost.
+///
+/// # Panics
+/// When a number is not below that of the image's texels.
+pub fn read_texels(
+    recorder: &mut Recorder,
+    image: &Image,
+    numbers: &[usize],
+) -> Result<Vec<[f32; 4]>> {
+    let target = downloaded(recorder, image)?;
+    let (channels, width) = shape(image.format());
+    let texels = &target.bytes()[..bytes_of(image)];
+    let texel = |number: &usize| &texels[number * channels * width..][..channels * width];
+    let gathered: Vec<u8> = numbers.iter().flat_map(texel).copied().collect();
+    let floats = floats(image.format(), &gathered);
+    Ok(floats.chunks_exact(channels).map(four).collect())
+}
+
+/// Bytes of the first mip level of an image.
+fn bytes_of(image: &Image) -> usize {
     let (channels, width) = shape(image.format());
     let [columns, rows] = image.size();
-    let texels = columns as usize * rows as usize * image.layers() as usize;
-    let bytes = texels * channels * width;
+    columns as usize * rows as usize * image.layers() as usize * channels * width
+}
+
+/// A buffer with all texels of an image.
+fn downloaded(recorder: &mut Recorder, image: &Image) -> Result<Buffer> {
+    let [columns, rows] = image.size();
     let name = format!("read-back of {}", image.name());
-    let target = Buffer::new(&recorder.context, &name, BufferKind::ReadBack, bytes as u64)?;
+    let bytes = bytes_of(image) as u64;
+    let target = Buffer::new(&recorder.context, &name, BufferKind::ReadBack, bytes)?;
     recorder.begin()?;
     let region = vk::BufferImageCopy::default().image_extent(vk::Extent3D {
         width: columns,
@@ -141,13 +180,7 @@ pub fn read_back(recorder: &mut Recorder, image: &Image) -> Result<Pixels> {
     });
     copy(recorder, image, &target, region);
     recorder.finish()?;
-    Ok(Pixels {
-        size: image.size(),
-        layers: image.layers(),
-        channels,
-        bytes: target.bytes()[..bytes].to_vec(),
-        format: image.format(),
-    })
+    Ok(target)
 }
 
 impl Pixels {

@@ -10,6 +10,8 @@ mod limits_tests;
 pub(in crate::gpu) mod route;
 pub(in crate::gpu) mod shader;
 mod state;
+#[cfg(test)]
+mod uniform_branches_tests;
 
 use std::sync::Arc;
 use std::time::Instant;

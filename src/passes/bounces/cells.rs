@@ -52,8 +52,11 @@ const PATHS: u32 = 1 << 12;
 const UPDATES: u32 = 1 << 13;
 const SEEN_UPDATES: u32 = 1 << 12;
 
-/// Paths of a young cell in a round of a moving view.
+/// Paths of a young cell in a round of a moving view; and where all cells are young, as that many of each would make frames long.
 const YOUNG_PATHS: u32 = 4;
+const PATHS_OF_ALL_YOUNG: u32 = 2;
+/// Paths up to which a cell is young, as in `include/cell_table.glsl`.
+const YOUNG: f32 = 32.0;
 
 /// Edge of the smallest cells, metres, in scenes larger than a room.
 const CELL: f32 = 0.25;
@@ -70,7 +73,8 @@ const SEGMENTS_OF_LAMPS: u32 = 8;
 /// Rounds in which new cells are filled, whatever the budget.
 const FIRST_ROUNDS: u32 = 16;
 
-/// Rounds in the frame in which the light has jumped.
+/// Rounds of all cells, one a frame, after a change of the light that leaves them young: the first shows the new light, with few paths, and the
+/// others make it less noisy.
 const JUMP_ROUNDS: u32 = 4;
 
 /// Most paths that the old mean of a cell counts for after a small change of the light.
@@ -182,6 +186,10 @@ pub struct Cells {
     held: Option<Held>,
     /// Rounds so far.
     round: u32,
+    /// Rounds of all cells that the last jump of the light still asks for.
+    owed: u32,
+    /// Paths that the mean of each cell counts for at least, but for cells that are new.
+    grown: f32,
     /// The view of the whole picture for which they were last filled anew.
     filled_for: Option<ViewBlock>,
 }
@@ -276,6 +284,8 @@ impl Cells {
             },
             held: None,
             round: 0,
+            owed: 0,
+            grown: 0.0,
             filled_for: None,
         })
     }
@@ -289,7 +299,7 @@ impl Cells {
         for image in [&self.cells, &self.planes] {
             recorder.clear(image, [0.0; 4]);
         }
-        self.round = 0;
+        (self.round, self.owed, self.grown) = (0, 0, 0.0);
     }
 
     /// Records the work of a frame: creates cells in view and beyond, and adds paths to them. Light that has changed starts from the
@@ -319,19 +329,8 @@ impl Cells {
         }
         let old = self.held.as_ref();
         let change = old.map_or(0.0, |old| change(&old.daylight, around.daylight));
-        let (rounds, seeds, paths) = match work {
-            Work::Anew => (FIRST_ROUNDS, PATHS, None),
-            // What few previews, or none of this light, have begun is filled before it is averaged.
-            Work::Rounds(rounds) => {
-                let missing = FIRST_ROUNDS.saturating_sub(self.round);
-                (rounds.max(missing), PATHS, None)
-            }
-            // All cells follow the light; new ones are filled at once.
-            Work::Paths(_) if change >= 1.0 => (JUMP_ROUNDS, PATHS, None),
-            Work::Paths(_) if change > 0.0 || self.round < FIRST_ROUNDS => (1, PATHS, None),
-            Work::Paths(0) => (0, 0, None),
-            Work::Paths(paths) => (1, (paths / PATH_POINTS).clamp(1, PATHS), Some(paths)),
-        };
+        let (rounds, seeds, paths) = self.work(work, change);
+        self.owed = self.owed.saturating_sub(rounds);
         for _ in 0..rounds {
             let mut update = update_push(self.held.as_ref(), &held, around.tree.is_emissive());
             if let Some(paths) = paths {
@@ -340,14 +339,46 @@ impl Cells {
                 update.paths = paths - update.seen;
                 update.turns = update.paths;
                 update.first = self.round.wrapping_mul(update.turns);
-                update.young = YOUNG_PATHS;
+                update.young = if self.grown < YOUNG {
+                    PATHS_OF_ALL_YOUNG
+                } else {
+                    YOUNG_PATHS
+                };
             }
+            self.grown = self.grown.min(update.most) + update.young as f32;
             self.held = Some(held.clone());
             self.seed(recorder, around, seeds);
             self.update(recorder, around, &update);
             self.publish(recorder, around, &update);
             self.round += 1;
         }
+    }
+
+    /// Rounds, paths from the eye in each, and paths from the cells unless every cell gets one. `change` is that of the light, 1 for a jump.
+    fn work(&mut self, work: Work, change: f64) -> (u32, u32, Option<u32>) {
+        if change > 0.0 && kept(change) < YOUNG && matches!(work, Work::Paths(_)) {
+            self.owed = JUMP_ROUNDS;
+        }
+        let is_owed = self.owed > 0;
+        match work {
+            Work::Anew => (FIRST_ROUNDS, PATHS, None),
+            // What few previews, or none of this light, have begun is filled before it is averaged.
+            Work::Rounds(rounds) => {
+                let missing = FIRST_ROUNDS.saturating_sub(self.round);
+                (rounds.max(missing).max(is_owed.into()), PATHS, None)
+            }
+            // All cells follow the light; new ones are filled at once.
+            Work::Paths(_) if change > 0.0 || is_owed || self.round < FIRST_ROUNDS => {
+                (1, PATHS, None)
+            }
+            Work::Paths(0) => (0, 0, None),
+            Work::Paths(paths) => (1, (paths / PATH_POINTS).clamp(1, PATHS), Some(paths)),
+        }
+    }
+
+    /// Rounds since the cells were last cleared.
+    pub fn rounds(&self) -> u32 {
+        self.round
     }
 
     /// The shader's block.
@@ -437,6 +468,11 @@ impl Cells {
     }
 }
 
+/// Paths that the old mean of a cell counts for after a change of the light, above 0.
+fn kept(change: f64) -> f32 {
+    (1.0 / change - 1.0).clamp(0.0, MOST_KEPT) as f32
+}
+
 /// The update that brings cells from the light that they hold to a new one. `is_emissive`: lamps light the scene, and their light
 /// does not follow that of the sky.
 fn update_push(old: Option<&Held>, new: &Held, is_emissive: bool) -> UpdatePush {
@@ -449,8 +485,7 @@ fn update_push(old: Option<&Held>, new: &Held, is_emissive: bool) -> UpdatePush 
     let factor = |of: fn(&Daylight) -> DVec3| {
         changed.map_or(Vec3::ONE, |old| ratio(of(&new.daylight), of(&old.daylight)))
     };
-    let kept =
-        changed.map(|old| (1.0 / change(&old.daylight, &new.daylight) - 1.0).clamp(0.0, MOST_KEPT));
+    let kept = changed.map(|old| kept(change(&old.daylight, &new.daylight)));
     UpdatePush {
         segments,
         ends_in_cell,
@@ -460,7 +495,7 @@ fn update_push(old: Option<&Held>, new: &Held, is_emissive: bool) -> UpdatePush 
         // A round of all cells is one of many.
         young: 1,
         seen: SEEN_UPDATES,
-        most: kept.map_or(f32::MAX, |paths| paths as f32),
+        most: kept.unwrap_or(f32::MAX),
         sky_change: factor(|day| day.sky_irradiance_up),
         bounce_change: if is_emissive {
             Vec3::ONE

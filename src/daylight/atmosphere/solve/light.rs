@@ -63,7 +63,7 @@ impl Solver<'_> {
 
     /// Sunlight at the radius `r`, for all elevations of the sun.
     fn sunlight_at(&self, r: f64) -> SunlightAt {
-        let y = columns::coordinates(r, 1.0)[1];
+        let y = columns::row(r);
         let row = (y as usize).min(columns::HEIGHT - 2);
         let f = f32x4::splat((y - row as f64) as f32);
         let (a, b) = (row * columns::WIDTH, (row + 1) * columns::WIDTH);

@@ -170,7 +170,10 @@ fn without_a_radius_nothing_occludes() {
     for downscale in [1, 2] {
         let camera = camera([2.0, 2.0, 3.0], [0.0, 0.2, 0.0]);
         let picture = occlusion(&mut device, &scene, &camera, 0.0, downscale);
-        let off = picture.pixels().filter(|(_, a)| (a.x - 1.0).abs() > 1e-6).count();
+        let off = picture
+            .pixels()
+            .filter(|(_, a)| (a.x - 1.0).abs() > 1e-6)
+            .count();
         println!("{} pixels, {off} of them are not 1", picture.texels.len());
         assert_eq!(off, 0);
     }
@@ -198,7 +201,10 @@ fn occlusion_stays_within_nothing_and_everything() {
                 let picture = occlusion(&mut device, &scene, &camera, radius, downscale);
                 for (pixel, a) in picture.pixels() {
                     // A device may divide with an error of some steps.
-                    assert!((0.0..=1.0 + 1e-6).contains(&a.x), "{a} at {pixel:?} from {eye:?}");
+                    assert!(
+                        (0.0..=1.0 + 1e-6).contains(&a.x),
+                        "{a} at {pixel:?} from {eye:?}"
+                    );
                     count += 1;
                     darkest = darkest.min(a.x);
                 }

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
+use bytemuck::cast_slice;
 use glam::Vec3;
 
 use crate::daylight::glass::internal_transmittance;
@@ -14,7 +15,7 @@ use crate::scene::{self, Bounds, Cluster, Layout, Scene, Texture, Wrap};
 
 use crate::passes::surfaces::culling::{Cull, Runs};
 use crate::passes::surfaces::facts::Facts;
-use crate::passes::surfaces::triangles::{are_numbered, material_numbers};
+use crate::passes::surfaces::triangles::upload_material_numbers;
 use crate::passes::surfaces::upload::{surface, upload, upload_details, upload_materials, white};
 use crate::passes::view::View;
 
@@ -175,18 +176,11 @@ impl Geometry {
         let casting = joined_ranges(parts.iter().filter(|p| p.casts && !p.kind.cut_out));
         let cast = casting.iter().flat_map(|r| &clusters[r.clone()]);
         let largest = size_of_val(scene.positions.as_slice()).max(size_of_val(&*indices));
-        let plain = || parts.iter().any(|p| p.kind == Kind::default());
-        let is_numbered = are_numbered(recorder.context(), largest as u64) && plain();
-        let material_numbers = is_numbered
-            .then(|| {
-                let numbers = material_numbers(&parts, &clusters, indices.len() / 3);
-                let (name, bytes) = ("materials of triangles", bytemuck::cast_slice(&numbers));
-                upload_buffer(recorder, name, BufferKind::Storage, bytes)
-            })
-            .transpose()?;
+        let material_numbers =
+            upload_material_numbers(recorder, (&parts, &clusters), indices.len() / 3, largest)?;
         let facts = Facts {
             has_panes: !panes.is_empty(),
-            is_numbered,
+            is_numbered: material_numbers.is_some(),
             casting_triangles: cast.map(|cluster| cluster.count as usize / 3).sum(),
             ..facts(scene, &parts, &surfaces)
         };
@@ -196,23 +190,10 @@ impl Geometry {
             None
         };
         Ok(Self {
-            positions: vertex(
-                recorder,
-                "positions",
-                bytemuck::cast_slice(&scene.positions),
-            )?,
-            normals: vertex(recorder, "normals", bytemuck::cast_slice(&scene.normals))?,
-            texcoords: vertex(
-                recorder,
-                "texcoords",
-                bytemuck::cast_slice(&scene.texcoords),
-            )?,
-            indices: upload_buffer(
-                recorder,
-                "indices",
-                BufferKind::Index,
-                bytemuck::cast_slice(&indices),
-            )?,
+            positions: vertex(recorder, "positions", cast_slice(&scene.positions))?,
+            normals: vertex(recorder, "normals", cast_slice(&scene.normals))?,
+            texcoords: vertex(recorder, "texcoords", cast_slice(&scene.texcoords))?,
+            indices: upload_buffer(recorder, "indices", BufferKind::Index, cast_slice(&indices))?,
             material_numbers,
             clusters,
             details,

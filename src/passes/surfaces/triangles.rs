@@ -6,15 +6,15 @@
 use std::sync::Arc;
 
 use crate::gpu::{
-    Blend, Context, Depth, Format, Image, ImageDesc, Load, Optional, Pipeline, PipelineDesc,
-    Recorder, Result, Route, Sampler, Shader, shaders,
+    Blend, Buffer, BufferKind, Context, Depth, Format, Image, ImageDesc, Load, Optional, Pipeline,
+    PipelineDesc, Recorder, Result, Route, Sampler, Shader, shaders, upload_buffer,
 };
 use crate::gpu_struct;
 
 use crate::passes::compute;
 use crate::passes::surfaces::culling::Cull;
 use crate::passes::surfaces::gbuffer::Surfaces;
-use crate::passes::surfaces::geometry::{Geometry, Part};
+use crate::passes::surfaces::geometry::{Geometry, Kind, Part};
 use crate::passes::surfaces::upload::MATERIAL_COLUMNS;
 use crate::passes::view::View;
 use crate::scene::Cluster;
@@ -31,19 +31,40 @@ gpu_struct! {
 const NUMBER: Format = Format::R32_UINT;
 
 /// Whether a device draws surfaces without maps like this. `bytes`: size of the largest buffer of the geometry.
-pub(in crate::passes) fn are_numbered(context: &Context, bytes: u64) -> bool {
+fn are_numbered(context: &Context, bytes: usize) -> bool {
     context.route() == Route::Compute
         // Fragments have the number of their primitive from there.
         && context.summary().has(Optional::GeometryShader)
-        && bytes <= context.largest_storage_buffer()
+        && bytes as u64 <= context.largest_storage_buffer()
 }
 
-/// The material of each triangle of the index buffer.
-pub(in crate::passes) fn material_numbers(
-    parts: &[Part],
-    clusters: &[Cluster],
+/// The material of each triangle of the index buffer, where surfaces are drawn like this and there are any without maps. `bytes`: size of the
+/// largest buffer of the geometry.
+///
+/// # Errors
+/// Fails when the device is out of memory.
+pub(in crate::passes) fn upload_material_numbers(
+    recorder: &mut Recorder,
+    (parts, clusters): (&[Part], &[Cluster]),
     triangles: usize,
-) -> Vec<u32> {
+    bytes: usize,
+) -> Result<Option<Buffer>> {
+    let are_plain = parts.iter().any(|p| p.kind == Kind::default());
+    if !are_plain || !are_numbered(recorder.context(), bytes) {
+        return Ok(None);
+    }
+    let numbers = material_numbers(parts, clusters, triangles);
+    let bytes = bytemuck::cast_slice(&numbers);
+    upload_buffer(
+        recorder,
+        "materials of triangles",
+        BufferKind::Storage,
+        bytes,
+    )
+    .map(Some)
+}
+
+fn material_numbers(parts: &[Part], clusters: &[Cluster], triangles: usize) -> Vec<u32> {
     let mut numbers = vec![0; triangles];
     for part in parts {
         for cluster in &clusters[part.clusters.clone()] {
@@ -144,7 +165,6 @@ impl Triangles {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::passes::surfaces::geometry::Kind;
     use crate::scene::Bounds;
 
     #[test]

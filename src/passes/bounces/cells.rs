@@ -52,9 +52,9 @@ const PATHS: u32 = 1 << 12;
 const UPDATES: u32 = 1 << 13;
 const SEEN_UPDATES: u32 = 1 << 12;
 
-/// Paths of a young cell in a round of a moving view; and where all cells are young, as that many of each would make frames long.
+/// Paths of a young cell in a round of a moving view; and where all cells are young, of which that many each would make frames long.
 const YOUNG_PATHS: u32 = 4;
-const PATHS_OF_ALL_YOUNG: u32 = 2;
+const PATHS_OF_ALL_YOUNG: u32 = 1;
 /// Paths up to which a cell is young, as in `include/cell_table.glsl`.
 const YOUNG: f32 = 32.0;
 
@@ -72,10 +72,6 @@ const SEGMENTS_OF_LAMPS: u32 = 8;
 
 /// Rounds in which new cells are filled, whatever the budget.
 const FIRST_ROUNDS: u32 = 16;
-
-/// Rounds of all cells, one a frame, after a change of the light that leaves them young: the first shows the new light, with few paths, and the
-/// others make it less noisy.
-const JUMP_ROUNDS: u32 = 4;
 
 /// Most paths that the old mean of a cell counts for after a small change of the light.
 const MOST_KEPT: f64 = 64.0;
@@ -186,8 +182,6 @@ pub struct Cells {
     held: Option<Held>,
     /// Rounds so far.
     round: u32,
-    /// Rounds of all cells that the last jump of the light still asks for.
-    owed: u32,
     /// Paths that the mean of each cell counts for at least, but for cells that are new.
     grown: f32,
     /// The view of the whole picture for which they were last filled anew.
@@ -284,7 +278,6 @@ impl Cells {
             },
             held: None,
             round: 0,
-            owed: 0,
             grown: 0.0,
             filled_for: None,
         })
@@ -299,7 +292,7 @@ impl Cells {
         for image in [&self.cells, &self.planes] {
             recorder.clear(image, [0.0; 4]);
         }
-        (self.round, self.owed, self.grown) = (0, 0, 0.0);
+        (self.round, self.grown) = (0, 0.0);
     }
 
     /// Records the work of a frame: creates cells in view and beyond, and adds paths to them. Light that has changed starts from the
@@ -329,8 +322,7 @@ impl Cells {
         }
         let old = self.held.as_ref();
         let change = old.map_or(0.0, |old| change(&old.daylight, around.daylight));
-        let (rounds, seeds, paths) = self.work(work, change);
-        self.owed = self.owed.saturating_sub(rounds);
+        let (rounds, seeds, paths) = self.work(work, change > 0.0);
         for _ in 0..rounds {
             let mut update = update_push(self.held.as_ref(), &held, around.tree.is_emissive());
             if let Some(paths) = paths {
@@ -354,25 +346,22 @@ impl Cells {
         }
     }
 
-    /// Rounds, paths from the eye in each, and paths from the cells unless every cell gets one. `change` is that of the light, 1 for a jump.
-    fn work(&mut self, work: Work, change: f64) -> (u32, u32, Option<u32>) {
-        if change > 0.0 && kept(change) < YOUNG && matches!(work, Work::Paths(_)) {
-            self.owed = JUMP_ROUNDS;
-        }
-        let is_owed = self.owed > 0;
+    /// Rounds, paths from the eye in each, and paths from the cells unless every cell gets one.
+    fn work(&self, work: Work, is_changed: bool) -> (u32, u32, Option<u32>) {
+        let seeds = |paths: u32| (paths / PATH_POINTS).clamp(1, PATHS);
         match work {
             Work::Anew => (FIRST_ROUNDS, PATHS, None),
             // What few previews, or none of this light, have begun is filled before it is averaged.
             Work::Rounds(rounds) => {
                 let missing = FIRST_ROUNDS.saturating_sub(self.round);
-                (rounds.max(missing).max(is_owed.into()), PATHS, None)
+                (rounds.max(missing), PATHS, None)
             }
-            // All cells follow the light; new ones are filled at once.
-            Work::Paths(_) if change > 0.0 || is_owed || self.round < FIRST_ROUNDS => {
-                (1, PATHS, None)
-            }
+            // New cells are filled at once.
+            Work::Paths(_) if self.round < FIRST_ROUNDS => (1, PATHS, None),
+            // All cells follow the light.
+            Work::Paths(paths) if is_changed => (1, seeds(paths), None),
             Work::Paths(0) => (0, 0, None),
-            Work::Paths(paths) => (1, (paths / PATH_POINTS).clamp(1, PATHS), Some(paths)),
+            Work::Paths(paths) => (1, seeds(paths), Some(paths)),
         }
     }
 

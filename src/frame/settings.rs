@@ -6,7 +6,7 @@ use glam::UVec2;
 
 use super::ambient::AmbientNeed;
 use super::{AntiAliasing, Sampling, Visibility};
-use crate::gpu::{Context, Result, Route};
+use crate::gpu::{Context, Result};
 use crate::passes::bounces::cells::{Bounces, Cells};
 use crate::passes::bounces::tree::{RayConstants, TreeFacts};
 use crate::passes::dome::route::{DomeBy, Work};
@@ -280,14 +280,14 @@ impl FrameSettings {
         self.lighting.air &= facts.bounds.diagonal() >= LEAST_SCENE;
         self.lighting.has_albedo = facts.has_albedo();
         self.lighting.emission = facts.emission_source;
-        self.sampling.dome.by = self.dome_by(facts, context.route());
+        self.sampling.dome.by = self.dome_by(facts, context.is_short_of_raster_units());
         self.lighting.sun_by_rays = self.converges() && self.sampling.dome.by == DomeBy::Rays;
         self.lighting.cut_outs = facts.has_cut_outs();
         self
     }
 
     /// Maps or rays of the dome: what serves better, but maps where lobes look light up in them.
-    fn dome_by(&self, facts: &Facts, route: Route) -> DomeBy {
+    fn dome_by(&self, facts: &Facts, is_short_of_raster_units: bool) -> DomeBy {
         if self.lighting.mirrors.reflections == Reflections::Hidden {
             return DomeBy::Maps;
         }
@@ -297,7 +297,7 @@ impl FrameSettings {
             pixels: u64::from(size.x) * u64::from(size.y),
             texels: u64::from(dome.map_edge).pow(2),
             texel: facts.casters.extent().max_element() / dome.map_edge as f32,
-            route,
+            is_short_of_raster_units,
         })
     }
 }

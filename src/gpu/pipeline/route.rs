@@ -16,6 +16,9 @@ const MAGIC: &str = "skylight-route-1";
 const MAX_BYTES: u64 = 256;
 /// Fraction of the fragments' time below which compute is worth it: where both are equal, the depth test does the selecting for nothing.
 const WORTH: f64 = 0.9;
+/// Fragments' time over that of compute from which on a device is short of raster units: 13 on a card of a data centre, a little above or below 1 on
+/// others.
+const SHORT: f64 = 4.0;
 
 /// Times of the same work by both routes, milliseconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,6 +39,11 @@ impl RouteTimes {
         }
     }
 
+    /// Whether the device is short of raster units, as cards of data centres are.
+    pub fn is_short_of_raster_units(self) -> bool {
+        self.fragment > SHORT * self.compute
+    }
+
     fn encode(self, key: &Key) -> String {
         let Self { fragment, compute } = self;
         format!("{MAGIC} {} {fragment} {compute}\n", key.text())
@@ -54,9 +62,31 @@ impl RouteTimes {
     }
 }
 
+/// A route, and the times by which it was chosen; `None` if it was asked for, or there is no other.
+#[derive(Clone, Copy)]
+struct Chosen {
+    route: Route,
+    times: Option<RouteTimes>,
+}
+
+impl From<RouteTimes> for Chosen {
+    fn from(times: RouteTimes) -> Self {
+        Self {
+            route: times.faster(),
+            times: Some(times),
+        }
+    }
+}
+
+impl From<Route> for Chosen {
+    fn from(route: Route) -> Self {
+        Self { route, times: None }
+    }
+}
+
 /// The route of a device, once it is known.
 pub(in crate::gpu) struct DeviceRoute {
-    chosen: OnceLock<Route>,
+    chosen: OnceLock<Chosen>,
     path: Option<PathBuf>,
     key: Key,
 }
@@ -73,13 +103,13 @@ impl DeviceRoute {
         let path = folder.map(|folder| folder.join(key.route_file()));
         let can_store = device.has(Optional::StoredPictures);
         let kept = || path.as_deref().and_then(|path| read(path, &key));
-        let route = if !can_store || (asked.is_none() && device.is_software()) {
-            Some(Route::Fragment)
+        let chosen = if !can_store || (asked.is_none() && device.is_software()) {
+            Some(Route::Fragment.into())
         } else {
-            asked.or_else(|| kept().map(RouteTimes::faster))
+            asked.map(Chosen::from).or_else(|| Some(kept()?.into()))
         };
         Self {
-            chosen: route.map_or_else(OnceLock::new, OnceLock::from),
+            chosen: chosen.map_or_else(OnceLock::new, OnceLock::from),
             path,
             key,
         }
@@ -96,7 +126,14 @@ fn read(path: &Path, key: &Key) -> Option<RouteTimes> {
 impl Context {
     /// How full-screen passes are computed: as asked for in [`crate::gpu::ContextOptions::route`], or the faster way once it is known.
     pub fn route(&self) -> Route {
-        self.route.chosen.get().copied().unwrap_or_default()
+        let chosen = self.route.chosen.get();
+        chosen.map_or_else(Route::default, |chosen| chosen.route)
+    }
+
+    /// Whether the device was measured to be short of raster units, see [`RouteTimes::is_short_of_raster_units`].
+    pub fn is_short_of_raster_units(&self) -> bool {
+        let times = self.route.chosen.get().and_then(|chosen| chosen.times);
+        times.is_some_and(RouteTimes::is_short_of_raster_units)
     }
 
     /// Whether [`Context::route`] does not change any more; otherwise [`Context::settle_route`] sets it.
@@ -106,7 +143,7 @@ impl Context {
 
     /// Sets the route by times that were measured, and keeps them for later runs. Nothing happens if it is settled.
     pub fn settle_route(&self, times: RouteTimes) {
-        if self.route.chosen.set(times.faster()).is_ok()
+        if self.route.chosen.set(times.into()).is_ok()
             && let Some(path) = &self.route.path
         {
             // Without the file the next run measures again.
@@ -125,6 +162,9 @@ mod tests {
         assert_eq!(route(0.22, 0.02), Route::Compute);
         assert_eq!(route(1.0, 0.95), Route::Fragment);
         assert_eq!(route(1.0, 1.7), Route::Fragment);
+        let is_short =
+            |fragment, compute| RouteTimes { fragment, compute }.is_short_of_raster_units();
+        assert!(is_short(0.22, 0.02) && !is_short(1.3, 1.0));
     }
 
     #[test]

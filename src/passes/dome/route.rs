@@ -3,13 +3,11 @@
 //! A map costs its triangles, whatever the size of the picture; rays cost the pixels, whatever the number of triangles.
 //! Both sample the same directions, so they converge alike, but a map loses what is smaller than its texels.
 
-use crate::gpu::Route;
-
 /// How the sky's visibility is found in the directions of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum DomeBy {
-    /// What costs less, by the numbers of triangles and pixels and the route of the device, where maps are fine enough: the same for the same
-    /// scene, options and route.
+    /// What costs less, by the numbers of triangles and pixels, where maps are fine enough: the same for the same scene and options on every
+    /// device, but for those that are short of raster units.
     #[default]
     Auto,
     /// A shadow map for each direction.
@@ -26,14 +24,14 @@ struct Costs {
 
 /// On lavapipe a million triangles take some 100 ms of CPU time more than none, and rays 33 ms for 230 400 pixels. Texels are left out: they are
 /// a constant that is small where either way is expensive.
-const BY_FRAGMENTS: Costs = Costs {
+const USUAL: Costs = Costs {
     triangle: 0.7,
     texel: 0.0,
 };
 
-/// Devices that compute faster than they rasterise trace faster too. On an NVIDIA H200 921 600 rays take 0.11 ms; a map of 1024² texels takes 0.33 ms
+/// Where raster units are few. On an NVIDIA H200 921 600 rays take 0.11 ms; a map of 1024² texels takes 0.33 ms
 /// with 96 000 triangles, and each further texel 0.2 ns.
-const BY_COMPUTE: Costs = Costs {
+const FEW_RASTER_UNITS: Costs = Costs {
     triangle: 10.0,
     texel: 1.7,
 };
@@ -53,17 +51,18 @@ pub struct Work {
     pub texels: u64,
     /// Edge of a texel of a map of all casters, metres.
     pub texel: f32,
-    /// Route of the device.
-    pub route: Route,
+    /// Whether the device is short of raster units.
+    pub is_short_of_raster_units: bool,
 }
 
 impl DomeBy {
     /// Maps or rays.
     #[must_use]
     pub fn chosen(self, work: Work) -> Self {
-        let costs = match work.route {
-            Route::Fragment => BY_FRAGMENTS,
-            Route::Compute => BY_COMPUTE,
+        let costs = if work.is_short_of_raster_units {
+            FEW_RASTER_UNITS
+        } else {
+            USUAL
         };
         let map = costs.triangle * work.triangles as f64 + costs.texel * work.texels as f64;
         let is_cheaper = map > work.pixels as f64;
@@ -85,7 +84,7 @@ mod tests {
             pixels,
             texels: 1 << 20,
             texel: 0.02,
-            route: Route::Fragment,
+            is_short_of_raster_units: false,
         }
     }
 
@@ -100,10 +99,10 @@ mod tests {
     }
 
     #[test]
-    fn devices_that_compute_faster_than_they_draw_take_rays_sooner() {
+    fn devices_short_of_raster_units_take_rays_sooner() {
         let auto = |triangles, pixels| {
             DomeBy::Auto.chosen(Work {
-                route: Route::Compute,
+                is_short_of_raster_units: true,
                 ..work(triangles, pixels)
             })
         };

@@ -6,7 +6,7 @@ use std::ops::{Deref, DerefMut};
 use glam::DVec3;
 use skylight::daylight::sky::Daylight;
 use skylight::frame::{Frame, FrameSettings};
-use skylight::gpu::{Context, ContextOptions, Image, Recorder};
+use skylight::gpu::{Context, ContextOptions, Image, Recorder, Route};
 use skylight::passes::light::lighting::Show;
 use skylight::scene::{Camera, Scene};
 use skylight::validate::check::Check;
@@ -41,10 +41,23 @@ impl DerefMut for Device {
     }
 }
 
+/// The route that SKYLIGHT_TEST_ROUTE names; without it that of the device.
+fn test_route() -> Option<Route> {
+    let name = std::env::var("SKYLIGHT_TEST_ROUTE").ok()?;
+    Some(match name.as_str() {
+        "fragment" => Route::Fragment,
+        "compute" => Route::Compute,
+        other => panic!("SKYLIGHT_TEST_ROUTE={other} is no route: it is fragment or compute"),
+    })
+}
+
 impl Device {
-    /// The best device, or the one named by SKYLIGHT_TEST_DEVICE.
+    /// The best device, or the one named by SKYLIGHT_TEST_DEVICE, by the route of SKYLIGHT_TEST_ROUTE.
     pub fn new() -> Self {
-        Self::with(&ContextOptions::default())
+        Self::with(&ContextOptions {
+            route: test_route(),
+            ..ContextOptions::default()
+        })
     }
 
     /// A device with these options; validation is always on.

@@ -52,18 +52,16 @@ fn test_route() -> Option<Route> {
 }
 
 impl Device {
-    /// The best device, or the one named by SKYLIGHT_TEST_DEVICE, by the route of SKYLIGHT_TEST_ROUTE.
+    /// The best device, or the one named by SKYLIGHT_TEST_DEVICE.
     pub fn new() -> Self {
-        Self::with(&ContextOptions {
-            route: test_route(),
-            ..ContextOptions::default()
-        })
+        Self::with(&ContextOptions::default())
     }
 
-    /// A device with these options; validation is always on.
+    /// A device with these options, by default by the route of SKYLIGHT_TEST_ROUTE; validation is always on.
     pub fn with(options: &ContextOptions) -> Self {
         let context = Context::new(&ContextOptions {
             device: std::env::var("SKYLIGHT_TEST_DEVICE").ok(),
+            route: options.route.or_else(test_route),
             validate: true,
             ..options.clone()
         })

@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use skylight::frame::AntiAliasing;
+use skylight::gpu::{ContextOptions, Route};
 use skylight::passes::picture::grid_cells::{GridCell, GridCells};
 use skylight::passes::view::View;
 
@@ -23,7 +24,19 @@ fn level([x, y, z]: [f32; 3], half: f32, colour: Vec3) -> GridCell {
 
 #[test]
 fn cells_have_their_colours_where_nothing_is_before_them() {
-    let mut device = Device::new();
+    expect_colours(Route::Fragment);
+}
+
+#[test]
+fn and_so_they_have_where_compute_shaders_copy_the_picture() {
+    expect_colours(Route::Compute);
+}
+
+fn expect_colours(route: Route) {
+    let mut device = Device::with(&ContextOptions {
+        route: Some(route),
+        ..ContextOptions::default()
+    });
     let grey = matt(0.5);
     // A board covers the middle from above.
     let scene = Model::default()

@@ -8,7 +8,7 @@ use glam::DVec3;
 use skylight::daylight::irradiance::IrradianceMethod;
 use skylight::daylight::preetham::Preetham;
 use skylight::daylight::sky::{Conditions, Daylight, Sky, SkyModel};
-use skylight::gpu::{ContextOptions, Optional};
+use skylight::gpu::{ContextOptions, Optional, Route};
 use skylight::passes::sky::irradiance::IrradianceSettings;
 use skylight::passes::sky::route::CubeRoute;
 use skylight::validate::check::Check;
@@ -358,7 +358,10 @@ fn three_routes_make_the_same_map() {
 
 #[test]
 fn a_device_without_geometry_shaders_draws_the_same_maps() {
-    let mut with = Device::new();
+    let mut with = Device::with(&ContextOptions {
+        route: Some(Route::Fragment),
+        ..ContextOptions::default()
+    });
     let mut without = Device::with(&ContextOptions {
         without: vec![Optional::GeometryShader],
         ..ContextOptions::default()

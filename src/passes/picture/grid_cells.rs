@@ -117,13 +117,11 @@ impl GridCells {
             depth: Depth::Off,
             constants: &[("LINEAR", linear.into())],
         };
+        let picture = ImageDesc::flat("picture with grid", format, size);
         self.target = Some(Target {
             copy: HandOver::new(&self.context, format, linear)?,
             pipeline: Pipeline::new(&self.context, &desc)?,
-            picture: Image::new(
-                &self.context,
-                &ImageDesc::flat("picture with grid", format, size),
-            )?,
+            picture: Image::new(&self.context, &picture.target_by(self.context.route()))?,
         });
         Ok(())
     }

@@ -52,8 +52,9 @@ const PATHS: u32 = 1 << 12;
 const UPDATES: u32 = 1 << 13;
 const SEEN_UPDATES: u32 = 1 << 12;
 
-/// Paths of a young cell in a round of a moving view; and where all cells are young, of which that many each would make frames long.
+/// Paths of a young cell in a round of a moving view.
 const YOUNG_PATHS: u32 = 4;
+/// The same while all cells are young, after a jump of the light: more would make each of these frames long.
 const PATHS_OF_ALL_YOUNG: u32 = 1;
 /// Paths up to which a cell is young, as in `include/cell_table.glsl`.
 const YOUNG: f32 = 32.0;
@@ -182,7 +183,7 @@ pub struct Cells {
     held: Option<Held>,
     /// Rounds so far.
     round: u32,
-    /// Paths that the mean of each cell counts for at least, but for cells that are new.
+    /// Least number of paths that the mean of a cell counts for, except for cells created since the light jumped.
     grown: f32,
     /// The view of the whole picture for which they were last filled anew.
     filled_for: Option<ViewBlock>,

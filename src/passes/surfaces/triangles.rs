@@ -1,7 +1,7 @@
 //! The G-buffer of surfaces without maps in two steps: a rasteriser writes the number of the triangle at each pixel, and a compute shader what the
 //! surface is like there. Burns & Hunt 2013, "The Visibility Buffer".
 //!
-//! Devices whose route is [`Route::Compute`] have few raster units, on which a fragment should do no more than it must.
+//! It is for devices that compute faster than they shade fragments ([`Route::Compute`]): there a fragment should do no more than it must.
 
 use std::sync::Arc;
 

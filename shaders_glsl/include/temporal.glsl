@@ -6,7 +6,7 @@
 //
 // The scene stands still, so the motion of a pixel follows from its depth alone, and so does whether the picture before shows the same surface
 // there: else it does not count. A linear lookup between texels blurs, and each frame would blur again: in turn along x and y it is sharpened
-// by what it lost. As long as the light is the same too, it needs no bounds: those that others take from the pixels
+// by what it lost, and the more a frame loses, the fewer frames count. As long as the light is the same too, it needs no bounds: those that others take from the pixels
 // around would cut off thin parts, which most frames miss, and let them flicker.
 
 // The light is not that of the picture before, which is bounded by what is around the pixel now.
@@ -35,6 +35,9 @@ const float EDGE = 128.0;
 /// Frames that count in a picture before with another light or exposure.
 const float FEW = 2.0;
 
+/// Variance by which the frames in a mean may spread a texel, pixels^2: more blurs what moves more than fewer samples roughen it.
+const float SPREAD = 2.0;
+
 /// More than rounding to 8 bits makes of `lost` below: half a step four times where the picture was stored, and as much again where it is looked up.
 const float NOISE = 4.5 / 255.0;
 
@@ -54,14 +57,15 @@ vec3 bounded(vec3 old, vec3 now, ivec2 pixel) {
 /// The picture before between its texels. A linear lookup at the fraction f between two texels adds f (1 - f) / 2 of the second derivative along each
 /// axis. Twice this is taken away along one of them, so that two frames together are exact to the third order. Beside an edge nothing is
 /// brighter or darker than what is there; a thin line stands out at most twice as much as in the linear lookup. What may be noise of the rounding stays.
-vec3 sharpened(vec2 at) {
-    vec2 f = fract(at * 0.5 / push.half_texel - 0.5), texel = push.axis * 2.0 * push.half_texel;
+/// `spread`: f (1 - f) along each axis.
+vec3 sharpened(vec2 at, vec2 spread) {
+    vec2 texel = push.axis * 2.0 * push.half_texel;
     vec3 old = textureLod(before, at, 0.0).rgb;
     vec3 a = textureLod(before, at - texel, 0.0).rgb, b = textureLod(before, at + texel, 0.0).rgb;
     vec3 least = min(a, b), most = max(a, b), twice = 2.0 * old;
     vec3 lost = twice - a - b;
     if (!LINEAR) lost *= step(NOISE, abs(lost));
-    vec3 sharp = old + dot(f - f * f, push.axis) * lost;
+    vec3 sharp = old + dot(spread, push.axis) * lost;
     return clamp(sharp, max(min(least, twice - least), 0.0), max(most, twice - most));
 }
 
@@ -90,9 +94,12 @@ vec4 smoothed(vec2 centre_of_pixel) {
     ivec2 texel = clamp(ivec2(at * 0.5 / push.half_texel), ivec2(0), textureSize(before, 0) - 1);
     float mark = texelFetch(before, texel, 0).a * FRAMES;
     bool is_edge = push.same >= 0.0 && nearest - farthest > push.same, was_edge = mark > MOST_FRAMES + 0.5;
-    float most = BOUNDED || shown.a < 0.5 ? FEW : MOST_FRAMES - 1.0;
+    // A linear lookup spreads a texel by the variance f (1 - f) along each axis, pixels^2. That of all frames in the mean stays below SPREAD.
+    vec2 f = fract(at * 0.5 / push.half_texel - 0.5), spread = f - f * f;
+    float sharp = SPREAD / (spread.x + spread.y + SPREAD / MOST_FRAMES);
+    float most = BOUNDED || shown.a < 0.5 ? FEW : sharp - 1.0;
     float count = is_same && (is_edge || !was_edge) ? min(mark < EDGE ? mark : mark - EDGE, most) : 0.0;
-    vec3 old = sharpened(at);
+    vec3 old = sharpened(at, spread);
     if (BOUNDED) old = bounded(old, now, pixel);
     // A picture before that does not count may be undefined.
     vec3 mean = light_of_display(now);

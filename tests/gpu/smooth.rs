@@ -185,6 +185,33 @@ fn a_pan_keeps_an_even_plane_even() {
 }
 
 #[test]
+fn the_more_a_motion_blurs_the_fewer_frames_count() {
+    let mut device = Device::new();
+    let scene = Model::default()
+        .quad(
+            [-20.0, -20.0, 0.0],
+            [40.0, 0.0, 0.0],
+            [0.0, 40.0, 0.0],
+            &matt(0.5),
+        )
+        .build();
+    let day = constant_sky(8000.0);
+    let view = |metres: f32| camera([metres, 0.0, 4.0], [metres, 0.0, 0.0]);
+    let half = (0.5 * view(0.0).fov_deg.to_radians()).tan();
+    let pixel = 2.0 * 4.0 * half / SIZE[1] as f32;
+    // 1 / (f (1 - f) / 2 + 1/10) frames for a fraction f of a pixel; see include/temporal.glsl.
+    for (pixels, frames) in [(1.0, 10), (1.1, 7), (1.5, 4)] {
+        let mut frame = frame(&mut device, &scene, with(AntiAliasing::Taa));
+        let mut counts = Vec::new();
+        for step in 0..16 {
+            let aside = view(pixels * pixel * step as f32);
+            counts = moved(&mut device, &mut frame, &day, &aside).counts();
+        }
+        assert_eq!(counts[counts.len() / 2], frames, "{pixels} pixels a frame");
+    }
+}
+
+#[test]
 fn jumps_of_view_and_light_start_anew() {
     let mut device = Device::new();
     let scene = board();

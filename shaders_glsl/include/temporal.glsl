@@ -35,7 +35,8 @@ const float EDGE = 128.0;
 /// Frames that count in a picture before with another light or exposure.
 const float FEW = 2.0;
 
-/// Variance by which the frames in a mean may spread a texel, pixels^2: more blurs what moves more than fewer samples roughen it.
+/// Variance by which the frames in a mean may spread a texel, of both axes together, pixels^2: more blurs what moves more than
+/// fewer samples roughen it.
 const float SPREAD = 2.0;
 
 /// More than rounding to 8 bits makes of `lost` below: half a step four times where the picture was stored, and as much again where it is looked up.

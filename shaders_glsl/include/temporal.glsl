@@ -35,8 +35,8 @@ const float EDGE = 128.0;
 /// Frames that count in a picture before with another light or exposure.
 const float FEW = 2.0;
 
-/// Variance by which the frames in a mean may spread a texel, of both axes together, pixels^2: more blurs what moves more than
-/// fewer samples roughen it.
+/// Variance by which the frames in a mean may spread a texel, of both axes together, pixels^2. More of it would show as blur, less leaves too few
+/// samples in the mean.
 const float SPREAD = 2.0;
 
 /// More than rounding to 8 bits makes of `lost` below: half a step four times where the picture was stored, and as much again where it is looked up.
@@ -92,13 +92,14 @@ vec4 smoothed(vec2 centre_of_pixel) {
 
     // A pixel at an edge mixes two surfaces that move apart: where there is no edge now, the mean of such pixels does not count.
     // Its mark is that of one texel: between two it would mean nothing.
-    ivec2 texel = clamp(ivec2(at * 0.5 / push.half_texel), ivec2(0), textureSize(before, 0) - 1);
+    vec2 place = at * 0.5 / push.half_texel; // pixels
+    ivec2 texel = clamp(ivec2(place), ivec2(0), textureSize(before, 0) - 1);
     float mark = texelFetch(before, texel, 0).a * FRAMES;
     bool is_edge = push.same >= 0.0 && nearest - farthest > push.same, was_edge = mark > MOST_FRAMES + 0.5;
     // A linear lookup spreads a texel by the variance f (1 - f) along each axis, pixels^2. That of all frames in the mean stays below SPREAD.
-    vec2 f = fract(at * 0.5 / push.half_texel - 0.5), spread = f - f * f;
-    float sharp = SPREAD / (spread.x + spread.y + SPREAD / MOST_FRAMES);
-    float most = BOUNDED || shown.a < 0.5 ? FEW : sharp - 1.0;
+    vec2 f = fract(place - 0.5), spread = f - f * f;
+    float frames = SPREAD / (spread.x + spread.y + SPREAD / MOST_FRAMES);
+    float most = BOUNDED || shown.a < 0.5 ? FEW : frames - 1.0;
     float count = is_same && (is_edge || !was_edge) ? min(mark < EDGE ? mark : mark - EDGE, most) : 0.0;
     vec3 old = sharpened(at, spread);
     if (BOUNDED) old = bounded(old, now, pixel);

@@ -38,7 +38,7 @@ vec3 gathered(ivec2 pixel, vec3 ray, vec3 world, uvec3 own, vec3 n) {
     vec3 side = dot(face, n) > SAME_FACE ? face : n;
     vec3 origin = lifted_from(world, side, view.eye, corner_error(view.ray_scale, size));
     vec3 emitted = vec3(0.0);
-    if (EMITTERS > 0u) emitted = emission_of_point(origin, n, side, scrambled_sobol(number, tea(seed, 2u)));
+    if (EMITS) emitted = emission_of_point(origin, n, side, scrambled_sobol(number, tea(seed, 2u)));
     // Below the face: inside of the body.
     if (is_turned_away(face, n, toward)) return emitted;
     Hit hit = closest(origin, toward, FAR);

@@ -53,7 +53,7 @@ vec3 path_light(Surface surface, inout uint state) {
             if (is_last || rnd(state) >= reflected * reflected) return light + throughput * here.bounce;
         }
         if (is_last) break;
-        if (EMITTERS > 0u) light += throughput * emission_of_point(surface.position, surface.normal, surface.normal, vec2(rnd(state), rnd(state)));
+        if (EMITS) light += throughput * emission_of_point(surface.position, surface.normal, surface.normal, vec2(rnd(state), rnd(state)));
         vec3 toward = cosine_direction(surface.normal, vec2(rnd(state), rnd(state)));
         Hit hit = closest(surface.position, toward, FAR);
         if (hit.distance == FAR) {
@@ -82,7 +82,7 @@ void add_path(inout Sum sum, uint slot, uint print) {
         Surface surface = surface_of(hit, point.position, toward);
         bounce = emission_of_ray(surface, dot(n, toward), toward, hit.distance) + path_light(surface, state);
     }
-    if (EMITTERS > 0u && push.segments > 0u) bounce += emission_of_point(point.position, n, n, scrambled_sobol(number, tea(scene.seed, print)));
+    if (EMITS && push.segments > 0u) bounce += emission_of_point(point.position, n, n, scrambled_sobol(number, tea(scene.seed, print)));
     // Later paths end in better cells: the weights of their light grow with the cube of their number.
     float k = sum.samples + 1.0;
     float late = 4.0 * k / ((k + 1.0) * (k + 1.0));

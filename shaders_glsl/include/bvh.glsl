@@ -18,7 +18,7 @@ layout(set = 0, binding = 21) uniform usampler2D bvh_triangles;
 // Nodes and triangles in a row of their images, set by every pipeline that traces rays.
 layout(constant_id = 31) const uint NODE_COLUMNS = 1u;
 layout(constant_id = 32) const uint TRIANGLE_COLUMNS = 1u;
-// Most steps of a ray: nodes and leaves, so that no loop is endless.
+// Most steps of a ray, no fewer than there are nodes and leaves: no loop is endless, whatever a faulty driver makes of the images.
 layout(constant_id = 33) const uint MOST_STEPS = 1u;
 
 // Opacity times 255; of a cut-out, the octahedral coordinates of its normal are above it, NORMAL_BITS each.

@@ -2,16 +2,20 @@
 // emitters; the balance heuristic (Veach and Guibas 1995) weights the two, so that nothing counts twice. Needs surface_hit.glsl,
 // scene_light.glsl. `scene::emitters` is the counterpart on the CPU.
 
-// Triangles that emit light, columns of their table, and the sum of their areas times luminance, kcd.
-layout(constant_id = 34) const uint EMITTERS = 0u;
+// Whether any triangle emits light, and columns of their table.
+layout(constant_id = 34) const bool EMITS = false;
 layout(constant_id = 35) const uint EMITTER_COLUMNS = 1u;
-layout(constant_id = 36) const float EMITTED = 1.0;
 
-// Position in the image of triangles; power of this and all earlier emitters as a fraction of all.
+// Number of emitters, and the sum of their areas times luminance, kcd; then for each: position in the image of triangles; power of this and all
+// earlier emitters as a fraction of all. The number is no uniform: lavapipe would compile the loop below anew for each.
 layout(set = 0, binding = 25) uniform usampler2D emitters;
 
+uvec4 emitter_row(uint row) {
+    return texel_at(emitters, vec2(row % EMITTER_COLUMNS, row / EMITTER_COLUMNS));
+}
+
 uvec4 emitter_texel(uint i) {
-    return texel_at(emitters, vec2(i % EMITTER_COLUMNS, i / EMITTER_COLUMNS));
+    return emitter_row(i + 1u);
 }
 
 float emitter_up_to(uint i) {
@@ -21,12 +25,13 @@ float emitter_up_to(uint i) {
 /// Density of directions toward points on a surface with this emission, per steradian. `toward`: from the receiver; `normal`: of the
 /// emitter.
 float emitter_density(vec3 emission, vec3 normal, vec3 toward, float distance) {
-    return luminance(emission) / EMITTED * distance * distance / max(abs(dot(normal, toward)), 1e-6);
+    float emitted = uintBitsToFloat(emitter_row(0u).y);
+    return luminance(emission) / emitted * distance * distance / max(abs(dot(normal, toward)), 1e-6);
 }
 
 /// Irradiance of the light that a surface emits, klx, found by a ray in a direction of density cosine / pi.
 vec3 emission_of_ray(Surface surface, float cosine, vec3 toward, float distance) {
-    if (EMITTERS == 0u || surface.emission == vec3(0.0)) return vec3(0.0);
+    if (!EMITS || surface.emission == vec3(0.0)) return vec3(0.0);
     float by_ray = cosine / PI;
     float weight = by_ray / (by_ray + emitter_density(surface.emission, surface.normal, toward, distance));
     return PI * weight * surface.emission;
@@ -34,7 +39,7 @@ vec3 emission_of_ray(Surface surface, float cosine, vec3 toward, float distance)
 
 /// The emitter for a number in [0, 1), which is replaced by another one.
 uint choose_emitter(inout float xi) {
-    uint low = 0u, high = EMITTERS - 1u;
+    uint low = 0u, high = emitter_row(0u).x - 1u;
     // Bisection; a table of 2^32 texels takes 32 steps.
     for (int i = 0; i < 32 && low < high; ++i) {
         uint middle = (low + high) / 2u;
@@ -49,7 +54,7 @@ uint choose_emitter(inout float xi) {
 /// Irradiance of the light of an emitter on a point, klx, for xi in [0, 1)^2. `n`: its normal, about which rays have the density of
 /// cosines; `face`: directions below it bring nothing.
 vec3 emission_of_point(vec3 position, vec3 n, vec3 face, vec2 xi) {
-    if (EMITTERS == 0u) return vec3(0.0);
+    if (!EMITS) return vec3(0.0);
     uint triangle = choose_emitter(xi.x);
     uvec4 first = triangle_texel(triangle, 0u), second = triangle_texel(triangle, 1u), third = triangle_texel(triangle, 2u);
     vec3 edge1 = uintBitsToFloat(second.xyz), edge2 = uintBitsToFloat(third.xyz);

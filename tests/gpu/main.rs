@@ -30,6 +30,7 @@ mod lobes;
 mod moon;
 mod moving_light;
 mod penumbra;
+mod pipelines;
 #[cfg(feature = "window")]
 mod present;
 mod probe;

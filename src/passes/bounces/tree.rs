@@ -16,7 +16,7 @@ use crate::scene::{Emitter, Emitters, Mean, Reflectances, Scene, Triangle};
 /// Nodes and triangles in a row of their images; the rows are longer if there would be too many.
 const COLUMNS: usize = 1024;
 
-/// Constants of pipelines that trace rays.
+/// Constants of pipelines that trace rays. Scenes of about one size have the same, so that what is compiled for one serves the others.
 pub type RayConstants = [(&'static str, u32); 5];
 
 /// What pipelines that trace rays are created from. Unlike the hierarchy it may go to another thread.
@@ -28,9 +28,7 @@ pub struct TreeFacts {
     /// Of the device, pixels: see `corner_error` in `include/bvh.glsl`.
     corner_step: f32,
     emitter_columns: u32,
-    emitter_count: u32,
-    /// Sum of area times luminance of the emitters, kcd.
-    emitted: f32,
+    is_emissive: bool,
 }
 
 impl TreeFacts {
@@ -46,7 +44,7 @@ impl TreeFacts {
     }
 
     /// Constants of pipelines that trace rays and sample the emitters.
-    pub fn constants_with_emitters(&self) -> [(&'static str, u32); 8] {
+    pub fn constants_with_emitters(&self) -> [(&'static str, u32); 7] {
         let [index, nodes, triangles, steps, corners] = self.constants();
         [
             index,
@@ -54,9 +52,8 @@ impl TreeFacts {
             triangles,
             steps,
             corners,
-            ("EMITTERS", self.emitter_count),
+            ("EMITS", self.is_emissive.into()),
             ("EMITTER_COLUMNS", self.emitter_columns),
-            ("EMITTED", self.emitted.to_bits()),
         ]
     }
 }
@@ -101,12 +98,9 @@ impl Tree {
         let numbers: Vec<u32> = wide.triangles.iter().map(number).collect();
         let emitters = Emitters::of(scene, &reflectances, |rgb| luminance(rgb.as_dvec3()));
         let positions = positions(&numbers, &emitters);
-        let words = |emitter: &Emitter| {
-            let up_to = (emitter.up_to as f32).to_bits();
-            [[positions[emitter.triangle as usize], up_to, 0, 0]]
-        };
+        let rows = emitter_rows(&emitters, &positions);
         let (table, emitter_columns) =
-            upload(recorder, "emitters", emitters.list(), most_rows, words)?;
+            upload(recorder, "emitters", &rows, most_rows, |row| [*row])?;
         Ok(Self {
             nodes,
             triangles,
@@ -115,11 +109,10 @@ impl Tree {
             facts: TreeFacts {
                 node_columns,
                 triangle_columns,
-                most_steps: (wide.nodes.len() + bvh.triangles().len()) as u32,
+                most_steps: most_steps(wide.nodes.len() + bvh.triangles().len()),
                 corner_step: recorder.context().summary().corner_step(),
                 emitter_columns,
-                emitter_count: emitters.list().len() as u32,
-                emitted: kilo(DVec3::splat(emitters.total())).x,
+                is_emissive: !emitters.list().is_empty(),
             },
         })
     }
@@ -131,7 +124,7 @@ impl Tree {
 
     /// Whether any triangle emits light.
     pub fn is_emissive(&self) -> bool {
-        self.facts.emitter_count > 0
+        self.facts.is_emissive
     }
 
     /// For each triangle of the image, its number in the scene.
@@ -152,6 +145,13 @@ impl Tree {
     }
 }
 
+/// Most steps of a ray in a hierarchy of so many nodes and triangles: at least as many, one of a few numbers.
+fn most_steps(elements: usize) -> u32 {
+    let classes = [12, 16, 20, 24].map(|bits| 1 << bits);
+    let of_all = classes.into_iter().find(|most| elements <= *most);
+    of_all.unwrap_or(elements) as u32
+}
+
 /// For each triangle of the scene its position in the image; empty if none is asked for.
 fn positions(numbers: &[u32], emitters: &Emitters) -> Vec<u32> {
     if emitters.list().is_empty() {
@@ -162,6 +162,21 @@ fn positions(numbers: &[u32], emitters: &Emitters) -> Vec<u32> {
         positions[*number as usize] = position;
     }
     positions
+}
+
+/// The table of the emitters: their number and the sum of area times luminance, kcd, then for each the position of its triangle and the share
+/// of power up to it.
+fn emitter_rows(emitters: &Emitters, positions: &[u32]) -> Vec<[u32; 4]> {
+    let total = kilo(DVec3::splat(emitters.total())).x;
+    let header = [emitters.list().len() as u32, total.to_bits(), 0, 0];
+    let row = |emitter: &Emitter| {
+        let up_to = (emitter.up_to as f32).to_bits();
+        [positions[emitter.triangle as usize], up_to, 0, 0]
+    };
+    [header]
+        .into_iter()
+        .chain(emitters.list().iter().map(row))
+        .collect()
 }
 
 /// Uploads elements of `N` texels each, in rows, and returns the number of elements in a row.

@@ -345,6 +345,8 @@ impl Lighting {
         let format = settings.precision.format();
         let constants = Self::constants(&settings, rays, is_converging);
         let pipeline = |traces: bool| {
+            // Converging frames have one comparison of their own (PLANE_SHADOW), so both are the same pipeline.
+            let traces = traces && !is_converging;
             let constants = [&constants[..], &[("TRACES", traces.into())]].concat();
             let depth = Depth::Surface(Format::D32_SFLOAT);
             let shaders = Screen {

@@ -145,9 +145,9 @@ impl Tree {
     }
 }
 
-/// Most steps of a ray in a hierarchy of so many nodes and triangles: at least as many, one of a few numbers.
+/// Most steps of a ray in a hierarchy of so many nodes and triangles: no fewer, and one of few numbers.
 fn most_steps(elements: usize) -> u32 {
-    let classes = [12, 16, 20, 24].map(|bits| 1 << bits);
+    let classes = [16, 20, 24].map(|bits| 1 << bits);
     let of_all = classes.into_iter().find(|most| elements <= *most);
     of_all.unwrap_or(elements) as u32
 }
@@ -179,6 +179,16 @@ fn emitter_rows(emitters: &Emitters, positions: &[u32]) -> Vec<[u32; 4]> {
         .collect()
 }
 
+/// Rows of an image for as many rows of elements: never a power of two, of which lavapipe makes shaders of their own.
+fn rows_of(needed: usize) -> usize {
+    let rows = needed.max(3);
+    if rows.is_power_of_two() {
+        rows + 1
+    } else {
+        rows
+    }
+}
+
 /// Uploads elements of `N` texels each, in rows, and returns the number of elements in a row.
 fn upload<T: Sync, const N: usize>(
     recorder: &mut Recorder,
@@ -187,8 +197,8 @@ fn upload<T: Sync, const N: usize>(
     most_rows: usize,
     words: impl Fn(&T) -> [[u32; 4]; N] + Sync,
 ) -> Result<(Image, u32)> {
-    let columns = COLUMNS * elements.len().div_ceil(COLUMNS * most_rows).max(1);
-    let rows = elements.len().div_ceil(columns).max(1);
+    let columns = COLUMNS * elements.len().div_ceil(COLUMNS * (most_rows - 1)).max(1);
+    let rows = rows_of(elements.len().div_ceil(columns));
     let mut table = vec![[[0u32; 4]; N]; rows * columns];
     let threads = thread::available_parallelism().map_or(1, usize::from);
     let share = elements.len().div_ceil(threads).max(1);
@@ -266,6 +276,20 @@ fn triangle_words(triangle: &Triangle, mean: &Mean) -> [[u32; 4]; 3] {
 mod tests {
     use super::*;
     use crate::passes::surfaces::gbuffer::unpack_normal;
+
+    #[test]
+    fn shaders_of_scenes_of_one_class_are_the_same() {
+        for elements in [0, 1, 1023, 40_000, 1 << 16] {
+            assert_eq!(most_steps(elements), 1 << 16);
+        }
+        for elements in [(1 << 16) + 1, 1 << 20, (1 << 24) + 1, 1 << 30] {
+            assert!(most_steps(elements) as usize >= elements);
+        }
+        for needed in 0..=16_383 {
+            let rows = rows_of(needed);
+            assert!(rows >= needed && !rows.is_power_of_two() && rows <= 16_383.max(needed + 1));
+        }
+    }
 
     #[test]
     fn normals_of_cut_outs_are_precise_to_an_eighth_of_a_degree_and_leave_the_marks_alone() {

@@ -26,7 +26,7 @@ fn made_for(
     let (day, view) = (constant_sky(1000.0), camera([0.0, 2.0, 5.0], [0.0; 3]));
     let count = |scene| {
         let before = device.context.pipelines().len();
-        device.picture(&scene, set.clone(), &day, &view);
+        device.picture(&scene, set, &day, &view);
         device.context.pipelines().len() - before
     };
     scenes.map(count).collect()
@@ -47,8 +47,8 @@ fn scenes_share_them() {
     let all = |set| with_bounces(Bounces::All, set);
     for set in [all(single(32, 18)), all(converged(32, 18, 2))] {
         for made in [
-            made_for(&mut device, with_lamps(), set.clone()),
-            made_for(&mut device, plain(), set.clone()),
+            made_for(&mut device, with_lamps(), set),
+            made_for(&mut device, plain(), set),
         ] {
             println!("{made:?}");
             assert_eq!(made[1..], [0, 0], "{made:?}");

@@ -38,11 +38,8 @@ fn scenes_share_them() {
     let mut device = Device::new();
     let with_lamps = || (1..4).map(lit_by);
     let plain = || {
-        (1..4).map(|n| {
-            Model::default()
-                .cube([0.0; 3], f32::from(n as u8), &matt(0.5))
-                .build()
-        })
+        let cube = |half| Model::default().cube([0.0; 3], half, &matt(0.5)).build();
+        [1.0, 2.0, 3.0].into_iter().map(cube)
     };
     let all = |set| with_bounces(Bounces::All, set);
     for set in [all(single(32, 18)), all(converged(32, 18, 2))] {

@@ -2,19 +2,16 @@
 
 use skylight::frame::FrameSettings;
 use skylight::passes::bounces::cells::Bounces;
-use skylight::scene::Scene;
+use skylight::scene::{Material, Scene};
 
 use crate::bounces::{converged, single, with_bounces};
 use crate::gpu::{Device, Model, camera, constant_sky, glowing, matt};
 
-/// A ground in the light of as many lamps.
-fn lit_by(lamps: u8) -> Scene {
+/// A ground and a row of cubes; `material` is that of cube `i`.
+fn row(cubes: u8, material: impl Fn(u8) -> Material) -> Scene {
     let ground = Model::default().ground(20.0, &matt(0.5));
-    let lamp = |model: Model, i: u8| {
-        let emission = 1000.0 * (1.0 + f32::from(i));
-        model.cube([f32::from(i) - 1.0, 1.0, 0.0], 0.2, &glowing(0.5, emission))
-    };
-    (0..lamps).fold(ground, lamp).build()
+    let cube = |model: Model, i: u8| model.cube([f32::from(i) - 1.0, 1.0, 0.0], 0.2, &material(i));
+    (0..cubes).fold(ground, cube).build()
 }
 
 /// Pipelines that a device makes to draw scenes one after the other.
@@ -36,15 +33,13 @@ fn made_for(
 #[test]
 fn scenes_share_them() {
     let mut device = Device::new();
-    let with_lamps = || (1..4).map(lit_by);
-    let plain = || {
-        let cube = |half| Model::default().cube([0.0; 3], half, &matt(0.5)).build();
-        [1.0, 2.0, 3.0].into_iter().map(cube)
-    };
+    let plain = || (1..4).map(|cubes| row(cubes, |_| matt(0.5)));
+    let lamp = |i| glowing(0.5, 1000.0 * (1.0 + f32::from(i)));
+    let lit = || (1..4).map(|cubes| row(cubes, lamp));
     let all = |set| with_bounces(Bounces::All, set);
     for set in [all(single(32, 18)), all(converged(32, 18, 2))] {
         for made in [
-            made_for(&mut device, with_lamps(), set),
+            made_for(&mut device, lit(), set),
             made_for(&mut device, plain(), set),
         ] {
             println!("{made:?}");

@@ -345,7 +345,7 @@ impl Lighting {
         let format = settings.precision.format();
         let constants = Self::constants(&settings, rays, is_converging);
         let pipeline = |traces: bool| {
-            // Converging frames have one comparison of their own (PLANE_SHADOW), so both are the same pipeline.
+            // PLANE_SHADOW, which converging frames set, leaves TRACES without effect: one pipeline serves both.
             let traces = traces && !is_converging;
             let constants = [&constants[..], &[("TRACES", traces.into())]].concat();
             let depth = Depth::Surface(Format::D32_SFLOAT);
